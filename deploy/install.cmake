@@ -1,6 +1,7 @@
-# cmake --install: programs, documentation and what a system needs of them, in FHS places below the prefix. The programs
-# find each other in their own folder and the configuration in the prefix's etc (deploy/tact/installed_config.hpp), so any
-# prefix does, and so does the build folder. Test equipment (tact-emu) is not installed. tact-bench and tact-reproduce install themselves (tests).
+# cmake --install: programs, documentation and system files, in FHS locations below the prefix. The programs find each
+# other in their own folder and the configuration in the prefix's etc (deploy/tact/installed_config.hpp), so any prefix
+# works, and the build folder too. Test equipment (tact-emu) is not installed. tact-bench and tact-reproduce have their
+# own install rules (tests).
 include(GNUInstallDirs)
 install(TARGETS tact tact-prep tact-rt tact-record tact-replay RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
 if(TACT_GUI)

@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
-# `sudo deploy/install.sh --rights` gives a user the rights that real devices need. What ./deploy/run and ./deploy/test
-# install by themselves is in packages-run.txt and packages-test.txt (shell/packages.sh).
+# `sudo deploy/install.sh --rights` gives a user the rights that real devices need. ./deploy/run and ./deploy/test install
+# the packages of packages-run.txt and packages-test.txt themselves (shell/packages.sh).
 
-# tact_install_rights ROOT USER: puts rules, limits, script and unit below ROOT ("" for the machine itself).
+# tact_install_rights ROOT USER: installs rules, limits, script and unit below ROOT ("" for this machine).
 tact_install_rights() {
     local root=$1 here
     here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd) || return 1
@@ -22,15 +22,15 @@ tact_rights_main() {
             *) cat <<'TEXT'
 usage: sudo deploy/install.sh --rights [--user NAME] [--into DIR]
 
-Optional: for real devices only; the emulated ones need none of it. Makes the groups tact (devices) and realtime
+Optional: only real devices need this. Creates the groups tact (devices) and realtime
 (priority, locked memory), adds the user to both, and installs
-  /etc/udev/rules.d/60-tact.rules        who may open arms and GPIO adapters
+  /etc/udev/rules.d/60-tact.rules        access to arms and GPIO adapters
   /etc/security/limits.d/tact.conf       real-time limits
   /usr/local/lib/tact/can-up and /etc/systemd/system/tact-can@.service
                                          CAN adapters come up when they are plugged in
-  --user NAME  whom to add (default: who called sudo)
-  --into DIR   only the files, below DIR: for pictures of other machines
-To undo it, remove these files, then: groupdel tact; groupdel realtime
+  --user NAME  user to add (default: the user of sudo)
+  --into DIR   install only the files, below DIR: for images of other machines
+To undo this, remove these files, then: groupdel tact; groupdel realtime
 TEXT
                 [ "$1" = --help ] || [ "$1" = -h ]
                 return ;;
@@ -42,17 +42,17 @@ TEXT
         return
     fi
     if [ "$(id -u)" -ne 0 ]; then
-        echo "install rights: this needs root" >&2
+        echo "install rights: the command needs root" >&2
         echo "  fix: sudo deploy/install.sh --rights" >&2
         return 1
     fi
     if [ -n "$user" ] && ! id "$user" >/dev/null 2>&1; then
-        echo "install rights: there is no user $user" >&2
-        echo "  fix: name one with --user" >&2
+        echo "install rights: the user $user does not exist" >&2
+        echo "  fix: name an existing user with --user" >&2
         return 1
     fi
     for group in tact realtime; do
-        # Before the rules: udev takes no rule whose group it does not know.
+        # Create the groups before the rules: udev rejects a rule with an unknown group.
         getent group "$group" >/dev/null || groupadd --system "$group" || return 1
         [ -z "$user" ] || [ "$user" = root ] || usermod -aG "$group" "$user" || return 1
     done
@@ -62,9 +62,9 @@ TEXT
         udevadm control --reload && udevadm trigger --subsystem-match=usb --subsystem-match=hidraw \
             --subsystem-match=gpio --subsystem-match=tty --subsystem-match=misc
     else
-        echo "install rights: no udev runs here (a container?); the files are in place for a machine where one does"
+        echo "install rights: udev does not run here (a container?); the files are in place for a machine with udev"
     fi
-    echo "rights installed${user:+ for $user, who has to log in again}; tact probe shows what is seen"
+    echo "rights installed${user:+ for $user, who must log in again}; tact probe lists the detected devices"
 }
 
 if [ "${BASH_SOURCE[0]}" = "$0" ]; then

@@ -21,9 +21,9 @@ std::unique_ptr<Lines> make_gpio(const LinesSettings& s) {
 }
 
 constexpr std::array kLines{
-    LinesEntry{"none", "no line is looked at", &make_none},
-    LinesEntry{"sim", "emulated lines: SIGUSR1 presses the emergency stop, SIGUSR2 lets it go", &make_sim},
-    LinesEntry{"gpio", "a GPIO chip, such as a USB adapter's", &make_gpio},
+    LinesEntry{"none", "no safety lines are monitored", &make_none},
+    LinesEntry{"sim", "emulated lines: SIGUSR1 presses the emergency stop, SIGUSR2 releases it", &make_sim},
+    LinesEntry{"gpio", "lines of a GPIO chip, such as a USB adapter", &make_gpio},
 };
 
 }  // namespace
@@ -36,7 +36,7 @@ std::unique_ptr<Lines> make_lines(const LinesSettings& settings) {
         if (settings.driver == t.name) return t.make(settings);
         known += (known.empty() ? "" : ", ") + std::string(t.name);
     }
-    throw StartupError("safety lines \"" + settings.driver + "\"", "there is no driver of this name",
+    throw StartupError("safety lines \"" + settings.driver + "\"", "no driver has this name",
                        "set lines.driver to one of: " + known);
 }
 

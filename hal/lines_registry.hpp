@@ -1,6 +1,6 @@
-// The one table of safety lines. Names are those of lines.driver in the configuration.
+// Table of the safety line drivers. The names are the values of lines.driver in the configuration.
 //
-// Errors   make_lines: StartupError, naming what there is
+// Errors   make_lines: StartupError, listing the known drivers
 // Thread   start-up
 #pragma once
 
@@ -15,13 +15,13 @@ namespace tact {
 struct LinesSettings {
     std::string driver = "none";
     GpioPortSettings gpio;
-    LineLogicSettings logic;  // what is fitted the driver knows
+    LineLogicSettings logic;  // the driver sets the fitted lines
     Duration every = std::chrono::milliseconds(1);
 };
 
 struct LinesEntry {
     const char* name;
-    const char* what;  // for people
+    const char* what;  // description for people
     std::unique_ptr<Lines> (*make)(const LinesSettings&);
 };
 

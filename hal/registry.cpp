@@ -60,16 +60,16 @@ std::unique_ptr<HapticDevice> make_falcon(const DeviceSettings& s) {
 
 constexpr std::array kDevices{
     DeviceEntry{"sim", "emulated Phantom and hand, in lockstep with the servo", true, &make_sim},
-    DeviceEntry{"sim-process", "the same in a process of its own, which outlives the controller", true,
+    DeviceEntry{"sim-process", "the same in a separate process that outlives the controller", true,
                 &make_sim_process},
     DeviceEntry{"phantom-usb", "a Phantom arm on an amplifier board, over USB; see [arm]", false,
                 &make_phantom_usb},
-    DeviceEntry{"openhaptics", "Touch, Omni, Desktop or Premium through their maker's library libHD.so",
+    DeviceEntry{"openhaptics", "Touch, Omni, Desktop or Premium through the manufacturer's library libHD.so",
                 false, &make_open_haptics},
-    DeviceEntry{"polhem", "Haptikfabriken or Polhem arm, over hidraw; see [arm]; untried on hardware", false,
-                &make_polhem},
-    DeviceEntry{"falcon", "Novint Falcon, with its owner's firmware file; untried on hardware", false,
-                &make_falcon},
+    DeviceEntry{"polhem", "Haptikfabriken or Polhem arm, over hidraw; see [arm]; not yet tested on hardware",
+                false, &make_polhem},
+    DeviceEntry{"falcon", "Novint Falcon, with a firmware file from the user; not yet tested on hardware",
+                false, &make_falcon},
 };
 
 }  // namespace
@@ -82,7 +82,7 @@ const DeviceEntry& device_driver(const std::string& name) {
         if (name == d.name) return d;
         known += (known.empty() ? "" : ", ") + std::string(d.name);
     }
-    throw StartupError("device driver \"" + name + "\"", "there is no driver of this name",
+    throw StartupError("device driver \"" + name + "\"", "no driver has this name",
                        "set device.driver to one of: " + known);
 }
 

@@ -16,7 +16,7 @@ std::unique_ptr<Tracker> make_can(const TrackerSettings& s) {
 }
 
 constexpr std::array kTrackers{
-    TrackerEntry{"none", "the view stands", &make_none},
+    TrackerEntry{"none", "no head tracking; the view stays fixed", &make_none},
     TrackerEntry{"sim", "an emulated head, in lockstep with its reader", &make_sim},
     TrackerEntry{"can", "frames of hal/tracker/tact_tracker.dbc on a SocketCAN interface", &make_can},
 };
@@ -31,7 +31,7 @@ std::unique_ptr<Tracker> make_tracker(const TrackerSettings& settings) {
         if (settings.driver == t.name) return t.make(settings);
         known += (known.empty() ? "" : ", ") + std::string(t.name);
     }
-    throw StartupError("head tracker \"" + settings.driver + "\"", "there is no tracker of this name",
+    throw StartupError("head tracker \"" + settings.driver + "\"", "no tracker has this name",
                        "set tracker.driver to one of: " + known);
 }
 

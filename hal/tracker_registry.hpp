@@ -1,6 +1,6 @@
-// The one table of head trackers. Names are those of tracker.driver in the configuration.
+// Table of the head trackers. The names are the values of tracker.driver in the configuration.
 //
-// Errors   make_tracker: StartupError, naming the trackers there are
+// Errors   make_tracker: StartupError, listing the known trackers
 // Thread   start-up
 #pragma once
 
@@ -15,12 +15,12 @@ namespace tact {
 struct TrackerSettings {
     std::string driver = "none";
     std::string interface = "can0";
-    SimHeadSettings sim;  // its part `can` is what every driver on a bus takes
+    SimHeadSettings sim;  // its member `can` applies to every CAN driver
 };
 
 struct TrackerEntry {
     const char* name;
-    const char* what;  // for people
+    const char* what;  // description for people
     std::unique_ptr<Tracker> (*make)(const TrackerSettings&);
 };
 

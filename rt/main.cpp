@@ -1,7 +1,7 @@
 // tact-rt: closes the force loop on a baked scene.
 //
-// Exit  0  the run ended in order: by a signal, or its time was over
-//       1  it could not start; one message says what, why and the fix. With --check-config: the file has problems
+// Exit  0  the run ended normally, by a signal or after its time
+//       1  it could not start; one message gives problem, cause and fix. With --check-config: the file has problems
 #include <unistd.h>
 
 #include <CLI/CLI.hpp>
@@ -65,10 +65,10 @@ LevelRequest parse_level(const std::string& text, const std::vector<std::string>
         const double floor = static_cast<double>(servo.governor().paths()[i].knob.floor);
         if (level >= floor && level <= 1.0) return {static_cast<std::uint32_t>(i), level};
         throw StartupError("--level " + text, "the level is outside " + std::to_string(floor) + " to 1",
-                           "choose a level inside it");
+                           "choose a level inside the range");
     }
-    throw StartupError("--level " + text, "this is not PATH=VALUE with a path of this scene",
-                       "paths: " + known);
+    throw StartupError("--level " + text, "the argument is not PATH=VALUE with a path of this scene",
+                       "use one of the paths " + known);
 }
 
 void say_how_it_went(const RtRegion& region) {
@@ -95,10 +95,9 @@ int run(std::span<char* const> arguments, const StartOptions& o, const StartOver
     const bool emulated = driver.emulated && (!two_hands || device_driver(config.device2.driver).emulated);
     const SceneFile scene = SceneFile::open(o.scene);
 
-    // The regions first: taking the session's lock needs them, and a second controller must not touch the
-    // device.
+    // Regions come first: the session lock needs them, and without the lock a second controller could open the device.
     OwnedRegion<RtRegion> region;
-    std::memset(static_cast<void*>(&*region), 0, sizeof(RtRegion));  // its pages are there from now on
+    std::memset(static_cast<void*>(&*region), 0, sizeof(RtRegion));  // faults in its pages
     const std::string path = std::filesystem::absolute(o.scene).string();
     std::memcpy(region->scene_path, path.data(), std::min(path.size(), sizeof region->scene_path - 1));
     region->scene_checksum = scene.checksum();
@@ -111,8 +110,8 @@ int run(std::span<char* const> arguments, const StartOptions& o, const StartOver
     std::unique_ptr<ForceModel> model = system.make_model(0);
     std::unique_ptr<ForceModel> second;
     if (two_hands) second = system.make_model(1);
-    // Until here a signal ends the process where it stands, since it holds nothing; from the device on it
-    // ends the run in order. Static, as a signal may come after run() too.
+    // Until here a signal ends the process at once; it holds no device yet. From here on a signal ends the run in order.
+    // Static, because a signal may also arrive after run().
     static ServoMailbox mailbox;
     Housekeeping::catch_signals(mailbox);
     DeviceSettings of_device = device_settings_from(config);
@@ -146,7 +145,7 @@ int run(std::span<char* const> arguments, const StartOptions& o, const StartOver
                  .mailbox = mailbox,
                  .lines = lines.get()},
                 settings);
-    // The servo may swap models; whichever it has at the end is destroyed here, off its thread.
+    // The servo may swap models; its last ones are destroyed here, off its thread.
     struct LastModel {
         Servo& servo;
         ~LastModel() {
@@ -163,7 +162,7 @@ int run(std::span<char* const> arguments, const StartOptions& o, const StartOver
     if (o.check) {
         device->relax();
         if (two_hands) device2->relax();
-        std::printf("tact-rt: scene %s, device %s, %s, %s, configuration: all good\n", o.scene.c_str(),
+        std::printf("tact-rt: scene %s, device %s, %s, %s, configuration: no problems\n", o.scene.c_str(),
                     hands_on.c_str(), head_on.c_str(), lines_on.c_str());
         return 0;
     }
@@ -180,14 +179,14 @@ int run(std::span<char* const> arguments, const StartOptions& o, const StartOver
     if (const std::string shared = shared_core_text(pinned_servos(), getpid()); !shared.empty())
         spdlog::warn("{}.\n  fix: {}", shared, kSharedCoreFix);
     if (emulated && config.safety.timing_latches == "real") {
-        spdlog::info("emulated device: lateness is counted and shown, but latches no fault");
+        spdlog::info("emulated device: lateness is counted and displayed, but latches no fault");
     }
     spdlog::info("{} on {}; {}; {}; {}; session {}", o.scene, hands_on, head_on, lines_on,
                  schedule_text(platform.flags), o.session);
     log_station_report();
     if (head) head->start();
     std::optional<Supervisor> supervisor;
-    // Emulated lines guard nothing: there lateness drops what it drops on an emulated device.
+    // Emulated lines protect nothing: they need the supervisor only if lateness latches.
     if (lines && (config.lines.driver != "sim" || settings.watchdogs.timing_latches)) {
         supervisor.emplace(mailbox.pulse, duration_us(config.safety.supervisor_us_max),
                            [&lines] { lines->drop(); });
@@ -226,7 +225,7 @@ int main(int argc, char** argv) {
     if (journal) spdlog::set_formatter(make_journal_formatter());
     tact::rt_guard::install();
     CLI::App app{"tact-rt: closes the force loop on a baked scene"};
-    app.footer("Exit codes: 0 as asked; 1 error; 2 wrong usage.");
+    app.footer("Exit codes: 0 success; 1 error; 2 wrong usage.");
     StartOptions options;
     StartOverrides overrides;
     describe(app, options, overrides);

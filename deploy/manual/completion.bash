@@ -1,11 +1,11 @@
 # Completes tact and its programs in bash 4.2 and later, with or without the package bash-completion.
-# The build puts this and the data below it, which the programs print from their own options, into one file.
+# The build writes this and the data below, which the programs print from their own options, into one file.
 declare -gA _tact_commands=() _tact_options=() _tact_values=() _tact_program=()
 
-# _tact_files [ENDING...]: files with one of these endings, or all, and folders, whose names begin like $current.
+# _tact_files [ENDING...]: files that begin like $current with one of these endings (default: any), and folders.
 _tact_files() {
     local found ending
-    compopt -o filenames 2>/dev/null # refused where no key was pressed, in tests
+    compopt -o filenames 2>/dev/null # fails in tests, where no key was pressed
     while IFS= read -r found; do
         if [ $# = 0 ] || [ -d "${found/#\~/$HOME}" ]; then
             COMPREPLY+=("$found")
@@ -17,7 +17,7 @@ _tact_files() {
     done < <(compgen -f -- "$current")
 }
 
-# _tact_offer WORDS: those that begin like $current.
+# _tact_offer WORDS: offers the words that begin like $current.
 _tact_offer() {
     local word
     for word in $1; do
@@ -25,7 +25,7 @@ _tact_offer() {
     done
 }
 
-# _tact_offer_values KIND [WORD...]: what _tact_values holds.
+# _tact_offer_values KIND [WORD...]: offers an entry of _tact_values.
 _tact_offer_values() {
     local kind=$1 found
     shift
@@ -57,7 +57,7 @@ _tact_complete() {
     done
     if [ -n "$option" ]; then
         [ "$current" = = ] && current=
-    elif [[ $current == --*=* ]]; then # where = does not divide words
+    elif [[ $current == --*=* ]]; then # bash settings in which = does not split words
         option=${current%%=*} prefix=${current%%=*}= current=${current#*=}
     fi
     if [ -n "$option" ]; then

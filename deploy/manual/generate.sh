@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# generate.sh BIN DIR: man pages of the programs in BIN into DIR/man1, and their completion for bash into
-# DIR/completions/tact. bash-completion looks for a file named like the program: the other names are links.
+# generate.sh BIN DIR: writes the man pages of the programs in BIN to DIR/man1 and their bash completion to
+# DIR/completions/tact. bash-completion loads the file named like the program, so the other names are links.
 set -euo pipefail
 here=$(cd "$(dirname "$0")" && pwd)
 bin=$1 out=$2

@@ -1,21 +1,21 @@
-# Sourced, in the root of the checkout. Configures and builds; prints nothing where nothing is to be done.
+# Sourced, in the root of the checkout. Configures and builds; prints nothing if there is nothing to do.
 #
-# A compiler cache is used where ccache is installed; what it holds of other checkouts fits this one too.
+# Uses ccache if installed; its entries are shared between checkouts.
 
-# Can the build be written? A folder on a read-only medium, or one of another user, is named as such.
+# Checks that the build folder is writable; reports a read-only file system or a folder of another user.
 tact_check_writable() {
     local here
     here=$(pwd -P)
     mkdir -p build 2>/dev/null && [ -w build ] && return 0
     if [ "$(stat -f -c %T . 2>/dev/null)" = "" ] || ! findmnt -n -o OPTIONS -T . 2>/dev/null | grep -qw ro; then
-        tact_fail "build in $here" "the folder is not this user's to write ($(id -un); owner: $(stat -c %U .))" \
+        tact_fail "build in $here" "the folder is not writable for this user ($(id -un); owner: $(stat -c %U .))" \
             "clone it into a folder of your own: git clone '$here' ~/tact"
     else
         tact_fail "build in $here" "the file system is read-only" "clone it elsewhere: git clone '$here' ~/tact"
     fi
 }
 
-# What a build folder was made by: another place, compiler or system needs a new one.
+# Identifies the tools of a build folder: another place, compiler or system needs a new folder.
 tact_toolchain() {
     c++ --version 2>/dev/null | head -n 1
     clang++ --version 2>/dev/null | head -n 1
@@ -23,24 +23,24 @@ tact_toolchain() {
     (. /etc/os-release && echo "$ID ${VERSION_ID:-}") 2>/dev/null
 }
 
-# tact_fresh_if_moved PRESET: a build folder that was configured elsewhere, or by other compilers, goes.
+# tact_fresh_if_moved PRESET: removes a build folder that was configured elsewhere or by other compilers.
 tact_fresh_if_moved() {
     local folder=build/$1 home made
     [ -f "$folder/CMakeCache.txt" ] || return 0
     home=$(sed -n 's/^CMAKE_HOME_DIRECTORY:INTERNAL=//p' "$folder/CMakeCache.txt")
     made=$(cat "$folder/toolchain.txt" 2>/dev/null)
     if ! [ "$home" -ef . ]; then
-        echo "This checkout was moved or copied from $home: $folder is configured anew."
+        echo "This checkout was moved or copied from $home: $folder is configured again."
     elif [ -n "$made" ] && [ "$made" != "$(tact_toolchain)" ]; then
-        echo "The compiler or the system has changed: $folder is configured anew."
+        echo "The compiler or the system has changed: $folder is configured again."
     else
         return 0
     fi
     rm -rf "$folder"
 }
 
-# tact_build_estimate PRESET: seconds of a whole build: as the last one here took, else from the processor time that
-# it needs on a PC of 2023.
+# tact_build_estimate PRESET: seconds of a full build: the time of the last one here, else from the processor time on a
+# PC of 2023.
 tact_build_estimate() {
     local last processor_s
     last=$(awk -v preset="$1" '$1 == preset {seconds = $2} END {print seconds}' build/times.txt 2>/dev/null)
@@ -53,7 +53,7 @@ tact_build_estimate() {
     echo "${last:-$((processor_s / $(nproc)))}"
 }
 
-# Shows ninja's steps as shares; all else that it prints (warnings, errors) passes.
+# Shows ninja's steps as progress; passes all other output (warnings, errors) through.
 tact_ninja_output() {
     local line done_steps all_steps
     while IFS= read -r line; do
@@ -80,7 +80,7 @@ tact_build() {
     if ! cmake --preset "$preset" >"$log" 2>&1; then
         cat "$log" >&2
         tact_fail "configure $preset" "CMake failed (its output is above, and in $log)" \
-            "install what it misses; rm -rf build/$preset starts anew"
+            "install the missing package; rm -rf build/$preset starts over"
         return
     fi
     tact_toolchain >"build/$preset/toolchain.txt"
@@ -92,9 +92,9 @@ tact_build() {
     status=${PIPESTATUS[0]}
     tact_plan_end
     if [ "$status" -ne 0 ]; then
-        tact_fail "build $preset" "a step failed (its output is above)" "rm -rf build/$preset and build again; else report it with that output"
+        tact_fail "build $preset" "a step failed (its output is above)" "run rm -rf build/$preset and build again; if it fails again, report it with that output"
         return
     fi
-    # Only a build of (nearly) everything says how long the next one may take.
+    # Only a build of (nearly) everything predicts the time of the next one.
     if [ "$steps" -gt 100 ]; then echo "$preset $((SECONDS - start)) $steps" >>build/times.txt; fi
 }

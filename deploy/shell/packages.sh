@@ -1,12 +1,12 @@
-# Sourced. Installs the Debian packages of given lists that are missing. Nothing is done where none is missing (dpkg is
-# asked once). sudo is used only where the user is not root.
+# Sourced. Installs the missing Debian packages of given lists. Does nothing if none is missing (one call of dpkg-query).
+# Uses sudo only if the user is not root.
 #
 #   TACT_NO_INSTALL=1    only report what is missing
-#   TACT_LOCK_SECONDS=N  how long to wait for another package manager (default 180)
+#   TACT_LOCK_SECONDS=N  maximum wait for another package manager (default 180)
 #
-# Every failure ends in one message of three parts: what was tried, why it failed, the fix.
+# Every failure ends with one message of three parts: the attempt, the cause, the fix.
 
-# tact_fail WHAT WHY FIX...: that message, each FIX on a line of its own.
+# tact_fail ATTEMPT CAUSE FIX...: prints that message, each FIX on a line of its own.
 tact_fail() {
     local fix
     printf '\n%s: %s\n' "$1" "$2" >&2
@@ -24,7 +24,7 @@ tact_packages_missing() {
     comm -23 <(printf '%s\n' "$wanted") <(printf '%s\n' "$installed")
 }
 
-# Sets tact_as_root to the words that make a command root's; asks for a password where a terminal is there.
+# Sets tact_as_root to the command prefix for root; asks for a password if there is a terminal.
 tact_become_root() {
     local reason=$1 by_hand=$2
     tact_as_root=()
@@ -46,7 +46,7 @@ tact_become_root() {
         "or let an administrator add you to the group sudo: adduser $(id -un) sudo"
 }
 
-# Is the first package archive within reach? In seconds, where apt itself would try for minutes.
+# Checks that the first package archive can be reached; takes seconds, where apt itself would try for minutes.
 tact_archive_reached() {
     local uri
     uri=$(LC_ALL=C apt-get update --print-uris 2>/dev/null | sed -n "s/^'\([^']*InRelease\)'.*/\1/p" | head -n 1)
@@ -55,8 +55,8 @@ tact_archive_reached() {
             "add: deb http://deb.debian.org/debian $(. /etc/os-release && echo "$VERSION_CODENAME") main"
         return
     fi
-    case $uri in http:* | https:*) ;; *) return 0 ;; esac  # a disk or a mirror on this machine: apt will tell
-    # In /tmp, which apt's own user may write.
+    case $uri in http:* | https:*) ;; *) return 0 ;; esac  # a disk or a mirror on this machine: apt reports problems
+    # In /tmp, where apt's own user may write.
     local probe
     probe=$(mktemp -d /tmp/tact-probe.XXXXXX) && chmod 755 "$probe"
     if ! LC_ALL=C timeout 8 /usr/lib/apt/apt-helper -o Acquire::Retries=0 -o Acquire::http::Timeout=6 \
@@ -70,7 +70,7 @@ tact_archive_reached() {
     rm -rf "$probe"
 }
 
-# Why apt-get failed, from what it printed.
+# Explains a failure of apt-get from its output.
 tact_explain_apt() {
     local log=$1 missing=$2 held
     held=$(apt-mark showhold 2>/dev/null | xargs)
@@ -83,7 +83,7 @@ tact_explain_apt() {
     elif grep -q 'held broken packages\|unmet dependencies\|held packages were changed' "$log"; then
         if [ -n "$held" ]; then
             tact_fail "install packages" "packages on hold are in the way: $held" \
-                "sudo apt-mark unhold $held, or set them free one at a time; $log has apt's reasons"
+                "sudo apt-mark unhold $held, or release them one at a time; $log has apt's reasons"
         else
             tact_fail "install packages" "their dependencies cannot be met: $(grep -m 1 -A 1 'unmet dependencies' "$log" | tail -n 1 | xargs)" \
                 "sudo apt-get --fix-broken install; remove packages of other releases; $log has apt's reasons"
@@ -91,17 +91,17 @@ tact_explain_apt() {
     elif grep -q 'dpkg was interrupted' "$log"; then
         tact_fail "install packages" "an earlier installation was interrupted" "sudo dpkg --configure -a; then run this again"
     elif grep -q "don't have enough free space\|No space left" "$log"; then
-        tact_fail "install packages" "the disk is full" "make room on $(df --output=target /var/cache/apt | tail -n 1), e.g. sudo apt-get clean"
+        tact_fail "install packages" "the disk is full" "free disk space on $(df --output=target /var/cache/apt | tail -n 1), e.g. sudo apt-get clean"
     elif grep -q 'Temporary failure resolving\|Could not connect\|Connection timed out\|Connection failed\|Failed to fetch' "$log"; then
-        tact_fail "install packages" "the download broke off: $(grep -m 1 'Failed to fetch\|Could not\|Connection' "$log")" \
-            "check the network, then run this again: what is downloaded stays"
+        tact_fail "install packages" "the download was interrupted: $(grep -m 1 'Failed to fetch\|Could not\|Connection' "$log")" \
+            "check the network, then run this again; downloaded files are kept"
     else
         tail -n 15 "$log" >&2
         tact_fail "install packages" "apt-get failed (its last lines are above)" "as root, run: apt-get install --no-install-recommends $missing"
     fi
 }
 
-# Reads apt-get's output: its shares are shown, all else goes into the log.
+# Reads apt-get's output: shows its progress, writes all other lines to the log.
 tact_apt_output() {
     local line
     : >"$1"
@@ -109,18 +109,18 @@ tact_apt_output() {
         case $line in
             dlstatus:*) line=${line#*:*:}; line=${line%%[.:]*}; tact_share "$((line / 3))" "Downloading packages" ;;
             pmstatus:*) line=${line#*:*:}; line=${line%%[.:]*}; tact_share "$((33 + line * 2 / 3))" "Installing packages" ;;
-            pmerror:*) ;;  # the log has it in words
+            pmerror:*) ;;  # the log has the error text
             *) printf '%s\n' "$line" >>"$1" ;;
         esac
     done
 }
 
-# tact_apt LOG ARGUMENT...: apt-get as root. Waits while another package manager holds a lock.
+# tact_apt LOG ARGUMENT...: runs apt-get as root. Waits while another package manager holds a lock.
 tact_apt() {
     local log=$1 until=$((SECONDS + ${TACT_LOCK_SECONDS:-180})) told=0 status
     shift
     while :; do
-        # Shares come on a descriptor of their own: apt closes it for the packages' scripts, which need their output.
+        # Progress comes on a descriptor of its own: apt closes it for the packages' scripts, which need their output.
         # shellcheck disable=SC2016
         "${tact_as_root[@]}" env LC_ALL=C.UTF-8 LANGUAGE= DEBIAN_FRONTEND=noninteractive sh -c 'exec apt-get "$@" 3>&1' \
             apt -q -y -o Dpkg::Use-Pty=0 -o Acquire::Retries=1 -o APT::Status-Fd=3 "$@" 2>&1 | tact_apt_output "$log"
@@ -135,15 +135,15 @@ tact_apt() {
     done
 }
 
-# tact_install_packages [--before-build SECONDS] LIST...: SECONDS are what a build after it is likely to take, so that
-# shares are of the whole. Leaves the plan (progress.sh) open for that build.
+# tact_install_packages [--before-build SECONDS] LIST...: SECONDS is the estimated time of a build that follows, so that
+# progress covers both. Leaves the plan (progress.sh) open for that build.
 tact_install_packages() {
     local build_s=0 missing count log bytes by_hand
     if [ "$1" = --before-build ]; then build_s=$2; shift 2; fi
     if ! command -v dpkg-query >/dev/null || ! command -v apt-get >/dev/null; then
         [ "${TACT_NO_INSTALL:-0}" = 1 ] && return 0
         tact_fail "install packages" "this is not a Debian system (dpkg-query or apt-get is missing)" \
-            "install what $* name by other means, then set TACT_NO_INSTALL=1"
+            "install the packages listed in $* by other means, then set TACT_NO_INSTALL=1"
         return
     fi
     missing=$(tact_packages_missing "$@" | tr '\n' ' ')
@@ -169,7 +169,7 @@ tact_install_packages() {
         awk '{packages++; bytes += $3} END {printf "%d %d", packages, bytes}')
     count=${bytes% *} bytes=${bytes#* }
     if [ "$count" -gt 0 ]; then
-        echo "With what they need: $count packages, $(((bytes + 999999) / 1000000)) MB to download."
+        echo "With dependencies: $count packages, $(((bytes + 999999) / 1000000)) MB to download."
         [ "$build_s" = 0 ] || echo "Then the build: $(tact_duration "$build_s") on $(nproc) processor cores."
     fi
     tact_plan packages "$((bytes / 8000000 + count / 5 + 1))" build "$build_s"
@@ -186,8 +186,8 @@ tact_install_packages() {
     [ -z "$missing" ] || tact_fail "install packages" "still missing after the installation: $missing" "sudo $by_hand"
 }
 
-# tact_unpack_tool PACKAGE PROGRAM: a program of a package that must not be installed (it starts a server), in
-# build/tools. Nothing of the package is run. Prints the folder of the program; fails where it cannot be had.
+# tact_unpack_tool PACKAGE PROGRAM: unpacks a program of a package that must not be installed (it starts a server) to
+# build/tools, without running anything of the package. Prints the folder of the program; fails if it is not available.
 tact_unpack_tool() {
     local package=$1 program=$2 into=build/tools/$1 found output
     found=$(find "$into" -path "*/bin/$program" -type f 2>/dev/null | head -n 1)
@@ -201,7 +201,7 @@ tact_unpack_tool() {
         fi
         rm -f "$into/$package"_*.deb
         found=$(find "$into" -path "*/bin/$program" -type f | head -n 1)
-        [ -n "$found" ] || { echo "unpack $package: there is no $program in it" >&2; return 1; }
+        [ -n "$found" ] || { echo "unpack $package: the package does not contain $program" >&2; return 1; }
     fi
     (cd "$(dirname "$found")" && pwd)
 }

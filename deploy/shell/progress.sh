@@ -1,10 +1,10 @@
-# Sourced. Shows long work as a share of the whole: on a terminal one line that is written over, elsewhere a line at the
+# Sourced. Shows the progress of long work in percent: on a terminal one line that is overwritten, elsewhere a line at the
 # start of each step and after every tenth of the whole.
 #
-#   tact_plan STEP SECONDS...     the steps to come and how long each is likely to take; the clock starts
-#   tact_step STEP TEXT           a step begins; those before it are done
-#   tact_share PERCENT TEXT       the share of the current step that is done
-#   tact_plan_end                 the line is closed, where one was written
+#   tact_plan STEP SECONDS...     the planned steps and their estimated times; starts the clock
+#   tact_step STEP TEXT           a step begins; earlier steps are done
+#   tact_share PERCENT TEXT       progress of the current step
+#   tact_plan_end                 ends the progress line
 
 tact_plan() {
     tact_plan_steps=() tact_plan_seconds=() tact_plan_all=0 tact_plan_before=0 tact_plan_now=0 tact_plan_shown=-1
@@ -38,7 +38,7 @@ tact_duration() {
 tact_share() {
     local percent left elapsed=$((SECONDS - tact_plan_start))
     percent=$(((tact_plan_before * 100 + tact_plan_now * $1) / (tact_plan_all > 0 ? tact_plan_all : 1)))
-    # From the plan at first, then from what it took so far.
+    # Early from the plan, then from the elapsed time.
     if [ "$percent" -lt 10 ]; then
         left=$((tact_plan_all - tact_plan_all * percent / 100))
     else

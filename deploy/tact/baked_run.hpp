@@ -1,4 +1,4 @@
-// What `tact dock`, `touch` and `drill` have in common: files are baked into a scene once, and that is run.
+// Shared by `tact dock`, `touch`, `drill` and `field`: bake files into a scene once, then run it.
 #pragma once
 
 #include <CLI/CLI.hpp>
@@ -13,14 +13,14 @@ namespace tact::launch {
 
 struct BakedRun {
     RunOptions run;
-    std::vector<std::string> prep;  // options as they were typed
+    std::vector<std::string> prep;  // options for tact-prep, as typed
     bool bake_only = false;
 };
 
-// `baked` must outlive the parsing, and callbacks hold it by address.
+// `baked` must outlive parsing: the callbacks hold its address.
 void add_baked_run_options(CLI::App& app, std::span<const PassedOption> prep, BakedRun& baked);
 
-// The exit code.
+// Returns the exit code.
 int bake_and_run(const BakeRequest& request, const BakedRun& baked);
 
 }  // namespace tact::launch

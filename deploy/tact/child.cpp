@@ -20,7 +20,7 @@ extern "C" char** environ;
 namespace tact::launch {
 namespace {
 
-// What the child needs, made before fork() so that nothing is allocated after it.
+// The arguments and variables of the child, built before fork(): nothing is allocated after it.
 struct Image {
     std::vector<std::string> words, variables;
     std::vector<char*> argv, envp;
@@ -79,7 +79,7 @@ std::string Ending::text() const {
     } else {
         t = "ended with exit code " + std::to_string(number);
     }
-    if (forced) t += " after it ignored the request to end";
+    if (forced) t += " because it did not end on request";
     return t;
 }
 
@@ -102,7 +102,7 @@ Child::Child(std::string name, const std::filesystem::path& program, const Child
     int why = 0;
     ssize_t got = 0;
     if (pid_ > 0) {
-        do got = read(report[0], &why, sizeof why);  // ends with exec, which closes the other side
+        do got = read(report[0], &why, sizeof why);  // exec closes the other end
         while (got < 0 && errno == EINTR);
     }
     close(report[0]);
@@ -112,7 +112,7 @@ Child::Child(std::string name, const std::filesystem::path& program, const Child
     if (got > 0) {
         waitpid(pid_, nullptr, 0);
         throw StartupError("starting " + program.string(), std::strerror(why),
-                           "check that the file exists and may be executed");
+                           "check that the file exists and is executable");
     }
 }
 
@@ -124,8 +124,8 @@ Child::~Child() {
     }
 }
 
-// A stopped child would never see the request. One that runs is not sent SIGCONT: that would take back a
-// SIGSTOP on its way to it, such as the one by which a debugger, or a leak checker at exit, attaches.
+// A stopped child would not handle SIGTERM. A running child gets no SIGCONT, which would cancel a pending SIGSTOP, such
+// as that of a debugger or of a leak checker at exit.
 void Child::wake() const {
     siginfo_t halted{};
     if (waitid(P_PID, static_cast<id_t>(pid_), &halted, WSTOPPED | WNOHANG | WNOWAIT) == 0 &&
@@ -182,9 +182,10 @@ std::filesystem::path find_program(const std::string& name, const std::filesyste
     if (access((where / name).c_str(), X_OK) == 0) return where / name;
     if (folder.empty())
         if (auto found = find_in_path(name); !found.empty()) return found;
-    throw StartupError("looking for the program " + name,
-                       "it is not in " + where.string() + (folder.empty() ? " nor in PATH" : ""),
-                       "build it: cmake --preset release && cmake --build --preset release --target " + name);
+    throw StartupError(
+        "looking for the program " + name,
+        "the program is not in " + where.string() + (folder.empty() ? " nor in PATH" : ""),
+        "build the program: cmake --preset release && cmake --build --preset release --target " + name);
 }
 
 }  // namespace tact::launch

@@ -1,4 +1,4 @@
-// tact bench: a program of its own, which takes the words as they are.
+// tact bench: becomes the program tact-bench with the same arguments.
 #include "deploy/tact/commands.hpp"
 #include "deploy/tact/exec.hpp"
 

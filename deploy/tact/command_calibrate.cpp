@@ -1,4 +1,5 @@
-// tact calibrate --stage lab.toml: where the stereo screen, the eyes and the hand's world are, step by step, into that file.
+// tact calibrate --stage lab.toml: measures stereo screen, eyes and workspace step by step and writes them to that
+// file.
 #include <memory>
 
 #include "deploy/tact/commands.hpp"
@@ -15,7 +16,7 @@ void add_calibrate(CLI::App& app, int& exit_code) {
     add_run_options(*command, *options);
     command->callback([options, &exit_code] {
         options->visual.emplace_back("--calibrate");
-        // Devices are read as in any run, and whatever the hand meets, nothing pushes it while it measures.
+        // Devices are read as in any run, but the force scale is 0: nothing pushes the hand while it measures.
         if (!options->has_controller_option("--force-scale"))
             options->controller.insert(options->controller.end(), {"--force-scale", "0"});
         const auto scene = baked_scene(

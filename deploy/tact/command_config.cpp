@@ -1,4 +1,4 @@
-// tact config check FILE: the controller's own reader, in tact-rt, which this word becomes.
+// tact config check FILE: becomes tact-rt, which has the only reader of the configuration.
 #include <memory>
 
 #include "deploy/tact/commands.hpp"

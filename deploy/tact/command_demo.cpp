@@ -1,4 +1,4 @@
-// tact demo: each system has one, without files or devices.
+// tact demo: one demo per system, without files or devices.
 #include "deploy/tact/commands.hpp"
 #include "deploy/tact/systems.hpp"
 

@@ -1,4 +1,4 @@
-// tact doctor: what of this machine is as Tact wants it, and the fix of what is not.
+// tact doctor: checks the state of this machine and prints the fix of each problem.
 #include <memory>
 #include <nlohmann/json.hpp>
 

@@ -1,5 +1,5 @@
-// tact info SCENE: all that another program needs to compute the same force from the same files.
-// Each system spells its force out in its own folder (info_docking.cpp, ...).
+// tact info SCENE: all data that another program needs to compute the same force from the same files. The folder of
+// each system has the formulas of its force (info_docking.cpp, ...).
 #include <algorithm>
 #include <memory>
 #include <nlohmann/json.hpp>

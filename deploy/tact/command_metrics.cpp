@@ -1,4 +1,4 @@
-// tact metrics: the figures of the running controller for Prometheus.
+// tact metrics: exports the metrics of the running controller to Prometheus.
 #include <cstdio>
 #include <memory>
 

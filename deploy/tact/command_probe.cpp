@@ -1,4 +1,4 @@
-// tact probe: which devices there are, and the rights that a run with them needs.
+// tact probe: detects devices and checks the rights that a run with them needs.
 #include <array>
 #include <memory>
 
@@ -11,7 +11,7 @@
 namespace tact::launch {
 namespace {
 
-// Of the doctor's findings, those that a device makes matter.
+// Findings of the doctor that matter for a run with a device.
 constexpr std::array kMachineRows{"kernel", "isolation", "rtprio", "memlock", "frequency", "dma_latency"};
 
 nlohmann::json node_json(const probe::Node& n) {

@@ -1,4 +1,4 @@
-// tact record: a program of its own, which takes the words as they are.
+// tact record: becomes the program tact-record with the same arguments.
 #include "deploy/tact/commands.hpp"
 #include "deploy/tact/exec.hpp"
 

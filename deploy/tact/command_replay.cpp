@@ -1,4 +1,5 @@
-// tact replay: a recorded run again, compared with the recording; with --show in a window, at the recorded pace.
+// tact replay: repeats a recorded run and compares it with the recording; with --show in a window, at the recorded
+// speed.
 #include <cstdio>
 #include <cstdlib>
 #include <memory>
@@ -33,13 +34,13 @@ std::optional<XServer> screen_of(const ReplayOptions& o, const ScratchFolder& sc
     if (!o.headless) {
         if (std::getenv("DISPLAY") == nullptr && std::getenv("WAYLAND_DISPLAY") == nullptr)
             throw StartupError("opening a window", "neither DISPLAY nor WAYLAND_DISPLAY is set",
-                               "add --headless to draw without a screen, or leave --show away");
+                               "add --headless to draw without a screen, or omit --show");
         return std::nullopt;
     }
     return std::make_optional<XServer>(scratch.path(), o.size);
 }
 
-// Until window and replay have ended: the one that ends first takes the other along.
+// Runs until window and replay have ended; the one that ends first stops the other.
 int show(const ReplayOptions& o) {
     const ScratchFolder scratch;
     Signals signals;
@@ -61,7 +62,8 @@ int show(const ReplayOptions& o) {
     }
     const Ending& drawn = *window.poll();
     if (!drawn.clean() && !(drawn.asked && !drawn.forced)) {
-        std::fprintf(stderr, "tact-gui %s\n  fix: see its messages above\n", drawn.text().c_str());
+        std::fprintf(stderr, "tact-gui %s\n  fix: see the messages of tact-gui above\n",
+                     drawn.text().c_str());
         return 1;
     }
     const Ending& done = *replay.poll();
@@ -96,7 +98,7 @@ void add_replay(CLI::App& app, int& exit_code) {
     command->add_option("--screenshot", o->screenshot, "Screenshot of the window at the end")
         ->type_name("FILE.png")
         ->needs(shown);
-    command->add_option("--session", o->session, "Session name by which window and replay find each other")
+    command->add_option("--session", o->session, "Session name shared by window and replay")
         ->type_name("NAME")
         ->needs(shown);
     command->callback([o, &exit_code] {

@@ -1,4 +1,4 @@
-// tact reproduce: a program of its own, which takes the words as they are.
+// tact reproduce: becomes the program tact-reproduce with the same arguments.
 #include "deploy/tact/commands.hpp"
 #include "deploy/tact/exec.hpp"
 

@@ -1,4 +1,4 @@
-// tact run SCENE: a scene that tact-prep baked.
+// tact run SCENE: runs a scene that tact-prep baked.
 #include <memory>
 
 #include "deploy/tact/commands.hpp"

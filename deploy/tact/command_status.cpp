@@ -1,4 +1,4 @@
-// tact status: how the running controller is doing.
+// tact status: prints the state of the running controller.
 #include <poll.h>
 
 #include <memory>
@@ -21,7 +21,7 @@ struct StatusOptions {
     bool json = false, watch = false;
 };
 
-// Null where the scene file was moved since the start: the system's columns are then missing.
+// Null if the scene file was moved since the start; the columns of the system are then missing.
 std::unique_ptr<SystemRun> system_run_of(const RtRegion& region) {
     try {
         const SceneFile scene = SceneFile::open(field_text(region.scene_path, sizeof region.scene_path));
@@ -56,12 +56,17 @@ void show(const Observer& observer, bool as_json) {
             if (name != "packets" && n != 0)
                 wrong += (wrong.empty() ? "; " : ", ") + name + " " + std::to_string(n.get<std::uint32_t>());
         }
-        std::printf("device's bus: %u packets%s\n", device["bus"]["packets"].get<std::uint32_t>(),
+        std::printf("device bus: %u packets%s\n", device["bus"]["packets"].get<std::uint32_t>(),
                     wrong.c_str());
     }
     std::printf("law %s, goal %.0f Hz\n",
                 report["governor"].is_object() ? report["governor"]["law"].get<std::string>().c_str() : "-",
                 sample->health.goal_hz);
+    if (report["governor"].is_object()) {
+        for (const auto& [name, path] : report["governor"]["paths"].items())
+            std::printf("level %s %.2f: %s\n", name.c_str(), path["level"].get<double>(),
+                        path["status"].get<std::string>().c_str());
+    }
     std::fputs(report_summary(report).c_str(), stdout);
     std::fputs((table_header(*sample) + table_row(*sample)).c_str(), stdout);
 }
@@ -117,7 +122,8 @@ int status(const StatusOptions& o) {
         }
         ::poll(nullptr, 0, 20);
     }
-    std::fprintf(stderr, "%s\n  fix: start one with tact demo dock, or name its session with --session\n",
+    std::fprintf(stderr,
+                 "%s\n  fix: start a controller with tact demo dock, or give its session with --session\n",
                  observer.status_text().c_str());
     return 1;
 }

@@ -1,7 +1,7 @@
-// The commands of `tact` that are the same for all systems; one file each, named command_<name>.cpp. Those of one system are in
-// deploy/tact/systems.
+// The commands of `tact` for all systems; one file each, named command_<name>.cpp. deploy/tact/systems has the commands
+// of single systems.
 //
-// A command adds itself to the parser with a callback that puts the exit code into `exit_code`.
+// A command adds itself to the parser with a callback that sets `exit_code`.
 #pragma once
 
 #include <CLI/CLI.hpp>

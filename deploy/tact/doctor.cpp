@@ -20,7 +20,7 @@ namespace tact::launch {
 namespace {
 
 constexpr int kCapIpcLock = 14, kCapSysNice = 23;
-constexpr std::uint64_t kMemlockWanted = 1ULL << 30;  // a scene of a large map, its spline and the program
+constexpr std::uint64_t kMemlockWanted = 1ULL << 30;  // a scene with a large map, its spline and the program
 constexpr std::uint64_t kNoLimit = ~0ULL;
 
 std::string trimmed(const std::string& text) {
@@ -41,7 +41,7 @@ int error_of_fifo() {
 int error_of_dma_latency(const std::filesystem::path& path) {
     const int fd = open(path.c_str(), O_WRONLY | O_CLOEXEC);
     if (fd < 0) return errno;
-    close(fd);  // nothing was written, so nothing changes
+    close(fd);  // nothing is written, so nothing changes
     return 0;
 }
 
@@ -58,7 +58,7 @@ Finding kernel(const Machine& m) {
     return warn(
         "kernel",
         "not a real-time kernel (" + m.kernel_version + "): single cycles may be late by milliseconds",
-        "sudo apt-get install linux-image-rt-amd64; choose it at the next start");
+        "sudo apt-get install linux-image-rt-amd64; select it at the next boot");
 }
 
 Finding cores(const Machine& m) {
@@ -83,7 +83,8 @@ Finding isolation(const Machine& m) {
         return warn("isolation", "core " + first + " is isolated but still has its clock tick",
                     "add nohz_full=" + trimmed(m.isolated) +
                         " to GRUB_CMDLINE_LINUX in /etc/default/grub; sudo update-grub; restart");
-    return ok("isolation", "isolated without a tick: " + trimmed(m.isolated) + "; run with --core " + first);
+    return ok("isolation",
+              "isolated without a clock tick: " + trimmed(m.isolated) + "; run with --core " + first);
 }
 
 Finding servo_cores(const Machine& m) {
@@ -95,7 +96,7 @@ Finding servo_cores(const Machine& m) {
     for (const PinnedServo& s : m.servos)
         all += (all.empty() ? "" : ", ") + std::string("session ") + s.session + " on core " +
                std::to_string(s.core);
-    return ok("servo_cores", "controllers that run: " + all);
+    return ok("servo_cores", "running controllers: " + all);
 }
 
 Finding rtprio(const Machine& m) {
@@ -103,14 +104,16 @@ Finding rtprio(const Machine& m) {
     if (m.fifo_error == 0) return ok("rtprio", asked + " is granted");
     const bool limit = m.rtprio_max < kSupervisorPriority && !has_capability(m.capabilities, kCapSysNice);
     const Lacking lacking = lacking_limit(m.person, "rtprio");
-    return warn("rtprio",
-                limit ? asked + " is refused: RLIMIT_RTPRIO is " + std::to_string(m.rtprio_max) + "; " +
-                            lacking_text(lacking, "realtime")
-                      : asked + " is refused (" + std::strerror(m.fifo_error) +
-                            ") although the limits allow it: a container or a group without real-time share",
-                limit ? lacking_fix(lacking)
-                      : "run outside the container, or give it --cap-add SYS_NICE --ulimit rtprio=" +
-                            std::to_string(kSupervisorPriority));
+    return warn(
+        "rtprio",
+        limit
+            ? asked + " is refused: RLIMIT_RTPRIO is " + std::to_string(m.rtprio_max) + "; " +
+                  lacking_text(lacking, "realtime")
+            : asked + " is refused (" + std::strerror(m.fifo_error) +
+                  ") although the limits allow it: a container, or a control group without real-time runtime",
+        limit ? lacking_fix(lacking)
+              : "run outside the container, or give it --cap-add SYS_NICE --ulimit rtprio=" +
+                    std::to_string(kSupervisorPriority));
 }
 
 Finding memlock(const Machine& m) {
@@ -127,23 +130,23 @@ Finding memlock(const Machine& m) {
 
 Finding frequency(const Machine& m) {
     if (m.governors.empty())
-        return ok("frequency", "the system does not scale the clock of the cores (or hides it)");
+        return ok("frequency", "the processor clock is not scaled, or the system hides it");
     for (std::size_t i = 0; i < m.governors.size(); ++i) {
         if (trimmed(m.governors[i]) != "performance")
             return warn("frequency",
-                        "core " + std::to_string(i) + " runs under the governor " + trimmed(m.governors[i]) +
-                            ": cycles get slower after every pause",
+                        "core " + std::to_string(i) + " uses the frequency governor " +
+                            trimmed(m.governors[i]) + ": cycles are slower after every pause",
                         "sudo apt-get install linux-cpupower; sudo cpupower frequency-set -g performance");
     }
-    return ok("frequency", "all cores run under the governor performance");
+    return ok("frequency", "all cores use the frequency governor performance");
 }
 
 Finding dma_latency(const Machine& m) {
     if (m.dma_latency_error == 0)
-        return ok("dma_latency", "/dev/cpu_dma_latency can be held: cores do not sleep deeply");
+        return ok("dma_latency", "/dev/cpu_dma_latency can be opened: deep idle states are prevented");
     if (m.dma_latency_error == ENOENT)
-        return warn("dma_latency", "/dev/cpu_dma_latency is missing: a core may wake up late",
-                    "start with the kernel option idle=poll, or leave it on a virtual machine");
+        return warn("dma_latency", "/dev/cpu_dma_latency is missing: cores may wake up late",
+                    "boot with the kernel option idle=poll; ignore this on a virtual machine");
     return warn("dma_latency",
                 std::string("/dev/cpu_dma_latency cannot be opened: ") + std::strerror(m.dma_latency_error),
                 lacking_group(m.person, "realtime") == Lacking::login ? kLoginFix : kRightsFix);
@@ -153,10 +156,11 @@ Finding throttling(const Machine& m) {
     const std::string text = trimmed(m.rt_runtime_us);
     if (text == "-1") return ok("throttling", "real-time threads are not throttled");
     if (text.empty()) return ok("throttling", "the kernel does not report real-time throttling");
-    return {"throttling", FindingLevel::ok,
-            "a real-time thread that never sleeps loses its core after " + text +
-                " us of every second; Tact's sleeps each cycle, --free-run under FIFO does not",
-            ""};
+    return {
+        "throttling", FindingLevel::ok,
+        "a real-time thread that never sleeps is stopped after " + text +
+            " us of every second; the servo thread sleeps in every cycle, except with --free-run under FIFO",
+        ""};
 }
 
 Finding memory(const Machine& m) {
@@ -165,18 +169,17 @@ Finding memory(const Machine& m) {
         return warn("swap",
                     "swap is on (" + swaps.front() +
                         "): other programs may stall while the servo thread stays locked",
-                    "sudo swapoff -a, and take it out of /etc/fstab");
+                    "sudo swapoff -a, and remove it from /etc/fstab");
     return ok("swap", "no swap");
 }
 
 Finding huge_pages(const Machine& m) {
     if (chosen_word(m.huge_pages) == "always")
-        return warn(
-            "huge_pages",
-            "transparent huge pages are always on: the kernel may move memory about while the servo runs",
-            "echo madvise | sudo tee /sys/kernel/mm/transparent_hugepage/enabled");
-    return ok("huge_pages",
-              "transparent huge pages: " + (m.huge_pages.empty() ? "not there" : chosen_word(m.huge_pages)));
+        return warn("huge_pages",
+                    "transparent huge pages are always on: the kernel may move memory while the servo runs",
+                    "echo madvise | sudo tee /sys/kernel/mm/transparent_hugepage/enabled");
+    return ok("huge_pages", "transparent huge pages: " +
+                                (m.huge_pages.empty() ? "not available" : chosen_word(m.huge_pages)));
 }
 
 Finding clock(const Machine& m) {
@@ -194,8 +197,9 @@ Finding hypervisor(const Machine& m) {
     const bool guest = flags != std::string::npos &&
                        m.cpuinfo.substr(flags, end - flags).find(" hypervisor") != std::string::npos;
     if (!guest) return ok("machine", "not a virtual machine");
-    return warn("machine", "a virtual machine: its host may take the processor away at any time",
-                "run a haptic device from a machine of its own; for the emulated one this is good enough");
+    return warn(
+        "machine", "a virtual machine: the host may withdraw the processor at any time",
+        "use a physical machine for a haptic device; the emulated device runs on a virtual machine too");
 }
 
 }  // namespace
@@ -276,7 +280,7 @@ std::vector<std::string> parse_swaps(const std::string& text) {
     std::vector<std::string> names;
     std::istringstream in(text);
     std::string line;
-    std::getline(in, line);  // the heading
+    std::getline(in, line);  // column titles
     while (std::getline(in, line))
         if (const auto end = line.find_first_of(" \t"); end != 0 && !line.empty())
             names.push_back(line.substr(0, end));

@@ -1,8 +1,8 @@
-// What of this machine helps or hinders a steady force rate, and the fix of each finding.
+// Checks whether this machine can keep a steady force rate, with the fix of each finding.
 //
-// read_machine() gathers plain texts and numbers; judge() is pure, so that texts recorded on other machines
-// test it. Levels    fail: Tact will not run here. warn: it runs, but force rate or picture will be worse.
-// ok: as wanted.
+// read_machine() gathers plain texts and numbers; judge() is pure, so that tests can use texts recorded on other
+// machines.
+// Levels    fail: Tact cannot run here. warn: it runs, but with a worse force rate or display. ok: as required.
 #pragma once
 
 #include <cstdint>
@@ -21,10 +21,10 @@ struct Finding {
     std::string name;  // stable, for programs: "kernel", "rtprio"
     FindingLevel level = FindingLevel::ok;
     std::string says;
-    std::string fix;  // "" where nothing is to be fixed
+    std::string fix;  // empty if nothing is to be fixed
 };
 
-// As the kernel tells it; "" where a file is missing.
+// As the kernel reports it; "" if a file is missing.
 struct Machine {
     std::string kernel_version;  // uname -v
     std::string realtime;        // /sys/kernel/realtime
@@ -40,23 +40,23 @@ struct Machine {
     std::uint64_t rtprio_max = 0;         // RLIMIT_RTPRIO
     std::uint64_t memlock_bytes_max = 0;  // RLIMIT_MEMLOCK; all ones: no limit
     Person person;
-    std::vector<PinnedServo> servos;  // controllers that run now
+    std::vector<PinnedServo> servos;  // running controllers
     int cores = 0;
-    int fifo_error = 0;         // errno of asking for SCHED_FIFO; 0: granted
+    int fifo_error = 0;         // errno of requesting SCHED_FIFO; 0: granted
     int dma_latency_error = 0;  // errno of opening /dev/cpu_dma_latency for writing
 };
 
 Machine read_machine(const std::filesystem::path& root = "/");
 std::vector<Finding> judge(const Machine& machine);
 
-// Programs, folders, display, OpenGL, session: tried, not read.
+// Tests programs, folders, display, OpenGL and session by using them.
 std::vector<Finding> try_surroundings(const std::string& session);
 
-// "2-3,5" as core numbers; what is not such a list gives none.
+// Parses "2-3,5" to core numbers; empty if the text is not such a list.
 std::vector<int> parse_core_list(const std::string& text);
-// Bit of the effective capabilities in a /proc/<pid>/status text.
+// Tests a bit of the effective capabilities in a /proc/<pid>/status text.
 bool has_capability(const std::string& status, int bit);
-// The word in brackets of "always [madvise] never"; "" where there is none.
+// The word in brackets of "always [madvise] never"; "" if there is none.
 std::string chosen_word(const std::string& text);
 // Device names of /proc/swaps.
 std::vector<std::string> parse_swaps(const std::string& text);

@@ -1,4 +1,4 @@
-// The part of the doctor that tries things instead of reading them.
+// Checks of the doctor that use a resource instead of reading its state.
 #include <poll.h>
 #include <unistd.h>
 
@@ -20,7 +20,7 @@ namespace {
 
 constexpr const char* kFolderFix = "set TACT_RUNTIME_DIR to a folder of your own (mode 0700)";
 
-// The text of a StartupError as a finding: its first line says what, its second how to fix it.
+// Converts a StartupError to a finding: the first line is the problem, the second the fix.
 Finding failed(const std::string& name, const std::exception& e) {
     const std::string text = e.what();
     const auto cut = text.find("\n  fix: ");
@@ -54,7 +54,7 @@ Finding runtime_folder(const std::string& session) {
         if (!made_later && access(folder.c_str(), R_OK | W_OK | X_OK) != 0)
             return {"runtime_folder", FindingLevel::fail,
                     folder.string() + " cannot be used: " + std::strerror(errno), kFolderFix};
-        return {"runtime_folder", FindingLevel::ok, "the processes meet in " + folder.string(), ""};
+        return {"runtime_folder", FindingLevel::ok, "the processes use the folder " + folder.string(), ""};
     } catch (const StartupError& e) {
         return failed("runtime_folder", e);
     }
@@ -62,7 +62,7 @@ Finding runtime_folder(const std::string& session) {
 
 Finding cache() {
     try {
-        return {"cache", FindingLevel::ok, "baked scenes are kept in " + cache_folder().string(), ""};
+        return {"cache", FindingLevel::ok, "baked scenes are stored in " + cache_folder().string(), ""};
     } catch (const StartupError& e) {
         return failed("cache", e);
     }
@@ -77,11 +77,12 @@ Finding display() {
     const bool xvfb = !find_in_path("Xvfb").empty();
     if (!x.empty() || !wayland.empty())
         return {"display", FindingLevel::ok,
-                "a window opens on " + (x.empty() ? wayland : x) +
+                "windows open on " + (x.empty() ? wayland : x) +
                     (xvfb ? "; Xvfb is installed for --headless" : "; no Xvfb for --headless"),
                 xvfb ? "" : "sudo apt-get install xvfb"};
     if (xvfb) return {"display", FindingLevel::ok, "no display; Xvfb is installed for --headless", ""};
-    return {"display", FindingLevel::fail, "there is no display and no Xvfb, so nothing can be drawn",
+    return {"display", FindingLevel::fail,
+            "neither a display nor Xvfb is available, so no window can be opened",
             "sudo apt-get install xvfb"};
 }
 
@@ -89,11 +90,13 @@ Finding opengl() {
     const GlAnswer gl = probe_gl();
     if (gl.renderer.empty())
         return {"opengl", FindingLevel::fail, "no OpenGL 3.3: " + gl.why,
-                "sudo apt-get install libegl1 libgl1-mesa-dri; on a PC with a graphics card also its driver"};
+                "sudo apt-get install libegl1 libgl1-mesa-dri; on a PC with a graphics card, also install "
+                "its driver"};
     if (gl.software())
         return {"opengl", FindingLevel::warn,
-                "OpenGL 3.3 in software (" + gl.renderer + "): drawing takes processor time from the rest",
-                "use a machine with a graphics card and its driver, and be a member of the group render"};
+                "OpenGL 3.3 in software (" + gl.renderer +
+                    "): rendering takes processor time from other programs",
+                "use a machine with a graphics card and its driver, and join the group render"};
     return {"opengl", FindingLevel::ok, "OpenGL 3.3: " + gl.renderer, ""};
 }
 

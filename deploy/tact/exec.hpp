@@ -1,4 +1,4 @@
-// Replaces this process by a program beside tact, so that its signals, its exit code and its --help are its own.
+// Replaces this process by a program beside tact, so that signals, exit code and --help are those of the program.
 #pragma once
 
 #include <unistd.h>
@@ -11,7 +11,7 @@
 
 namespace tact::launch {
 
-// Throws StartupError where it cannot be started.
+// Throws StartupError if the program cannot be started.
 [[noreturn]] inline void exec_program(const std::string& name, std::vector<std::string> words) {
     const std::filesystem::path program = find_program(name);
     words.insert(words.begin(), name);
@@ -19,7 +19,7 @@ namespace tact::launch {
     for (std::string& w : words) arguments.push_back(w.data());
     arguments.push_back(nullptr);
     execv(program.c_str(), arguments.data());
-    throw StartupError("starting " + program.string(), last_error(), "build it again");
+    throw StartupError("starting " + program.string(), last_error(), "build the program again");
 }
 
 }  // namespace tact::launch

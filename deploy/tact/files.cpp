@@ -50,7 +50,7 @@ std::filesystem::path cache_folder() {
     if (failed || stat(folder.c_str(), &info) != 0 || info.st_uid != getuid() ||
         access(folder.c_str(), W_OK) != 0)
         throw StartupError("using the cache folder " + folder.string(),
-                           failed ? failed.message() : "it is not a folder of this user that can be written",
+                           failed ? failed.message() : "the path is not a writable folder of this user",
                            "set XDG_CACHE_HOME to a folder of your own");
     std::filesystem::permissions(folder, std::filesystem::perms::owner_all, failed);
     return folder;
@@ -61,7 +61,7 @@ ScratchFolder::ScratchFolder() {
     std::string name = (std::filesystem::temp_directory_path(failed) / "tact-run-XXXXXX").string();
     if (failed || mkdtemp(name.data()) == nullptr)
         throw StartupError("making a temporary folder", std::strerror(errno),
-                           "set TMPDIR to a folder that can be written");
+                           "set TMPDIR to a writable folder");
     path_ = name;
 }
 
@@ -91,7 +91,7 @@ void ContentHash::add_file(const std::filesystem::path& path) {
     }
     if (!in.eof() || std::filesystem::is_directory(path))
         throw StartupError("reading " + path.string(), std::strerror(errno != 0 ? errno : EISDIR),
-                           "check the path and that the file may be read");
+                           "check the path and the permissions of the file");
     add(std::to_string(total));
 }
 

@@ -1,4 +1,4 @@
-// Files that the launcher writes and the folders that it keeps them in.
+// Files that the launcher writes, and their folders.
 #pragma once
 
 #include <cstdint>
@@ -7,18 +7,18 @@
 
 namespace tact::launch {
 
-// Whole or absent: a temporary file beside the target, synced and renamed. Makes the folder. Throws
-// StartupError.
+// The file is whole or absent: written to a temporary file in the same folder, synced and renamed. Creates the folder.
+// Throws StartupError.
 void write_whole(const std::filesystem::path& path, const std::string& content);
 
-// The first bytes of a small text file such as those of /proc; "" where it cannot be read.
+// The first bytes of a small text file such as those of /proc; "" if it cannot be read.
 std::string read_small(const std::filesystem::path& path);
 
-// $XDG_CACHE_HOME/tact, else ~/.cache/tact, else a folder of this user in /tmp; made, 0700. Throws
+// $XDG_CACHE_HOME/tact, else ~/.cache/tact, else a folder of this user in /tmp; created with mode 0700. Throws
 // StartupError.
 std::filesystem::path cache_folder();
 
-// A new folder of this user alone, removed with its content when the object goes.
+// A new folder with access for this user only; the destructor removes it with its content.
 class ScratchFolder {
 public:
     ScratchFolder();
@@ -31,11 +31,11 @@ private:
     std::filesystem::path path_;
 };
 
-// FNV-1a, 64 bit: names cached content; it is no protection against forgery.
+// FNV-1a, 64 bit: identifies cached content; does not protect against forgery.
 class ContentHash {
 public:
-    void add(const std::string& text);  // with its length, so that ("ab","c") differs from ("a","bc")
-    void add_file(const std::filesystem::path& path);  // throws StartupError where it cannot be read
+    void add(const std::string& text);  // includes the length, so that ("ab","c") differs from ("a","bc")
+    void add_file(const std::filesystem::path& path);  // throws StartupError if unreadable
     [[nodiscard]] std::string hex() const;
 
 private:

@@ -1,4 +1,4 @@
-// How findings of `tact doctor` and `tact probe` are shown.
+// Output of the findings of `tact doctor` and `tact probe`.
 #pragma once
 
 #include <nlohmann/json.hpp>

@@ -1,5 +1,5 @@
-// EGL on Mesa's surfaceless platform makes a context without X, Wayland or a screen. The library is opened
-// when it is asked for, so that tact itself runs where no OpenGL is installed, to say so.
+// EGL on Mesa's surfaceless platform creates a context without X, Wayland or a screen. The library is loaded on demand,
+// so that tact also runs, and reports this, where OpenGL is not installed.
 #include "deploy/tact/gl_probe.hpp"
 
 #include <dlfcn.h>
@@ -16,7 +16,7 @@ namespace {
 
 constexpr int kLimitMs = 10000;
 
-// Of the EGL and OpenGL registries.
+// Constants of the EGL and OpenGL registries.
 constexpr std::uint32_t kPlatformSurfaceless = 0x31DD, kOpenGlApi = 0x30A2;
 constexpr std::int32_t kContextMajor = 0x3098, kContextMinor = 0x30FB, kProfileMask = 0x30FD,
                        kCoreProfile = 1, kEglNone = 0x3038;
@@ -27,7 +27,7 @@ F symbol(void* library, const char* name) {
     return reinterpret_cast<F>(dlsym(library, name));
 }
 
-// "+renderer" or "-why".
+// Returns "+renderer" or "-reason".
 std::string ask() {
     void* const egl = dlopen("libEGL.so.1", RTLD_NOW | RTLD_LOCAL);
     if (egl == nullptr) return "-libEGL.so.1 is not installed";
@@ -45,7 +45,7 @@ std::string ask() {
     const auto current = symbol<MakeCurrent>(egl, "eglMakeCurrent");
     if (!address || !initialize || !bind || !create || !current) return "-libEGL.so.1 lacks functions";
     const auto get_display = reinterpret_cast<GetDisplay>(address("eglGetPlatformDisplayEXT"));
-    if (!get_display) return "-EGL has no platforms";
+    if (!get_display) return "-EGL does not support platforms";
     void* const display = get_display(kPlatformSurfaceless, nullptr, nullptr);
     if (display == nullptr || initialize(display, nullptr, nullptr) == 0)
         return "-no OpenGL driver can be loaded";
@@ -58,7 +58,7 @@ std::string ask() {
     const auto get_string = reinterpret_cast<GetString>(address("glGetString"));
     const unsigned char* const renderer = get_string ? get_string(kGlRenderer) : nullptr;
     return renderer != nullptr ? "+" + std::string(reinterpret_cast<const char*>(renderer))
-                               : "-the driver gives no name";
+                               : "-the driver does not report its name";
 }
 
 }  // namespace
@@ -71,10 +71,10 @@ bool GlAnswer::software() const {
 
 GlAnswer probe_gl() {
     std::array<int, 2> ends{};
-    if (pipe(ends.data()) != 0) return {"", "no pipe could be made"};
+    if (pipe(ends.data()) != 0) return {"", "a pipe could not be created"};
     const pid_t pid = fork();
     if (pid == 0) {
-        close(STDERR_FILENO);  // drivers chat
+        close(STDERR_FILENO);  // hides the messages of drivers
         const std::string answer = ask();
         [[maybe_unused]] const auto n = write(ends[1], answer.data(), answer.size());
         _exit(0);
@@ -90,8 +90,8 @@ GlAnswer probe_gl() {
         kill(pid, SIGKILL);
         waitpid(pid, nullptr, 0);
     }
-    if (!in_time) return {"", "the driver did not answer in ten seconds"};
-    if (got <= 0) return {"", "the driver crashed when it was asked"};
+    if (!in_time) return {"", "the driver did not respond within ten seconds"};
+    if (got <= 0) return {"", "the driver crashed during the query"};
     const std::string rest(text.data() + 1, static_cast<std::size_t>(got) - 1);
     return text[0] == '+' ? GlAnswer{rest, ""} : GlAnswer{"", rest};
 }

@@ -1,7 +1,7 @@
 // tact: the launcher.
 //
 // Exit codes  0 success; 1 an error, reported on standard error with its fix, or a process that died;
-//             2 wrong usage; 130 ended by a signal before a run had begun.
+//             2 wrong usage; 130 ended by a signal before a run began.
 #include <cstdio>
 
 #include "deploy/tact/commands.hpp"
@@ -12,7 +12,8 @@
 #include "ipc/version/version.hpp"
 
 int main(int argc, char** argv) {
-    CLI::App app{"Tact: feel density maps, structures, surfaces and bone. Start with: tact demo dock"};
+    CLI::App app{
+        "Tact: feel density maps, structures, surfaces, bone and fields. Start with: tact demo dock"};
     app.set_version_flag("--version", tact::program_version("tact"));
     app.require_subcommand(1);
     app.footer("Exit codes: 0 success; 1 error or a process died; 2 wrong usage; 130 ended by a signal.");
@@ -35,8 +36,8 @@ int main(int argc, char** argv) {
     add_reproduce(app);
     if (const auto answered = tact::manual::answer(
             app, "tact", argc, argv,
-            {{"$XDG_CACHE_HOME/tact", "baked scenes; ~/.cache/tact where the variable is not set"},
-             {"$XDG_STATE_HOME/tact", "recent scenes; ~/.local/state/tact where the variable is not set"}}))
+            {{"$XDG_CACHE_HOME/tact", "baked scenes; ~/.cache/tact if the variable is not set"},
+             {"$XDG_STATE_HOME/tact", "recent scenes; ~/.local/state/tact if the variable is not set"}}))
         return *answered;
     try {
         app.parse(argc, argv);

@@ -15,7 +15,7 @@ namespace {
 
 constexpr double kNs = 1e-9;
 constexpr auto kNotAReason = static_cast<RunReason>(255);
-// Of the lateness: from what a quiet machine has to what a hand feels.
+// Histogram edges of the lateness: from a quiet machine to delays that a person feels.
 constexpr double kEdgesS[] = {1e-6, 2e-6, 5e-6, 1e-5, 2e-5, 5e-5, 1e-4, 2e-4, 5e-4, 1e-3, 2e-3, 5e-3, 1e-2};
 
 std::string escaped(const std::string& text) {
@@ -61,7 +61,7 @@ std::string label(const char* name, const std::string& value) {
 
 void lateness(Page& page, const LatenessTopic& l) {
     page.about("tact_servo_lateness_seconds", "histogram",
-               "how late a servo cycle began, since the controller started");
+               "lateness of the start of servo cycles, since the controller started");
     std::uint64_t seen = 0;
     std::size_t bucket = 0;
     double sum_s = 0.0;
@@ -91,14 +91,18 @@ void health(Page& page, const HealthTopic& h) {
     page.one("tact_servo_cycles_total", "counter", "servo cycles", count(h.cycle));
     page.one("tact_servo_overruns_total", "counter", "cycles that ended after the next one was due",
              count(h.overruns));
-    page.one("tact_servo_skipped_periods_total", "counter", "periods left out because of overruns",
+    page.one("tact_servo_skipped_periods_total", "counter", "periods skipped because of overruns",
              count(h.skipped));
+    page.one("tact_force_deadline_misses_total", "counter",
+             "steps of the force model that ended after their deadline", count(h.deadline_misses));
+    page.one("tact_force_error_newtons", "gauge", "median bound of the force error since the start",
+             static_cast<double>(h.force_error_n_p50));
     page.one("tact_servo_allocations_total", "counter", "heap calls on the servo thread inside cycles",
              count(h.allocations));
     page.one("tact_servo_locks_total", "counter", "locks on the servo thread inside cycles", count(h.locks));
     page.one("tact_servo_page_faults_total", "counter", "page faults of the servo thread",
              count(h.page_faults));
-    page.one("tact_refused_records_total", "counter", "records of the visual process that made no sense",
+    page.one("tact_refused_records_total", "counter", "invalid records from the visual process",
              count(h.bad_input));
     page.one("tact_servo_work_max_seconds", "gauge", "longest work of a cycle in the last second",
              kNs * static_cast<double>(h.cycle_cost_max_ns));
@@ -137,11 +141,11 @@ void devices(Page& page, const DevicesTopic& d) {
     };
     const auto always = [](const DeviceHand&) { return true; };
     each(
-        "tact_device_samples_total", "counter", "samples that a hand's device gave",
+        "tact_device_samples_total", "counter", "samples from the device of a hand",
         [](const DeviceHand& h) { return static_cast<double>(h.samples); }, always);
     each(
         "tact_device_sample_age_seconds", "gauge",
-        "oldest sample that a cycle of the last tenth of a second used",
+        "age of the oldest sample used by a cycle in the last 0.1 s",
         [](const DeviceHand& h) { return kNs * static_cast<double>(h.age_ns_most); },
         [](const DeviceHand& h) { return h.age_ns_most >= 0; });
     each(
@@ -149,7 +153,8 @@ void devices(Page& page, const DevicesTopic& d) {
         [](const DeviceHand& h) { return static_cast<double>(h.heat); },
         [](const DeviceHand& h) { return h.force_n_continuous > 0.0F; });
     each(
-        "tact_motor_winding_celsius", "gauge", "hottest winding of a hand's device, as its driver counts it",
+        "tact_motor_winding_celsius", "gauge",
+        "temperature of the hottest winding of a device, calculated by its driver",
         [](const DeviceHand& h) { return static_cast<double>(h.winding_c); },
         [](const DeviceHand& h) { return h.winding_c_max > 0.0F; });
     each(
@@ -159,11 +164,10 @@ void devices(Page& page, const DevicesTopic& d) {
 }
 
 void tracker(Page& page, const TrackerTopic& t) {
-    page.one("tact_tracker_fresh", "gauge", "1 where the head is seen", t.state == 2 ? 1.0 : 0.0);
+    page.one("tact_tracker_fresh", "gauge", "1 if the head is tracked", t.state == 2 ? 1.0 : 0.0);
     page.one("tact_tracker_samples_total", "counter", "good poses of the head tracker",
              static_cast<double>(t.samples));
-    page.about("tact_tracker_errors_total", "counter",
-               "what was wrong of the head tracker's frames and link");
+    page.about("tact_tracker_errors_total", "counter", "errors in frames and link of the head tracker");
     for (const auto& [kind, n] : {std::pair{"missed", t.missed},
                                   {"refused", t.refused},
                                   {"dropped", t.dropped},
@@ -204,7 +208,7 @@ void picture(Page& page, const FrameMetrics& f) {
         for (std::size_t i = 0; i < n; ++i) {
             const float p50_s = drawn ? of[i].drawn_p50_s : of[i].work_p50_s;
             const float p99_s = drawn ? of[i].drawn_p99_s : of[i].work_p99_s;
-            if (p50_s < 0.0F) continue;  // not known
+            if (p50_s < 0.0F) continue;  // unknown
             for (const auto& [q, s] : {std::pair{"0.5", p50_s}, std::pair{"0.99", p99_s}})
                 page.value(static_cast<double>(s), label(key, text(i)) + "," + label("quantile", q));
         }
@@ -219,10 +223,10 @@ void picture(Page& page, const FrameMetrics& f) {
           f.path, false);
     times("tact_path_drawn_seconds", "rendering time of a visual path per frame, if known", "path",
           kVisualPaths, path, f.path, true);
-    page.one("tact_display_gl_objects", "gauge", "objects of the graphics driver that are kept",
+    page.one("tact_display_gl_objects", "gauge", "objects of the graphics driver in use",
              count(f.gl_objects));
     page.one("tact_display_heap_bytes", "gauge", "heap of the visual process", count(f.heap_bytes));
-    page.one("tact_display_resident_bytes", "gauge", "memory of the visual process that is resident",
+    page.one("tact_display_resident_bytes", "gauge", "resident memory of the visual process",
              count(f.resident_bytes));
 }
 
@@ -262,19 +266,19 @@ std::string Metrics::text(const RtRegion* region) const {
     Page page(session_);
     page.about("tact_build_info", "gauge", "1; the label is the version of the exporter");
     page.value(1.0, label("version", version()));
-    page.one("tact_up", "gauge", "1 where a controller runs", region != nullptr ? 1.0 : 0.0);
-    page.one("tact_controllers_seen_total", "counter",
-             "controllers that were attached to, one after the other", static_cast<double>(controllers_));
+    page.one("tact_up", "gauge", "1 if a controller runs", region != nullptr ? 1.0 : 0.0);
+    page.one("tact_controllers_seen_total", "counter", "controllers attached to since the exporter started",
+             static_cast<double>(controllers_));
     page.about("tact_faults_total", "counter", "faults that stopped the force, by cause");
     for (const auto& [cause, count] : faults_) page.value(static_cast<double>(count), label("cause", cause));
     const std::string station = station_metrics(label("session", session_));
     page.one("tact_events_missed_total", "counter",
-             "events of the controller that the exporter did not read in time; faults may be among them",
+             "controller events that the exporter did not read in time; faults may be among them",
              static_cast<double>(missed_before_ + cursor_.missed));
     if (region == nullptr) {
         if (ended_in_order_)
             page.one("tact_controller_ended_in_order", "gauge",
-                     "0 where the last controller was killed or crashed, 1 where it ended by itself",
+                     "0 if the last controller was killed or crashed, 1 if it ended in order",
                      *ended_in_order_ ? 1.0 : 0.0);
         return page.take() + station;
     }

@@ -1,12 +1,12 @@
-// What a fleet's monitoring wants of a controller, in Prometheus' text format (version 0.0.4).
+// Metrics of a controller for the monitoring of many machines, in Prometheus' text format (version 0.0.4).
 //
 // Faults   are counted by cause from the events, since the exporter started, across controllers. Every cause is
-//          exported from the first page on, at 0: Prometheus sees no increase in a series that begins at 1.
+//          exported from the first page on, at 0, because Prometheus detects no increase in a series that begins at 1.
 // Late     an exporter that starts after the controller also counts the faults still in the controller's event ring.
-// Gone     where no controller runs, only tact_up 0, the counters of the exporter and how the last controller
-//          ended are exported: old values would look like new ones.
-// Hostile  region values may be anything: numbers that are not finite are left out, texts are escaped.
-// Thread   one calls follow() and text(); the server answers from its own.
+// Gone     without a controller, only tact_up 0, the counters of the exporter and the ending of the last controller are
+//          exported: old values would look like new ones.
+// Hostile  region values may be anything: numbers that are not finite are omitted, texts are escaped.
+// Thread   follow() and text() on one thread; the server answers on its own.
 #pragma once
 
 #include <cstdint>
@@ -23,8 +23,8 @@ namespace tact::launch {
 class Metrics {
 public:
     explicit Metrics(std::string session);
-    // Reads the events since the last call; a few times a second. generation: of the region; another one is
-    // another controller, the same one again is only a new connection.
+    // Reads the events since the last call; call it a few times per second. generation: that of the region; a new one
+    // means another controller, the same one only a new connection.
     void follow(const RtRegion& region, std::uint64_t generation);
     // The controller is gone: reads its last events and whether it ended in order.
     void left(const RtRegion& region, std::uint64_t generation);
@@ -35,15 +35,16 @@ private:
     std::string session_;
     RingCursor cursor_;
     std::optional<std::uint64_t> generation_;      // of the controller that cursor_ belongs to
-    std::map<std::string, std::uint64_t> faults_;  // by cause; the causes never change
+    std::map<std::string, std::uint64_t> faults_;  // by cause; the set of causes is constant
     std::uint64_t controllers_ = 0, missed_before_ = 0;
-    std::optional<bool> ended_in_order_;  // the last controller; nothing: it runs, or none was seen
+    std::optional<bool> ended_in_order_;  // of the last controller; empty while it runs or if none was seen
 };
 
-// GET /metrics on an address, from a thread of its own. Throws StartupError: the address is taken, or none of this machine.
+// Serves GET /metrics on an address, on its own thread. Throws StartupError if the address is taken or not of this
+// machine.
 class MetricsServer {
 public:
-    // port 0: one that is free. Answers 503 until something is offered.
+    // port 0: any free port. Answers 503 until the first page is offered.
     MetricsServer(const std::string& address, int port);
     ~MetricsServer();
     MetricsServer(const MetricsServer&) = delete;
@@ -57,7 +58,7 @@ private:
     int port_ = 0;
 };
 
-// Replaces the file at once, so that who collects it never sees half of it. Throws StartupError.
+// Replaces the file atomically, so that a reader never gets a part of it. Throws StartupError.
 void write_textfile(const std::filesystem::path& path, const std::string& text);
 
 }  // namespace tact::launch

@@ -6,14 +6,14 @@
 
 #include "ipc/base/error.hpp"
 
-// Last: through <resolv.h> it defines a macro _res, which is the name of a parameter in Eigen's headers.
+// Must come last: through <resolv.h> it defines a macro _res, which is the name of a parameter in Eigen's headers.
 #include <httplib.h>
 #undef _res
 
 namespace tact::launch {
 namespace {
 
-// Of a request: there is nothing to send here.
+// Maximum body of a request: GET has none.
 constexpr std::size_t kBodyMost = 1024;
 constexpr std::size_t kThreads = 2;
 constexpr auto kPatience = std::chrono::seconds(5);
@@ -30,7 +30,7 @@ struct MetricsServer::Http {
 MetricsServer::MetricsServer(const std::string& address, int port) : http_(std::make_unique<Http>()) {
     httplib::Server& s = http_->server;
     s.new_task_queue = [] { return new httplib::ThreadPool(kThreads); };
-    // The library's own would let two programs share a port.
+    // The default options of httplib would let two programs share a port.
     s.set_socket_options([](socket_t socket) {
         const int yes = 1;
         setsockopt(socket, SOL_SOCKET, SO_REUSEADDR, &yes, sizeof yes);
@@ -42,13 +42,13 @@ MetricsServer::MetricsServer(const std::string& address, int port) : http_(std::
     s.Get("/metrics", [this](const httplib::Request&, httplib::Response& answer) {
         const std::lock_guard lock(http_->mutex);
         if (http_->text.empty()) {
-            answer.status = 503;  // an empty page would be a scrape without its series
+            answer.status = 503;  // an empty page would be a scrape without series
             return;
         }
         answer.set_content(http_->text, "text/plain; version=0.0.4; charset=utf-8");
     });
     s.Get("/", [](const httplib::Request&, httplib::Response& answer) {
-        answer.set_content("Tact: the figures are at /metrics\n", "text/plain; charset=utf-8");
+        answer.set_content("Tact: the metrics are at /metrics\n", "text/plain; charset=utf-8");
     });
     port_ = port == 0 ? s.bind_to_any_port(address) : s.bind_to_port(address, port) ? port : -1;
     if (port_ < 0)
@@ -56,7 +56,7 @@ MetricsServer::MetricsServer(const std::string& address, int port) : http_(std::
                            "the address is taken, or not of this machine",
                            "give another --port, or a --listen address of this machine");
     http_->thread = std::thread([this] { http_->server.listen_after_bind(); });
-    // stop() before it runs would be lost.
+    // A stop() before the server runs would have no effect.
     while (!s.is_running()) std::this_thread::sleep_for(std::chrono::milliseconds(1));
 }
 
@@ -80,7 +80,7 @@ void write_textfile(const std::filesystem::path& path, const std::string& text) 
     if (!out || error)
         throw StartupError("writing " + path.string(),
                            error ? error.message() : "the folder cannot be written",
-                           "give a file in a folder that may be written");
+                           "give a file in a writable folder");
 }
 
 }  // namespace tact::launch

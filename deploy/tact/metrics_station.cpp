@@ -23,17 +23,17 @@ std::string station_metrics(const std::string& labels, const std::optional<Stati
     const auto value = [&](const char* name, const std::string& more, double v) {
         return std::string(name) + "{" + labels + more + "} " + number(v) + "\n";
     };
-    std::string text = about("tact_station_report", "1 where tact station verify left a report") +
+    std::string text = about("tact_station_report", "1 if a report of tact station verify exists") +
                        value("tact_station_report", "", report ? 1.0 : 0.0);
     if (!report) return text;
-    text += about("tact_station_status", "1 for the status of the report");
+    text += about("tact_station_status", "1 for the status in the report");
     for (const char* const status : {"pass", "warn", "fail"})
         text += value("tact_station_status", std::string(",status=\"") + status + "\"",
                       report->status == status ? 1.0 : 0.0);
     text +=
-        about("tact_station_applies", "1 where machine and kernel are those of the report") +
+        about("tact_station_applies", "1 if machine and kernel match the report") +
         value("tact_station_applies", "", report->machine == machine && report->kernel == kernel ? 1.0 : 0.0);
-    text += about("tact_station_verified_timestamp_seconds", "when the report was made") +
+    text += about("tact_station_verified_timestamp_seconds", "time of the report (Unix time)") +
             value("tact_station_verified_timestamp_seconds", "", static_cast<double>(report->verified_at_s));
     text += about("tact_station_lateness_seconds",
                   "lateness of the servo in the report; quantile 1: the largest");
@@ -46,8 +46,9 @@ std::string station_metrics(const std::string& labels, const std::optional<Stati
         text += about("tact_station_cyclictest_max_seconds", "largest latency of cyclictest in the report") +
                 value("tact_station_cyclictest_max_seconds", "", *report->cyclictest_max_us * 1e-6);
     if (report->smi_count)
-        text += about("tact_station_smi", "system management interrupts while the report was made") +
-                value("tact_station_smi", "", static_cast<double>(*report->smi_count));
+        text +=
+            about("tact_station_smi", "system management interrupts during the measurement of the report") +
+            value("tact_station_smi", "", static_cast<double>(*report->smi_count));
     return text;
 }
 

@@ -1,4 +1,4 @@
-// The report of tact station verify for Prometheus; also without a controller, as it is about the machine.
+// The report of tact station verify for Prometheus; also without a controller, because it describes the machine.
 #pragma once
 
 #include <cstdint>
@@ -9,7 +9,7 @@
 
 namespace tact::launch {
 
-// Of the report that is in place now; where there is none, tact_station_report is 0 and nothing else is exported.
+// Metrics of the present report; without a report, only tact_station_report 0.
 [[nodiscard]] std::string station_metrics(const std::string& labels);
 [[nodiscard]] std::string station_metrics(const std::string& labels,
                                           const std::optional<StationReport>& report,

@@ -1,7 +1,7 @@
-// What a controller says of itself, seen from outside: a link that only watches.
+// Read-only access to the published state of a controller.
 //
-// The region stays mapped, so that the last values can still be read after the controller ended, however it
-// ended. Hostile  every value may be anything; texts are bounded here, numbers by those who use them.
+// The region stays mapped, so that the last values remain readable after the controller ended, however it ended.
+// Hostile   every value may be anything; texts are bounded here, numbers by the users.
 #pragma once
 
 #include <optional>
@@ -20,12 +20,12 @@ public:
     News poll();  // never blocks
     [[nodiscard]] bool seen() const {
         return !region_.empty();
-    }  // there is a region to read, of now or of before
+    }  // a region is readable, of a running or ended controller
     [[nodiscard]] bool attached() const { return link_.attached(); }
-    [[nodiscard]] bool reached() const { return link_.reached(); }  // somebody serves the session
+    [[nodiscard]] bool reached() const { return link_.reached(); }  // a process serves the session
     [[nodiscard]] const RtRegion& region() const { return *region_; }
     [[nodiscard]] std::uint64_t generation() const { return region_.generation(); }
-    [[nodiscard]] std::string status_text() const;  // what it waits for, or why a region was refused
+    [[nodiscard]] std::string status_text() const;  // reason for waiting, or for rejecting a region
 
 private:
     LinkClient link_;
@@ -45,7 +45,7 @@ std::string field_text(const char* field, std::size_t size);
 
 // The level of one path, by name.
 std::optional<PathLevel> level_of(const LevelsTopic& levels, const char* path);
-// By its place: kDisplayPathIndex and the like.
+// The level at an index: kDisplayPathIndex and the like.
 std::optional<PathLevel> level_at(const LevelsTopic& levels, std::size_t index);
 
 }  // namespace tact::launch

@@ -33,18 +33,18 @@ std::string name_of(const UsbDevice& d) {
     return name + ")";
 }
 
-// "" where the user may use it.
+// Why the user may not use the node; "" if permitted.
 std::string refusal(const probe::Node& n) {
     if (n.usable) return "";
-    if (n.path.empty()) return "it has no device node";
+    if (n.path.empty()) return "the device has no device node";
     char mode[8];
     static_cast<void>(std::snprintf(mode, sizeof mode, "%03o", n.mode));
-    return n.mode == 0 ? n.path + " is not there (a container without its devices?)"
-                       : "this user may not open " + n.path + " (group " +
+    return n.mode == 0 ? n.path + " does not exist (a container without its devices?)"
+                       : "this user has no permission to open " + n.path + " (group " +
                              (n.group.empty() ? "unknown" : n.group) + ", mode " + mode + ")";
 }
 
-// What the driver opens: hidraw for the one that reads reports, else the device's own node.
+// The node that the driver opens: hidraw for a driver that reads reports, else the device's own node.
 probe::Node node_of(const UsbDevice& d) {
     if (d.known == nullptr || d.known->driver != std::string("polhem")) return d.node;
     const auto raw = std::find_if(d.nodes.begin(), d.nodes.end(), [](const probe::Node& n) {
@@ -56,9 +56,8 @@ probe::Node node_of(const UsbDevice& d) {
 Finding usb(const Buses& b) {
     if (!b.usb.visible)
         return {"usb", FindingLevel::warn,
-                "this kernel or container shows no USB (no /sys/bus/usb): nothing on it can be seen",
-                "run it on the machine that the devices are plugged into; in a container mount /sys and "
-                "/dev/bus/usb"};
+                "this kernel or container has no USB (no /sys/bus/usb): no device can be detected",
+                "run tact probe on the machine with the devices; in a container mount /sys and /dev/bus/usb"};
     const auto arms = std::count_if(b.usb.there.begin(), b.usb.there.end(), [](const UsbDevice& d) {
         return d.known != nullptr && d.known->use == probe::Use::arm;
     });
@@ -68,7 +67,7 @@ Finding usb(const Buses& b) {
             ""};
 }
 
-// One row a device that Tact knows.
+// One row per known device.
 void known_devices(const Buses& b, const DeviceRequest& request, std::vector<Finding>& out) {
     for (const UsbDevice& d : b.usb.there) {
         if (d.known == nullptr) continue;
@@ -81,7 +80,7 @@ void known_devices(const Buses& b, const DeviceRequest& request, std::vector<Fin
             arm && (asked(request.driver, request.serial) || asked(request.driver2, request.serial2));
         Finding f{arm ? "arm" : "adapter", FindingLevel::ok, name_of(d), ""};
         if (arm && driver.empty()) {
-            f.says += ": seen, but there is no driver for it here";
+            f.says += ": detected, but this version has no driver for it";
         } else if (arm) {
             const std::string no = refusal(node_of(d));
             if (!no.empty()) {
@@ -89,11 +88,11 @@ void known_devices(const Buses& b, const DeviceRequest& request, std::vector<Fin
                 f.fix = kDeviceRightsFix;
             } else if (driver == "phantom-usb" && d.speed_mbit != "480" && !d.speed_mbit.empty()) {
                 f.level = FindingLevel::warn;
-                f.fix = "plug it into a port of USB 2 high speed, without a slow hub between";
+                f.fix = "plug the device into a USB 2 high-speed port, without a slow hub between";
             }
             f.says += ": driver " + driver +
                       (!no.empty()                   ? "; " + no
-                       : f.level == FindingLevel::ok ? ", may be opened"
+                       : f.level == FindingLevel::ok ? ", accessible"
                                                      : ", at only " + d.speed_mbit + " Mbit/s");
         }
         out.push_back(std::move(f));
@@ -108,11 +107,11 @@ Finding driver_arm(const Buses& b, const std::string& section, const std::string
         return {section, FindingLevel::ok, what + "emulated, needs no device", ""};
     if (driver == "openhaptics") {
         if (hd_library.empty())
-            return {
-                section, FindingLevel::fail, what + "the manufacturer's library libHD.so was not found",
-                "install the maker's OpenHaptics and device driver, or name the file (device.hd_library)"};
+            return {section, FindingLevel::fail, what + "the manufacturer's library libHD.so was not found",
+                    "install the manufacturer's OpenHaptics and device driver, or set device.hd_library to "
+                    "the file"};
         return {section, FindingLevel::ok,
-                what + hd_library + "; which arms it knows is only seen when tact-rt opens it", ""};
+                what + hd_library + "; its devices are known only when tact-rt opens the library", ""};
     }
     std::vector<std::string> serials;
     bool known = false;
@@ -130,24 +129,25 @@ Finding driver_arm(const Buses& b, const std::string& section, const std::string
         return {section, FindingLevel::fail,
                 what + (b.usb.visible ? "no such device" + which + " on USB"
                                       : "USB is not visible here, so that the device cannot be detected"),
-                "plug it in and switch it on, or set " + section + ".driver = \"sim\"; lsusb lists the bus"};
+                "plug the device in and switch it on, or set " + section +
+                    ".driver = \"sim\"; lsusb lists the bus"};
     if (serials.size() > 1)
-        return {section, FindingLevel::fail, what + "there are several: " + joined(serials),
+        return {section, FindingLevel::fail, what + "several devices match: " + joined(serials),
                 "select one with " + section + ".serial"};
-    return {section, FindingLevel::ok, what + "there is one" + which, ""};
+    return {section, FindingLevel::ok, what + "one device found" + which, ""};
 }
 
-// A Falcon forgets its firmware with its power, and its owner has the file.
+// A Falcon loses its firmware at power-off; its owner has the firmware file.
 Finding falcon_firmware(const DeviceRequest& request) {
     if (request.firmware.empty())
         return {"firmware", FindingLevel::warn,
-                "device.firmware is not set: a Falcon does not start after power-on",
-                "set it to the file that came with the device's own software"};
+                "device.firmware is not set: a Falcon does not work after power-on",
+                "set device.firmware to the firmware file of the manufacturer's software"};
     if (request.firmware_bytes <= 0)
         return {"firmware", FindingLevel::fail,
                 "device.firmware = \"" + request.firmware +
-                    "\": there is no such file, it cannot be read, or it is empty",
-                "set it to the file that came with the device's own software"};
+                    "\": the file does not exist, is not readable or is empty",
+                "set device.firmware to the firmware file of the manufacturer's software"};
     return {"firmware", FindingLevel::ok,
             "device.firmware = \"" + request.firmware + "\": " + std::to_string(request.firmware_bytes) +
                 " bytes",
@@ -172,11 +172,11 @@ Finding can(const Buses& b, const DeviceRequest& request) {
     if (mine == nullptr)
         return {"can", bad, what + "no interface has this name; " + list,
                 "plug the adapter in, or set tracker.interface"};
-    if (!mine->up) return {"can", bad, what + "it is down", "sudo deploy/can-up " + mine->name};
+    if (!mine->up) return {"can", bad, what + "the interface is down", "sudo deploy/can-up " + mine->name};
     if (request.tracker_format == "fd" && !mine->fd)
-        return {"can", bad, what + "it does not support CAN FD, which tracker.format requires",
+        return {"can", bad, what + "the interface does not support CAN FD, which tracker.format requires",
                 "sudo deploy/can-up " + mine->name +
-                    "; if the output contains classic, set tracker.format = \"classic\""};
+                    "; if the output contains \"classic\", set tracker.format = \"classic\""};
     return {"can", FindingLevel::ok, what + list, ""};
 }
 
@@ -185,8 +185,8 @@ Finding gpio(const Buses& b, const DeviceRequest& request) {
     const std::string what = wanted ? "lines.chip = \"" + request.lines_chip + "\": " : "";
     const FindingLevel bad = wanted ? FindingLevel::fail : FindingLevel::ok;
     if (!b.gpio.visible)
-        return {"gpio", bad, what + "this kernel or container shows no GPIO (no /sys/bus/gpio)",
-                wanted ? "run it on the machine that the adapter is plugged into" : ""};
+        return {"gpio", bad, what + "this kernel or container has no GPIO (no /sys/bus/gpio)",
+                wanted ? "run tact probe on the machine with the adapter" : ""};
     std::vector<std::string> names;
     std::vector<const GpioChip*> mine;
     for (const GpioChip& c : b.gpio.there) {
@@ -201,7 +201,8 @@ Finding gpio(const Buses& b, const DeviceRequest& request) {
         return {"gpio", bad, what + "no chip has this label, name or path; " + list,
                 "plug the adapter in, or set lines.chip"};
     if (mine.size() > 1)
-        return {"gpio", bad, what + "several chips have this label; " + list, "name one by its path"};
+        return {"gpio", bad, what + "several chips have this label; " + list,
+                "set lines.chip to the path of one"};
     const std::string no = refusal(mine.front()->node);
     if (!no.empty()) return {"gpio", bad, what + no, kDeviceRightsFix};
     return {"gpio", FindingLevel::ok, what + "present and accessible; " + list, ""};

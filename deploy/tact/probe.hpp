@@ -1,8 +1,7 @@
-// Which devices there are, whether they are the ones that the configuration asks for, and what is wrong.
+// Compares the detected devices with those of the configuration.
 //
-// judge_devices() is pure, so that trees of files and texts of other machines test it. Levels as the
-// doctor's: what the configuration asks for and is not there, or may not be used, fails; what nobody asked for
-// is told, or warned about.
+// judge_devices() is pure, so that tests can use recorded trees of files and texts of other machines. Levels as in the
+// doctor: a configured device that is missing or not usable fails; other devices are listed, or warned about.
 #pragma once
 
 #include <cstdint>
@@ -16,22 +15,22 @@
 
 namespace tact::launch {
 
-// Of the configuration of tact-rt, what it says about devices; the defaults are tact-rt's.
+// The device settings of tact-rt's configuration; the defaults are those of tact-rt.
 struct DeviceRequest {
     std::string driver = "sim", serial, hd_library, firmware;
-    std::string driver2 = "none", serial2;  // of the second hand
-    std::int64_t firmware_bytes = -1;       // of that file, as the machine has it; -1: it cannot be read
+    std::string driver2 = "none", serial2;  // second hand
+    std::int64_t firmware_bytes = -1;       // size of that file on this machine; -1: not readable
     std::string tracker = "none", tracker_interface = "can0", tracker_format = "classic";
     std::string lines = "none", lines_chip = "cp2112_gpio";
-    std::vector<Finding> problems;  // of the file as a whole
+    std::vector<Finding> problems;  // problems of the file as a whole
 };
 
-// Asks tact-rt, whose reader is the only one. Throws StartupError where the file cannot be read at all.
+// Reads the settings through tact-rt, which has the only reader. Throws StartupError if the file cannot be read at all.
 [[nodiscard]] DeviceRequest read_device_request(const std::string& path);
-// From the answer of tact-rt --check-config FILE --json. The size of the firmware file is read too.
+// Parses the output of tact-rt --check-config FILE --json. Also reads the size of the firmware file.
 [[nodiscard]] DeviceRequest device_request_from(const nlohmann::json& answer);
 
-// The library of driver openhaptics: its path where one of the files is there, else "".
+// The library of driver openhaptics: the path of the first file that exists, else "".
 [[nodiscard]] std::string find_hd_library(const std::filesystem::path& root, const std::string& configured);
 
 [[nodiscard]] std::vector<Finding> judge_devices(const probe::Buses& buses, const DeviceRequest& request,

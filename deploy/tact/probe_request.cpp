@@ -61,10 +61,10 @@ DeviceRequest read_device_request(const std::string& path) {
     const std::string text{std::istreambuf_iterator<char>(in), {}};
     const auto answer = nlohmann::json::parse(text, nullptr, false);
     if (!ending || ending->by_signal || !answer.is_object())
-        throw StartupError("checking the configuration " + path,
-                           "tact-rt " + (ending ? ending->text() : "did not end in half a minute") + ": " +
-                               text.substr(0, 1000),
-                           "run by hand: tact config check " + path);
+        throw StartupError(
+            "checking the configuration " + path,
+            "tact-rt " + (ending ? ending->text() : "did not end within 30 s") + ": " + text.substr(0, 1000),
+            "run tact config check " + path);
     DeviceRequest request = device_request_from(answer);
     const nlohmann::json problems = answer.value("problems", nlohmann::json::array());
     if (!problems.empty() && text_at(problems.front(), "key").empty())
@@ -77,7 +77,7 @@ std::string find_hd_library(const std::filesystem::path& root, const std::string
     std::error_code error;
     if (!configured.empty()) return std::filesystem::exists(configured, error) ? configured : "";
     for (std::string place : probe::kHdPlaces) {
-        if (!place.starts_with("/")) continue;  // the loader's own search: not repeated here
+        if (!place.starts_with("/")) continue;  // the loader searches names without a path
         if (std::filesystem::exists(root / place.substr(1), error)) return place;
     }
     return "";

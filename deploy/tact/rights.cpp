@@ -28,7 +28,7 @@ std::vector<std::string> names_of(const gid_t* ids, int count) {
     return names;
 }
 
-// Of the user of this process, as the database has them now.
+// The present groups of this process' user in the group database.
 std::vector<std::string> listed_groups() {
     std::vector<char> buffer(kBuffer);
     passwd p{}, *found = nullptr;
@@ -43,7 +43,7 @@ bool has(const std::vector<std::string>& groups, const std::string& name) {
     return std::find(groups.begin(), groups.end(), name) != groups.end();
 }
 
-// A line "@realtime - rtprio 95".
+// True if the text has a line such as "@realtime - rtprio 95".
 bool grants(const std::string& limits, const std::string& item) {
     std::istringstream lines(limits);
     for (std::string line; std::getline(lines, line);) {
@@ -86,13 +86,13 @@ std::string lacking_text(Lacking lacking, const std::string& group) {
         case Lacking::membership:
             return "this user is not a member of the group " + group;
         case Lacking::login:
-            return "this user is a member of the group " + group + ", but this session is older than that";
+            return "this user is a member of the group " + group + ", but this session began before that";
         case Lacking::limits_file:
-            return "/etc/security/limits.d/tact.conf is missing or does not grant it";
+            return "/etc/security/limits.d/tact.conf is missing or does not grant this limit";
         case Lacking::session:
-            return "/etc/security/limits.d/tact.conf grants it, but the limits of this session are not those";
+            return "/etc/security/limits.d/tact.conf grants this limit, but this session does not have it";
         case Lacking::capability:
-            return "root has no capability for it here, as in a container";
+            return "root lacks the capability for it, as in a container";
     }
     return "";
 }

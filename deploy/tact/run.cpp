@@ -36,7 +36,7 @@ constexpr int kHeaderEvery = 20;
 
 class OneRun {
 public:
-    // The first scene of a run is armed as soon as it is seen; one that was opened from the window waits for a person.
+    // The first scene of a run is armed when the run is up; for a scene opened from the window, a person arms it.
     OneRun(const std::filesystem::path& scene, RunOptions options, SceneSwitch* scene_switch, bool first)
         : options_(std::move(options)),
           scene_switch_(scene_switch),
@@ -46,7 +46,7 @@ public:
           observer_(options_.session) {
         facts_.scene = std::filesystem::absolute(scene);
         facts_.session = options_.session;
-        if (!options_.save.empty()) system_->check_save(options_.save);  // not after an hour of work
+        if (!options_.save.empty()) system_->check_save(options_.save);  // fails before the run, not after it
     }
 
     int go() {
@@ -55,23 +55,23 @@ public:
         while (!over()) {
             const int asked = signals_.wait(20);
             look();
-            if (asked != 0 && !ending_) end(true, std::string("asked by ") + sigdescr_np(asked));
+            if (asked != 0 && !ending_) end(true, std::string("requested by signal: ") + sigdescr_np(asked));
         }
         return finish();
     }
 
-    // The scene that the window asked for, where that is why the run ended.
+    // The scene that the window requested, if the run ended for it.
     [[nodiscard]] const std::optional<std::filesystem::path>& next() const { return next_; }
     [[nodiscard]] bool came_up() const { return seen_at_.has_value(); }
 
 private:
     void refuse_second() {
-        // Nobody accepts on a socket that a dead controller left; a living one need not have answered yet.
+        // A dead controller's socket accepts no connection; a living controller need not have answered yet.
         observer_.poll();
         if (observer_.reached())
             throw StartupError("starting a run in session " + options_.session,
-                               "a controller runs in it already",
-                               "end that one, or give this run another name with --session");
+                               "a controller already runs in this session",
+                               "end that controller, or give this run another session with --session");
     }
 
     void start() {
@@ -79,7 +79,7 @@ private:
         ChildSettings rt;
         rt.arguments = controller_arguments(facts_.scene, options_, first_);
         rt.grace = options_.grace;
-        if (!options_.record.empty()) {  // before the controller, so that it has the run from its first cycle
+        if (!options_.record.empty()) {  // started before the controller, to record its first cycle
             ChildSettings record;
             record.arguments = {options_.record.string(), "--session", options_.session, "--quiet"};
             record.grace = options_.grace;
@@ -121,10 +121,10 @@ private:
         if (!set("DISPLAY") && !set("WAYLAND_DISPLAY"))
             throw StartupError(
                 "opening a window", "neither DISPLAY nor WAYLAND_DISPLAY is set",
-                "add --headless to draw without a screen, or --no-gui for the controller alone");
+                "add --headless to draw without a screen, or --no-gui to run the controller alone");
     }
 
-    // One look at everybody: link, samples, table, children.
+    // One poll of everything: link, samples, table, children.
     void look() {
         const Instant now = Monotonic::now();
         if (observer_.poll() == Observer::News::arrived) {
@@ -137,15 +137,15 @@ private:
         if (scene_switch_ != nullptr && !ending_ && now >= asked_due_) {
             asked_due_ = now + kSampleEvery;
             if ((next_ = scene_switch_->poll())) {
-                end(true, "another scene was asked for: " + next_->string());
-                rt_->stop();  // at once: no force goes on while the window is being closed
+                end(true, "another scene was requested: " + next_->string());
+                rt_->stop();  // at once: the force ends before the window closes
             }
         }
     }
 
     void leave_core(Instant now) {
         const auto core = servo_core(rt_->pid());
-        if (!core) return;  // not started yet, or without the rights to have one of its own
+        if (!core) return;  // not started yet, or the thread is not pinned
         core_due_ = now + kLeaveCoreEvery;
         keep_off_core(getpid(), *core);
         if (gui_ && !gui_->poll()) keep_off_core(gui_->pid(), *core);
@@ -172,7 +172,7 @@ private:
     void judge(Instant now) {
         if (ending_) {
             if (gui_) gui_->poll();
-            // The controller is asked last, so that the last picture shows it at work.
+            // The controller ends last, so that the last frame shows it at work.
             if (!gui_ || gui_->poll()) rt_->stop();
             rt_->poll();
             return;
@@ -188,7 +188,7 @@ private:
         } else if (x_ && x_->child().poll()) {
             end(false, "Xvfb " + x_->child().poll()->text());
         } else if (!seen_at_ && now > started_ + kAttachLimit) {
-            end(false, "the controller did not come up: " + observer_.status_text());
+            end(false, "the controller did not start: " + observer_.status_text());
         } else if (options_.seconds > 0.0 && seen_at_) {
             const Duration length(std::llround(options_.seconds * 1e9));
             if (!gui_ && now >= *seen_at_ + length) end(true, "the time is over");
@@ -209,7 +209,7 @@ private:
 
     int finish() {
         for (std::optional<Child>* const recorder :
-             {&record_, &flight_}) {  // end by themselves when the controller has
+             {&record_, &flight_}) {  // they end by themselves after the controller
             if (!*recorder) continue;
             if (!(*recorder)->wait(std::chrono::seconds(10))) (*recorder)->stop();
             if (const auto& ending = (*recorder)->wait(options_.grace + std::chrono::seconds(1)))
@@ -231,7 +231,7 @@ private:
         const nlohmann::json report = run_report(region, *system_, facts_);
         std::printf("the run ended: %s\n", facts_.why_ended.c_str());
         std::fputs(report_summary(report).c_str(), stdout);
-        std::fflush(stdout);  // before the words of the next scene's programs, in a file too
+        std::fflush(stdout);  // before output of the next scene's programs, also in a file
         if (!options_.json.empty()) {
             write_whole(options_.json, report_text(report));
             std::printf("wrote %s\n", options_.json.c_str());
@@ -252,7 +252,7 @@ private:
     void note(const std::string& name, const Ending& e) {
         facts_.endings[name] = e;
         if (e.clean() && (e.asked || facts_.intended)) return;
-        // SIGTERM before the program had its own way of ending is what was asked for.
+        // SIGTERM may end a program before its handler is installed; that is a requested end.
         if (e.asked && e.by_signal && e.number == SIGTERM) return;
         facts_.intended = false;
         std::fprintf(stderr, "%s %s\n  fix: %s\n", name.c_str(), e.text().c_str(), advice(name, e).c_str());
@@ -265,7 +265,7 @@ private:
     }
 
     RunOptions options_;
-    SceneSwitch* scene_switch_;  // null: nobody is there to ask
+    SceneSwitch* scene_switch_;  // null: the window cannot request scenes
     bool first_;
     std::optional<std::filesystem::path> next_;
     RunDescription facts_;
@@ -273,7 +273,7 @@ private:
     std::unique_ptr<SystemRun> system_;
     Signals signals_;
     Observer observer_;
-    std::optional<ScratchFolder> scratch_;  // outlives the X server that uses it
+    std::optional<ScratchFolder> scratch_;  // must outlive the X server, which uses it
     std::optional<XServer> x_;
     std::vector<std::pair<std::string, std::string>> display_;
     std::optional<Child> rt_, gui_, record_, flight_;
@@ -311,7 +311,7 @@ int run_scene(const std::filesystem::path& scene, RunOptions options) {
         } else if (code != 0 && !came_up && !before.empty()) {
             scene_switch->refuse(
                 "opening " + now.string() +
-                ": it could not be started with the options of this run; the terminal shows "
+                ": the scene could not be started with the options of this run; the terminal shows "
                 "the messages of the programs\n  fix: close the window and start: tact run " +
                 now.string());
             now = std::exchange(before, {});

@@ -1,5 +1,4 @@
-// A run: controller and visual process started, watched and ended together, and what was measured written
-// down.
+// A run: starts, monitors and ends controller and visual process together, and writes the results.
 #pragma once
 
 #include <filesystem>
@@ -8,7 +7,7 @@
 
 namespace tact::launch {
 
-// Returns the exit code: 0 where all ended as asked, 1 where something died or had to be killed.
+// Returns the exit code: 0 if all ended as requested, 1 if a process died or had to be killed.
 int run_scene(const std::filesystem::path& scene, RunOptions options);
 
 }  // namespace tact::launch

@@ -23,13 +23,13 @@ std::vector<std::string> window_arguments(const std::filesystem::path& scene, co
     };
     const auto window_state = std::find(options.visual.begin(), options.visual.end(), "--window-state");
     const bool window_state_given = window_state != options.visual.end();
-    // The settings that a person made in the window stay with the next scene.
+    // The window settings of a person carry over to the next scene.
     if (!window_state_given && scene_switch != nullptr)
         add("--window-state", scene_switch->window_state().string());
     const std::filesystem::path left = window_state_given        ? std::filesystem::path(window_state[1])
                                        : scene_switch != nullptr ? scene_switch->window_state()
                                                                  : "";
-    // A window state has a size of its own.
+    // A window state contains a size.
     if (first ? options.size_given || !window_state_given : !std::filesystem::exists(left))
         add("--size", options.size);
     if (!options.screenshot.empty()) add("--screenshot", options.screenshot.string());
@@ -42,10 +42,10 @@ std::vector<std::string> window_arguments(const std::filesystem::path& scene, co
 
 std::string advice(const std::string& name, const Ending& e) {
     if (e.by_signal && e.number == SIGKILL && !e.forced)
-        return "a user killed the process, or the machine ran out of memory (dmesg shows which)";
-    if (e.by_signal) return "this is a fault of " + name + "; run it alone under gdb, or see coredumpctl";
-    if (e.forced) return "it hung; run it alone to see where";
-    return "see its messages above";
+        return "a user killed the process, or memory ran out; dmesg shows which";
+    if (e.by_signal) return "this is a defect of " + name + "; run it alone under gdb, or see coredumpctl";
+    if (e.forced) return name + " did not respond; run it alone to find the cause";
+    return "see the messages of " + name + " above";
 }
 
 }  // namespace tact::launch

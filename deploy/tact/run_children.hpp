@@ -1,4 +1,4 @@
-// The programs of a run: their command lines, and the fix for one that failed.
+// Command lines of the programs of a run, and the fix for a failed program.
 #pragma once
 
 #include <filesystem>
@@ -11,10 +11,10 @@
 
 namespace tact::launch {
 
-// Of tact-rt. first: the first scene of a run, which is armed as soon as the run is up.
+// Arguments of tact-rt. first: the first scene of a run, which is armed as soon as the run is up.
 std::vector<std::string> controller_arguments(const std::filesystem::path& scene, const RunOptions& options,
                                               bool first);
-// Of tact-gui. scene_switch: null where the window cannot request another scene; own: the options of the system.
+// Arguments of tact-gui. scene_switch: null if the window cannot request another scene; own: options of the system.
 std::vector<std::string> window_arguments(const std::filesystem::path& scene, const RunOptions& options,
                                           const SceneSwitch* scene_switch, bool first,
                                           const std::vector<std::string>& own);

@@ -11,8 +11,7 @@
 namespace tact::launch {
 namespace {
 
-// The controller checks the values; here only their names are known, so that there is one place to say what
-// is right.
+// Only the names of the options are known here; the controller alone checks their values.
 constexpr PassedOption kController[] = {
     {"--rate", "HZ", "Servo rate (Hz)"},
     {"--law", "elastic|sensitus|fixed", "Law of the governor, which trades accuracy for rate"},
@@ -141,7 +140,7 @@ void add_run_options(CLI::App& app, RunOptions& options) {
            "--flight", options.flight,
            "Folder for recordings of the last 30 s, saved at an overrun, a fault or the key M in the window")
         ->type_name("DIR");
-    app.add_option("--session", options.session, "Session name by which the processes find each other")
+    app.add_option("--session", options.session, "Session name shared by the processes of the run")
         ->type_name("NAME")
         ->capture_default_str();
     app.add_flag("--quiet", options.quiet, "Do not print the table of rates");

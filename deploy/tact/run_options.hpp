@@ -1,4 +1,4 @@
-// The options that all runs share, and those that go on to the controller or the visual process as they are.
+// Options that all runs share, and options that are passed on to the controller or the visual process.
 #pragma once
 
 #include <CLI/CLI.hpp>
@@ -12,7 +12,7 @@
 namespace tact::launch {
 
 struct RunOptions {
-    double seconds = 0.0;  // 0: until asked to end
+    double seconds = 0.0;  // 0: no limit
     bool headless = false;
     bool gui = true;
     std::filesystem::path screenshot;  // PNG of the last frame
@@ -20,33 +20,33 @@ struct RunOptions {
     std::filesystem::path out;     // folder for run.json, run.csv and run.png
     std::filesystem::path save;    // folder for the placed structures
     std::filesystem::path record;  // every cycle of the run, HDF5
-    std::filesystem::path flight;  // folder for its last seconds, when something happens
+    std::filesystem::path flight;  // folder for recordings of the last seconds, saved at an event
     std::string session = "default";
     std::string size = "1280x800";   // of the window
-    bool size_given = false;         // by a person
-    std::filesystem::path programs;  // folder of tact-rt and tact-gui; empty: beside tact
-    bool quiet = false;              // no table
-    // From the request to end to SIGKILL; the window may be writing the picture.
+    bool size_given = false;         // given on the command line
+    std::filesystem::path programs;  // folder of tact-rt and tact-gui; empty: that of tact
+    bool quiet = false;              // no table of rates
+    // Time from SIGTERM to SIGKILL; the window may be writing the screenshot.
     Duration grace = std::chrono::seconds(10);
     std::vector<std::string> controller;  // options of tact-rt, in order
     std::vector<std::string> visual;      // options of tact-gui
-    // Of the controller as a person typed them, where some were added that suit the first scene alone.
+    // Controller options as typed, if options were added for the first scene only.
     std::optional<std::vector<std::string>> typed;
 
     [[nodiscard]] bool has_controller_option(const std::string& name) const;
-    // Options of the controller that only this scene is meant with, and back to what was typed.
+    // Adds controller options for this scene only; forget_scene() restores the typed ones.
     void add_for_scene(const std::vector<std::string>& words);
     void forget_scene();
-    // Fills in what --out implies and makes paths absolute; throws StartupError for options that do not go
-    // together.
+    // Fills in the paths implied by --out and makes paths absolute; throws StartupError for options that exclude each
+    // other.
     void settle();
 };
 
-// Is the hand an emulated one for which no motion was chosen? A configuration that was typed chooses, the installed one where
+// True if the hand is emulated and no motion was chosen. A typed configuration is a choice; the installed one only if
 // it names a device.
 [[nodiscard]] bool hand_is_free(const RunOptions& options);
 
-// Passed on to tact-rt, tact-gui or tact-prep, which check the value.
+// Passed on to tact-rt, tact-gui or tact-prep, which checks the value.
 struct PassedOption {
     const char *name, *type, *help;
 };

@@ -15,7 +15,7 @@ constexpr const char* kPlaced[] = {"offset_a", "angle_deg", "bone_taken_mm3"};
 
 double us(std::int64_t ns) { return static_cast<double>(ns) * 1e-3; }
 
-// Empty where the system has no such value.
+// Empty if the system has no such value.
 std::string own_text(const Sample& s, std::string_view column) {
     for (const OwnValue& v : s.own) {
         if (column != v.column) continue;
@@ -55,7 +55,7 @@ std::string table_header(const Sample& s) {
         "                      force ----- lateness us -----\n"
         "  t s  state             Hz     p50     p99     max  overruns";
     return first +
-           (s.particles ? "      rays   fps  level picture, force, particles"
+           (s.particles ? "      rays   fps  level display, force, particles"
                         : "  vertices   fps  level mesh, force") +
            s.heading + "\n";
 }
@@ -77,7 +77,7 @@ std::string table_row(const Sample& s) {
 }
 
 std::string samples_csv(const std::vector<Sample>& samples) {
-    // The first three columns of systems have their place in the file since its beginning; others follow at the end.
+    // The columns of these systems keep their place in the file; columns of other systems follow at the end.
     std::vector<std::string> more;
     for (const Sample& s : samples)
         for (const OwnValue& v : s.own)
@@ -87,8 +87,7 @@ std::string samples_csv(const std::vector<Sample>& samples) {
                 more.emplace_back(v.column);
     std::string text =
         "t_s,state,force_rate_hz,goal_hz,lateness_p50_us,lateness_p99_us,lateness_max_us,cycle_cost_p50_us,"
-        "overruns,"
-        "gui_fps,gui_vertices,vertices_asked,level_picture,level_force,points,offset_a,angle_deg,"
+        "overruns,gui_fps,gui_vertices,vertices_asked,level_picture,level_force,points,offset_a,angle_deg,"
         "level_particles,bone_taken_mm3";
     for (const std::string& column : more) text += "," + column;
     text += '\n';

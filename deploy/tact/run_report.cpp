@@ -10,6 +10,7 @@
 #include "deploy/tact/systems.hpp"
 #include "ipc/base/device_notice.hpp"
 #include "ipc/topics/frames_json.hpp"
+#include "ipc/topics/level_text.hpp"
 #include "ipc/topics/text.hpp"
 #include "ipc/version/version.hpp"
 
@@ -37,7 +38,7 @@ json lateness_us(const LatenessTopic& l) {
             {"count", l.total}};
 }
 
-json governor(const RtRegion& region) {
+json governor(const RtRegion& region, std::int64_t now_ns) {
     const auto levels = newest(region.levels);
     if (!levels) return nullptr;
     json paths = json::object();
@@ -51,6 +52,8 @@ json governor(const RtRegion& region) {
             {"cost_us", p.cost_s * 1e6},
             {"error", p.error},
             {"reason", level_reason_text(static_cast<LevelReason>(p.reason))},
+            {"status", level_status_text(p, now_ns)},
+            {"changed_at_ns", p.changed_at_ns},
             {"haptic", p.haptic != 0}};
     }
     return {{"law", field_text(levels->law, kLawNameMax)},
@@ -59,13 +62,13 @@ json governor(const RtRegion& region) {
             {"paths", paths}};
 }
 
-// Of each hand: what its device says, and what came over its bus where the driver counts.
+// For each hand: the notice of its device and the bus counters of a driver that counts.
 json devices(const HealthTopic& h) {
     json all = json::array();
     for (std::size_t i = 0; i < std::size(h.device_bus); ++i) {
         const BusCounts& b = h.device_bus[i];
         const bool counts = b.packets > 0 || !b.clean();
-        if (i > 0 && !counts && h.device_notice[i] == 0) continue;  // there is no such hand
+        if (i > 0 && !counts && h.device_notice[i] == 0) continue;  // this hand does not exist
         json device = {{"notice", device_notice_text(static_cast<DeviceNotice>(h.device_notice[i]))}};
         device["bus"] = !counts ? json(nullptr)
                                 : json{{"packets", b.packets},
@@ -85,7 +88,7 @@ json devices(const HealthTopic& h) {
 
 json head(const RtRegion& region) {
     const auto h = newest(region.head);
-    if (!h) return nullptr;  // no tracker, or nothing from it yet
+    if (!h) return nullptr;  // no tracker, or no pose yet
     return {{"state", head_state_text(h->state)},
             {"link", head_link_text(h->link)},
             {"sequence", h->sequence},
@@ -94,6 +97,21 @@ json head(const RtRegion& region) {
             {"quat_screen_head_xyzw", h->quat_screen_head_xyzw},
             {"quality", h->quality},
             {"distortion", h->distortion}};
+}
+
+// Of the cycles with force since the start.
+void add_armed_metrics(const HealthTopic& h, json& j) {
+    const bool armed = h.armed_cycles > 0;
+    const auto figure = [armed](double value) { return armed ? json(value) : json(nullptr); };
+    j["armed_cycles"] = h.armed_cycles;
+    j["deadline_misses"] = h.deadline_misses;
+    j["deadline_miss_share"] = figure(static_cast<double>(h.deadline_misses) /
+                                      static_cast<double>(std::max(h.armed_cycles, std::uint64_t{1})));
+    j["deadline_miss_share_last_second"] = figure(static_cast<double>(h.deadline_miss_share));
+    j["deadline_us"] = h.model_ns_max > 0 ? json(us(static_cast<double>(h.model_ns_max))) : json(nullptr);
+    j["force_error_n_p50"] = figure(static_cast<double>(h.force_error_n_p50));
+    j["force_step_n_max"] = figure(static_cast<double>(h.force_step_n_max));
+    j["level_settled_s"] = figure(static_cast<double>(h.level_settled_s));
 }
 
 json ending_json(const Ending& e) {
@@ -136,19 +154,20 @@ json controller_report(const RtRegion& region) {
                   {"bad_input", h.bad_input},
                   {"events", h.events}};
     if (const auto lateness = newest(region.lateness)) j["servo"]["lateness_us"] = lateness_us(*lateness);
+    add_armed_metrics(h, j);
     j["gui"] = {{"attached", h.gui_attached != 0},
                 {"fps", h.gui_fps},
                 {"vertices", h.gui_vertices},
                 {"heartbeat_age_ms", h.gui_heartbeat_age_ns >= 0
                                          ? json(static_cast<double>(h.gui_heartbeat_age_ns) * 1e-6)
                                          : json(nullptr)}};
-    // A hostile picture's figures are none.
+    // Implausible frame metrics are omitted.
     const auto picture = newest(region.picture);
     j["gui"]["frames"] = picture && picture->taken_at_ns > 0 && plausible(picture->metrics)
                              ? frames_json(picture->metrics)
                              : json(nullptr);
     j["devices"] = devices(h);
-    j["governor"] = governor(region);
+    j["governor"] = governor(region, h.taken_at_ns);
     j["head"] = head(region);
     j["scene"] = {{"path", field_text(region.scene_path, sizeof region.scene_path)},
                   {"checksum", hex(region.scene_checksum)}};
@@ -163,7 +182,7 @@ json run_report(const RtRegion* region, const SystemRun& system, const RunDescri
         system.report(*region, j);
     }
     if (j.contains("gui")) {
-        // The controller's last word is from when the window was closing.
+        // The controller's last value is from the time when the window was closing.
         j["gui"]["fps_last"] = j["gui"]["fps"];
         if (description.fps_median) j["gui"]["fps"] = *description.fps_median;
         j["gui"]["ran"] = description.fps_median.has_value();
@@ -195,6 +214,11 @@ std::string report_summary(const json& r) {
         add("force rate %.1f Hz; lateness us p50 %.1f, p99 %.1f, p99.9 %.1f, max %.0f; overruns %.0f\n",
             number(r["force_rate_hz"]), number(l["p50"]), number(l["p99"]), number(l["p999"]),
             number(l["max"]), number(r["servo"]["overruns"]));
+        add("deadline misses %.0f (%.3f %% of the armed cycles); force error p50 %.3f N, largest force "
+            "change per "
+            "cycle %.3f N; level settled after %.2f s\n",
+            number(r["deadline_misses"]), 100.0 * number(r["deadline_miss_share"]),
+            number(r["force_error_n_p50"]), number(r["force_step_n_max"]), number(r["level_settled_s"]));
         if (r["servo"]["free_running"].get<bool>())
             add("free running; recomputed fraction %.0f %% in the last 0.1 s, minimum %.0f %%; idle %.0f %% "
                 "of the time\n",

@@ -1,7 +1,6 @@
-// The JSON of a run, composed from what the controller published and what tact itself saw.
+// The JSON report of a run, composed from the controller's topics and tact's own observations.
 //
-// Keys are stable; a number that is not known is null. Units are in the names. The same words as in the
-// topics.
+// Keys are stable; unknown numbers are null. Units are in the names. Same terms as in the topics.
 #pragma once
 
 #include <map>
@@ -19,17 +18,17 @@ namespace tact::launch {
 struct RunDescription {
     std::filesystem::path scene;
     std::string session;
-    double length_s = 0.0;                  // the controller was seen
+    double length_s = 0.0;                  // time for which the controller was seen
     std::string why_ended;                  // "the time is over", "the window was closed", ...
-    bool intended = false;                  // all went as asked
+    bool intended = false;                  // all ended as requested
     std::map<std::string, Ending> endings;  // by program
-    std::optional<double> fps_median;       // over the looks at a window that was drawing
+    std::optional<double> fps_median;       // over the samples in which a window was drawing
 };
 
-// May take a second, where the system computes something (docking: the fit).
+// May take a second if the system computes a result (docking: the fit).
 nlohmann::json run_report(const RtRegion* region, const SystemRun& system, const RunDescription& description);
 
-// A controller's state alone, for `tact status`.
+// The state of a controller, for `tact status`.
 nlohmann::json controller_report(const RtRegion& region);
 
 std::string report_text(const nlohmann::json& report);  // as a file: indented, ends with a newline

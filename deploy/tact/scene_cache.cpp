@@ -13,14 +13,14 @@
 namespace tact::launch {
 namespace {
 
-constexpr std::size_t kScenesKept = 16;  // a scene of a large map is some hundred megabytes
+constexpr std::size_t kScenesKept = 16;  // a scene with a large map has a few hundred megabytes
 
 std::filesystem::path path_for(const BakeRequest& request, const std::filesystem::path& prep) {
     ContentHash hash;
-    hash.add_file(prep);  // another tact-prep may bake otherwise
+    hash.add_file(prep);  // another version of tact-prep may bake differently
     for (const auto& file : request.inputs) {
         hash.add_file(file);
-        // The structure's name, and where saving reads it again.
+        // The path gives the structure's name and is read again for saving.
         hash.add(std::filesystem::absolute(file).string());
     }
     if (request.inputs.empty())
@@ -31,7 +31,7 @@ std::filesystem::path path_for(const BakeRequest& request, const std::filesystem
     return cache_folder() / (stem + "-" + hash.hex() + ".tact");
 }
 
-// Keeps the newest scenes; what cannot be removed stays.
+// Keeps the newest scenes; ignores files that cannot be removed.
 void prune(const std::filesystem::path& folder, const std::filesystem::path& keep) {
     std::error_code ignored;
     std::vector<std::pair<std::filesystem::file_time_type, std::filesystem::path>> scenes;
@@ -59,7 +59,7 @@ std::vector<std::filesystem::path> scan_files(const std::filesystem::path& scan)
             files.push_back(file);
     }
     std::sort(files.begin(), files.end());
-    // The scan's own name is the scene's.
+    // The scene is named after the scan.
     if (!folder) files.insert(files.begin(), scan);
     return files;
 }
@@ -89,10 +89,10 @@ std::filesystem::path baked_scene(const BakeRequest& request) {
     if (asked) return {};
     if (!ending.clean())
         throw StartupError("baking the scene", "tact-prep " + ending.text(),
-                           "see its messages above; tact-prep --help");
+                           "see the messages of tact-prep above, or tact-prep --help");
     if (!std::filesystem::exists(scene, ignored))
         throw StartupError("baking the scene", "tact-prep wrote no file " + scene.string(),
-                           "check the space in the cache folder");
+                           "check the free space of the cache folder");
     prune(scene.parent_path(), scene);
     return scene;
 }

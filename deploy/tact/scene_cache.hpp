@@ -1,4 +1,4 @@
-// Baked scenes, kept by content: the same inputs, options and tact-prep give the same file, baked once.
+// Cache of baked scenes by content: the same inputs, options and tact-prep give the same file, baked once.
 #pragma once
 
 #include <filesystem>
@@ -10,14 +10,14 @@ namespace tact::launch {
 struct BakeRequest {
     std::vector<std::filesystem::path> inputs;  // maps, models, scans; empty for a demo
     std::vector<std::string> words;    // of tact-prep before -o: {"demo","dock"} or {"dock", MAP, MODEL...}
-    std::vector<std::string> options;  // and behind it
+    std::vector<std::string> options;  // arguments after -o
 };
 
-// What a scan is read from: itself, the files of its folder, or a header and the files of its stem beside it.
+// The files of a scan: the file itself, all files of a folder, or a header and the files of the same stem beside it.
 std::vector<std::filesystem::path> scan_files(const std::filesystem::path& scan);
 
-// The scene's path; runs tact-prep, which shows its progress, where it is not there yet. Throws StartupError
-// where the baking fails; returns an empty path where a signal ended it.
+// Returns the scene's path. Runs tact-prep, which shows its progress, if the scene is not cached. Throws StartupError
+// if baking fails; returns an empty path if a signal ended it.
 std::filesystem::path baked_scene(const BakeRequest& request);
 
 }  // namespace tact::launch

@@ -24,7 +24,7 @@ std::optional<std::filesystem::path> SceneSwitch::poll() {
         if (!scene) return std::nullopt;
         if (!bound_by_.empty())
             throw StartupError("opening " + scene->string(),
-                               "this run writes files of its own scene at its end (" + bound_by_ + ")",
+                               "this run writes files about its own scene at its end (" + bound_by_ + ")",
                                "close the window and start: tact run " + scene->string());
         static_cast<void>(read_meta(SceneFile::open(*scene)));
         return scene;

@@ -11,7 +11,7 @@
 namespace tact::launch {
 namespace {
 
-// task(thread, folder) for each thread of a process, until it returns false.
+// Calls task(thread, folder) for each thread of a process until it returns false.
 template <class F>
 void for_threads(pid_t process, F task) {
     std::error_code gone;

@@ -1,11 +1,11 @@
-// The servo's core belongs to the servo: everybody else whom a run starts is kept off it.
+// Keeps all other processes of a run off the core of the servo.
 //
-// Why       FIFO priority takes the core from a window that draws on it, but not its caches, nor a system call that a kernel
-//           without preemption lets end first. Threads of a software renderer are spread over all cores.
-// How       the controller chooses the core; its pinned thread "servo" tells which. What else runs gets the cores that it
-//           had without that one, thread by thread; where nothing would be left, it keeps what it has.
-// Again     now and then: graphics drivers give some threads all cores by themselves.
-// Fails by  doing nothing: a thread that is gone meanwhile, or is not ours, stays as it is.
+// Why       FIFO priority takes the core from a window that draws on it, but not its caches; a kernel without
+//           preemption also finishes a system call first. Threads of a software renderer run on all cores.
+// How       the controller chooses the core; its pinned thread "servo" shows which. Every other thread gets its present
+//           cores without that one; a thread with no other core is left unchanged.
+// Again     once per second, because graphics drivers give some threads all cores.
+// Fails by  doing nothing: threads that have ended or belong to another user are skipped.
 #pragma once
 
 #include <sys/types.h>
@@ -14,9 +14,9 @@
 
 namespace tact::launch {
 
-// Nothing: there is no such thread, or it may run on more than one.
+// Empty if there is no such thread, or if it may run on several cores.
 [[nodiscard]] std::optional<int> servo_core(pid_t controller);
-// Returns how many threads had to be moved.
+// Returns the number of threads that were moved.
 int keep_off_core(pid_t process, int core);
 
 }  // namespace tact::launch

@@ -15,7 +15,7 @@ Signals::Signals() {
     sigset_t ours;
     sigemptyset(&ours);
     for (const int s : {SIGINT, SIGTERM, SIGHUP, SIGCHLD}) sigaddset(&ours, s);
-    signal(SIGPIPE, SIG_IGN);  // a closed terminal must not keep tact from ending its children
+    signal(SIGPIPE, SIG_IGN);  // a closed terminal must not prevent tact from ending its children
     sigprocmask(SIG_BLOCK, &ours, &before_);
     fd_ = signalfd(-1, &ours, SFD_CLOEXEC | SFD_NONBLOCK);
     if (fd_ < 0)

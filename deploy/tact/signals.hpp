@@ -1,7 +1,7 @@
-// Signals as something to wait for, so that the launcher needs no handler.
+// Waits for signals synchronously, without a signal handler.
 //
-// SIGINT, SIGTERM, SIGHUP and SIGCHLD are blocked while an object lives and are taken from it in turn. One
-// object at a time.
+// SIGINT, SIGTERM, SIGHUP and SIGCHLD are blocked during the life of the object and read from it one by one. Only one
+// object may exist at a time.
 #pragma once
 
 #include <signal.h>
@@ -17,7 +17,7 @@ public:
     Signals(const Signals&) = delete;
     Signals& operator=(const Signals&) = delete;
 
-    // Waits until a signal comes or the time is over. SIGCHLD only wakes; 0: no request to end.
+    // Waits for a signal or the timeout. SIGCHLD only ends the wait; returns 0 without a request to end.
     int wait(int timeout_ms);
 
 private:

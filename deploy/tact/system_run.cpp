@@ -5,8 +5,8 @@
 namespace tact::launch {
 
 void SystemRun::check_save(const std::filesystem::path& folder) const {
-    throw StartupError("saving into " + folder.string(), "a scene of this kind has nothing to save",
-                       "run it without --save, or dock files: tact dock MAP MODEL --save DIR");
+    throw StartupError("saving to " + folder.string(), "a scene of this kind has nothing to save",
+                       "run the scene without --save, or dock files: tact dock MAP MODEL --save DIR");
 }
 
 }  // namespace tact::launch

@@ -1,7 +1,7 @@
-// The part of a run that belongs to one system: its columns of the table, its keys of the report, its files.
+// The part of a run that belongs to one system: its columns of the table, keys of the report, and files.
 //
-// Made by the system's row of deploy/tact/systems for each scene that is run or watched. The default does nothing, so that a
-// system overrides what it has. Hostile: topics may hold any values.
+// The system's row of deploy/tact/systems creates one for each scene that is run or watched. The defaults do nothing; a
+// system overrides what it needs. Hostile: topics may hold any values.
 #pragma once
 
 #include <filesystem>
@@ -27,19 +27,19 @@ public:
     SystemRun(const SystemRun&) = delete;
     SystemRun& operator=(const SystemRun&) = delete;
 
-    // More options of tact-gui; scratch() makes the run's folder of temporary files.
+    // Additional options of tact-gui; scratch() creates the run's temporary folder.
     virtual std::vector<std::string> window_options(
         const std::function<std::filesystem::path()>& /*scratch*/) {
         return {};
     }
-    // At every look at a controller that was seen.
+    // Called at every poll while a controller is visible.
     virtual void watch(const RtRegion& /*region*/) {}
-    // Fills in `own` and the end of the line.
+    // Sets `own`, `heading` and `line_end` of the sample.
     virtual void sample(const RtRegion& /*region*/, Sample& /*sample*/) const {}
-    // Adds keys to the report of a run that ended.
+    // Adds keys to the report of an ended run.
     virtual void report(const RtRegion& /*region*/, nlohmann::json& /*report*/) const {}
 
-    // --save DIR: before the run, whether saving could succeed; and after it. Both throw StartupError.
+    // --save DIR: check_save() before the run, save() after it. Both throw StartupError.
     virtual void check_save(const std::filesystem::path& folder) const;
     virtual void save(const RtRegion* /*region*/, const SaveRequest& /*request*/,
                       Signals& /*signals*/) const {}

@@ -28,8 +28,7 @@ std::span<const System> systems() {
 const System& system_of(SceneKind kind) {
     const std::span<const System> all = systems();
     const auto system = std::find_if(all.begin(), all.end(), [&](const System& s) { return s.kind == kind; });
-    if (system == all.end())
-        throw std::logic_error("a kind of scene without a row in deploy/tact/systems.cpp");
+    if (system == all.end()) throw std::logic_error("scene kind without a row in deploy/tact/systems.cpp");
     return *system;
 }
 

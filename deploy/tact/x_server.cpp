@@ -18,18 +18,19 @@
 namespace tact::launch {
 namespace {
 
-// A start takes 0.2 s; on a machine with a load of nine it was seen to hang, so another try follows.
+// A start takes 0.2 s. With a load of nine it once hung, so it is tried again.
 constexpr std::array kStartLimits{std::chrono::seconds(10), std::chrono::seconds(20),
                                   std::chrono::seconds(40)};
-// Numbers are drawn from here: searching from 0 on meets servers of other containers that share the network's
-// names.
+// Display numbers are random: counting from 0 would collide with servers of other containers that share the network
+// namespace.
 constexpr unsigned kDisplayFirst = 100, kDisplays = 20000;
 
 std::array<int, 2> typed_size(const std::string& size) {
     const auto px = numbers_between(size, "x");
     if (!px || std::min((*px)[0], (*px)[1]) < 64 || std::max((*px)[0], (*px)[1]) > 16384)
-        throw StartupError("reading --size " + size, "it is not WIDTHxHEIGHT in 64..16384",
-                           "--size 1280x800");
+        throw StartupError("reading --size " + size,
+                           "the size is not WIDTHxHEIGHT with numbers from 64 to 16384",
+                           "give a size such as --size 1280x800");
     return {static_cast<int>((*px)[0]), static_cast<int>((*px)[1])};
 }
 
@@ -40,8 +41,7 @@ unsigned random_display() {
     return kDisplayFirst + number % kDisplays;
 }
 
-// The format of Xauthority files: big-endian lengths; family 65535 fits any address, an empty number any
-// display.
+// The format of Xauthority files: big-endian lengths; family 65535 matches any address, an empty number any display.
 void write_cookie(const std::filesystem::path& path) {
     std::array<unsigned char, 16> cookie{};
     if (getrandom(cookie.data(), cookie.size(), 0) != static_cast<ssize_t>(cookie.size()))
@@ -66,7 +66,7 @@ void write_cookie(const std::filesystem::path& path) {
                            "free some space or fix the permissions");
 }
 
-// True once the server writes its display number, which it does when it listens.
+// True once the server has written its display number, which it does when it listens.
 bool listens(int fd, Child& server, Duration limit) {
     const Instant end = Monotonic::now() + limit;
     while (Monotonic::now() < end && !server.poll()) {
@@ -74,7 +74,7 @@ bool listens(int fd, Child& server, Duration limit) {
         char letter = 0;
         if (::poll(&p, 1, 100) != 1) continue;
         if (read(fd, &letter, 1) != 1) return false;
-        if (letter == '\n') return true;  // not before: a pipe closed too early ends the server
+        if (letter == '\n') return true;  // not earlier: closing the pipe too early ends the server
     }
     return false;
 }
@@ -96,7 +96,7 @@ XServer::XServer(const std::filesystem::path& scratch, int width, int height)
     const auto program = find_in_path("Xvfb");
     if (program.empty())
         throw StartupError("starting an X server for --headless", "the program Xvfb is not installed",
-                           "apt-get install xvfb; or run with --no-gui");
+                           "sudo apt-get install xvfb, or run with --no-gui");
     write_cookie(cookie_file_);
     const auto log = scratch / "xvfb.log";
     std::string why;
@@ -106,7 +106,7 @@ XServer::XServer(const std::filesystem::path& scratch, int width, int height)
         const int log_fd = open(log.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0600);
         if (log_fd < 0 || pipe2(number.data(), O_CLOEXEC) != 0)
             throw StartupError("starting Xvfb", std::strerror(errno),
-                               "free some space or fix the permissions of " + scratch.string());
+                               "free disk space, or fix the permissions of " + scratch.string());
         ChildSettings settings;
         settings.arguments = {display_,
                               "-displayfd",
@@ -132,13 +132,12 @@ XServer::XServer(const std::filesystem::path& scratch, int width, int height)
         if (good) return;
         const auto& ending = child_->wait(std::chrono::milliseconds(200));
         const std::string said = last_line(log);
-        why = (ending ? "it " + ending->text() : "it did not listen in time") +
+        why = (ending ? "Xvfb " + ending->text() : "Xvfb did not listen in time") +
               (said.empty() ? "" : ": " + said);
-        child_.reset();  // killed, where it hangs
+        child_.reset();  // kills a server that hangs
     }
-    throw StartupError(
-        "starting Xvfb for --headless", why,
-        "run 'Xvfb " + display_ + "' by hand to see why; or leave --headless away and use a display");
+    throw StartupError("starting Xvfb for --headless", why,
+                       "run 'Xvfb " + display_ + "' to find the cause, or omit --headless and use a display");
 }
 
 std::vector<std::pair<std::string, std::string>> XServer::environment() const {

@@ -1,11 +1,10 @@
-// An X server of our own, without a screen, for runs with --headless.
+// A private X server without a screen, for runs with --headless.
 //
-// Why Xvfb and not EGL   GLFW 3.3 (Debian 12) opens windows on X alone; the same program with the same window
-//                        code then runs with and without a screen, and Mesa draws in software where there is
-//                        no graphics card.
-// Private                its display number is drawn at random, it listens on no network and lets in only
-//                        those who know its cookie, which lies in a file readable by this user. What does not
-//                        start is tried again.
+// Why Xvfb and not EGL   GLFW 3.3 (Debian 12) opens windows only on X. The same program with the same window code then
+//                        runs with and without a screen, and Mesa renders in software if there is no graphics card.
+// Private                its display number is random, it does not listen on the network, and it admits only clients
+//                        with its cookie, which is in a file readable by this user. A server that does not start is
+//                        tried again.
 // Life                   ended by stop() or the destructor; if tact is killed, the kernel ends it.
 #pragma once
 
@@ -22,12 +21,12 @@ namespace tact::launch {
 
 class XServer {
 public:
-    // scratch: an existing folder of this user alone. Throws StartupError: not installed, did not start.
+    // scratch: an existing folder with access for this user only. Throws StartupError: not installed, did not start.
     XServer(const std::filesystem::path& scratch, int width, int height);
-    // size: as typed behind --size, "1280x800". Throws as well where it is none in 64..16384.
+    // size: as given with --size, "1280x800". Also throws if it is not within 64..16384.
     XServer(const std::filesystem::path& scratch, const std::string& size);
     [[nodiscard]] const std::string& display() const { return display_; }  // ":1"
-    // What a program needs to use it.
+    // Environment variables for its clients.
     [[nodiscard]] std::vector<std::pair<std::string, std::string>> environment() const;
     Child& child() { return *child_; }
 

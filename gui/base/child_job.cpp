@@ -39,7 +39,7 @@ std::string tail_of(int fd) {
 
 ChildJob::~ChildJob() {
     if (pid_ > 0) {
-        kill(pid_, SIGKILL);  // what it writes is whole or absent
+        kill(pid_, SIGKILL);  // it writes its files completely or not at all
         while (waitpid(pid_, nullptr, 0) < 0 && errno == EINTR) {
         }
     }
@@ -48,7 +48,7 @@ ChildJob::~ChildJob() {
 
 void ChildJob::start(const std::string& program, const std::vector<std::string>& arguments) {
     const std::string path = beside_this(program);
-    if (running()) throw StartupError("starting " + program, "it is running already", "wait for it");
+    if (running()) throw StartupError("starting " + program, "it is already running", "wait until it ends");
     if (output_fd_ >= 0) close(output_fd_);
     output_fd_ = memfd_create("tact-child-output", MFD_CLOEXEC);
     if (output_fd_ < 0) throw StartupError("starting " + program, std::strerror(errno), "free some memory");
@@ -61,7 +61,7 @@ void ChildJob::start(const std::string& program, const std::vector<std::string>&
     posix_spawn_file_actions_adddup2(&files, output_fd_, STDERR_FILENO);
     posix_spawnattr_t attributes;
     posix_spawnattr_init(&attributes);
-    sigset_t ours;  // handlers of this process must not be asked in the child
+    sigset_t ours;  // the child must not inherit this process's signal handling
     sigemptyset(&ours);
     for (const int s : {SIGINT, SIGTERM, SIGHUP}) sigaddset(&ours, s);
     posix_spawnattr_setsigdefault(&attributes, &ours);
@@ -72,7 +72,7 @@ void ChildJob::start(const std::string& program, const std::vector<std::string>&
     posix_spawnattr_destroy(&attributes);
     if (error != 0)
         throw StartupError("starting " + path, std::strerror(error),
-                           "build it, or put it beside this program: it comes with Tact");
+                           "build it, or put it beside this program (it is part of Tact)");
     pid_ = pid;
 }
 

@@ -1,12 +1,12 @@
-// A program run beside the frame loop: started, looked at once a frame, never waited for.
+// Runs a program in the background: start it, poll it once a frame, never wait for it.
 //
-// Fails by  outcome: an exit code that is not 0, and the last lines that the program printed
-// Ends      with this object: a program still running is killed. Where this process is killed the program
-//           goes on: right for a save, which is asked for, bounded, and whole or absent; what is of use
-//           to this process alone is told to end with it by its own option (tact-prep contour
-//           --ends-with). posix_spawn() could not set that, and fork() would copy the page tables of a
-//           big program.
-// Thread    one; start() takes some hundred microseconds
+// Fails by  outcome: a nonzero exit code and the last lines of the program's output
+// Ends      the destructor kills a program that still runs. If this process is killed, the program continues:
+//           this is right for a save, which the user requested, takes bounded time, and is written completely or
+//           not at all. A program of use to this process alone takes an option that ends it with this process
+//           (tact-prep contour --ends-with): posix_spawn() cannot set this, and fork() would copy the page
+//           tables of a large process.
+// Thread    one; start() takes a few hundred microseconds
 #pragma once
 
 #include <sys/types.h>
@@ -18,7 +18,7 @@
 namespace tact {
 
 struct ChildOutcome {
-    int exit_code = 0;   // 128 + signal where one ended it
+    int exit_code = 0;   // 128 + signal number if a signal ended it
     std::string output;  // the last kOutputMax bytes of standard output and error
     [[nodiscard]] bool good() const { return exit_code == 0; }
 };
@@ -32,15 +32,15 @@ public:
     ChildJob& operator=(const ChildJob&) = delete;
     ~ChildJob();
 
-    // The program: a path, or a name that is looked for beside this program and then in PATH. Throws
-    // StartupError where it cannot be started or another is still running.
+    // The program: a path, or a name searched beside this program and then in PATH. Throws StartupError if it cannot
+    // be started or another one still runs.
     void start(const std::string& program, const std::vector<std::string>& arguments);
     [[nodiscard]] bool running() const { return pid_ > 0; }
-    // The outcome, once, when the program has ended.
+    // Returns the outcome once, after the program has ended.
     [[nodiscard]] std::optional<ChildOutcome> poll();
-    // What it printed up to now, the last kOutputMax bytes.
+    // Output so far, at most the last kOutputMax bytes.
     [[nodiscard]] std::string output() const;
-    // Asks it to end (SIGTERM); poll() tells when it has.
+    // Requests its end (SIGTERM); poll() reports when it has ended.
     void cancel() const;
 
 private:

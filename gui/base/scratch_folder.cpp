@@ -20,7 +20,7 @@ bool is_ours_by_name(const std::string& name) {
     return name.size() == sizeof kName + sizeof kLetters - 2 && name.starts_with(kName);
 }
 
-// The folder locked, or -1: somebody lives in it, it is not this user's, or no folder at all.
+// Locks the folder and returns its descriptor; -1 if it is in use, belongs to another user, or is no folder.
 int lock_of(const std::filesystem::path& folder) {
     const int fd = open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC);
     if (fd < 0) return -1;
@@ -30,7 +30,7 @@ int lock_of(const std::filesystem::path& folder) {
     return -1;
 }
 
-// What is locked may have been removed by somebody before it was.
+// Another process may have removed the folder before it was locked.
 bool still_there(const std::filesystem::path& folder, int fd) {
     struct stat path {
     }, locked{};
@@ -55,11 +55,11 @@ void remove_left_over(const std::filesystem::path& parent) {
 
 ScratchFolder::ScratchFolder(const std::filesystem::path& parent) {
     remove_left_over(parent);
-    // Another that cleans up may come between making and locking; not ten times.
+    // Another cleanup may remove the folder between its creation and its lock, but not ten times in a row.
     for (int i = 0; i < 10; ++i)
         if (make(parent)) return;
-    throw StartupError("making a folder for a child program", "no folder can be made in " + parent.string(),
-                       "make room there, or set TMPDIR");
+    throw StartupError("creating a folder for a child program", "no folder can be made in " + parent.string(),
+                       "free space there, or set TMPDIR");
 }
 
 bool ScratchFolder::make(const std::filesystem::path& parent) {

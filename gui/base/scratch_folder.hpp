@@ -1,9 +1,9 @@
-// A folder for the files of a child program, which goes with this object.
+// A folder for the files of a child program; the destructor removes it.
 //
-// Left over  by an owner that was killed: the next one made by the same user removes it. Its owner holds a lock on
-//            it, which the kernel lets go when the owner dies, however that is; so neither a process number
-//            that was used again nor another user's folder is mistaken for it.
-// Fails by   StartupError where no folder can be made
+// Left over  if its owner is killed, the next ScratchFolder of the same user removes the folder. The owner holds a
+//            lock on it, which the kernel releases when the owner dies for any reason. So neither a reused process
+//            id nor another user's folder is removed by mistake.
+// Fails by   StartupError if no folder can be created
 // Thread     any
 #pragma once
 
@@ -13,7 +13,7 @@ namespace tact {
 
 class ScratchFolder {
 public:
-    // In `parent`, named "tact-gui-scratch-" and six letters.
+    // Created in `parent`, named "tact-gui-scratch-" and six random letters.
     explicit ScratchFolder(const std::filesystem::path& parent = std::filesystem::temp_directory_path());
     ~ScratchFolder();
     ScratchFolder(const ScratchFolder&) = delete;

@@ -21,8 +21,8 @@ struct Setting {
     [[nodiscard]] double number(const toml::node& one) const {
         const auto value = one.value<double>();
         if (!value || !(*value >= key.low && *value <= key.high))
-            file.fail(key.name, ": a number from " + std::to_string(key.low) + " to " +
-                                    std::to_string(key.high) + " is wanted");
+            file.fail(key.name, ": must be a number from " + std::to_string(key.low) + " to " +
+                                    std::to_string(key.high));
         return *value;
     }
     void operator()(const std::span<double>& numbers) const {
@@ -32,24 +32,24 @@ struct Setting {
             return;
         }
         if (array == nullptr || array->size() != numbers.size())
-            file.fail(key.name, ": a list of " + std::to_string(numbers.size()) + " numbers is wanted");
+            file.fail(key.name, ": must be a list of " + std::to_string(numbers.size()) + " numbers");
         for (std::size_t i = 0; i < numbers.size(); ++i) numbers[i] = number((*array)[i]);
     }
     void operator()(std::vector<double>* list) const {
         const toml::array* const array = node.as_array();
         if (array == nullptr || array->size() > 2)
-            file.fail(key.name, ": a list of up to two numbers is wanted");
+            file.fail(key.name, ": must be a list of up to two numbers");
         list->clear();
         for (const toml::node& each : *array) list->push_back(number(each));
     }
     void operator()(bool* flag) const {
         const auto value = node.value_exact<bool>();
-        if (!value) file.fail(key.name, ": true or false is wanted");
+        if (!value) file.fail(key.name, ": must be true or false");
         *flag = *value;
     }
     [[nodiscard]] std::string text() const {
         auto value = node.value_exact<std::string>();
-        if (!value) file.fail(key.name, ": a text is wanted");
+        if (!value) file.fail(key.name, ": must be a string");
         return *value;
     }
     void operator()(std::string* target) const { *target = text(); }

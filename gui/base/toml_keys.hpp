@@ -1,7 +1,7 @@
-// Keys of a TOML file that a person may type: each has a range, every one may be left out, and another is an error.
+// Reads TOML files edited by hand: each key has a range and is optional; an unknown key is an error.
 //
-// Form     tables are one deep: "camera.distance_a" is distance_a in [camera]
-// Fails    by StartupError that names the file, the line or the key, what is wanted there, and `fix`
+// Form     tables are one level deep: "camera.distance_a" is distance_a in [camera]
+// Fails    by StartupError with the file, the line or key, the expected value, and `fix`
 #pragma once
 
 #include <filesystem>
@@ -20,15 +20,15 @@ struct TomlChoice {
 
 struct TomlKey {
     const char* name;
-    // As many numbers as there are; up to two.
+    // span: exactly this many numbers; vector: up to two numbers.
     std::variant<std::span<double>, std::vector<double>*, bool*, std::string*, TomlChoice> target;
-    double low = 0.0, high = 0.0;  // of each number
+    double low = 0.0, high = 0.0;  // range of each number
 };
 
 class TomlKeys {
 public:
     TomlKeys(const std::string& file, std::string fix) : file_("'" + file + "'"), fix_(std::move(fix)) {}
-    // Those that were there.
+    // Returns the names of the keys present.
     [[nodiscard]] std::vector<std::string> read(std::string_view text, std::span<const TomlKey> keys) const;
     [[noreturn]] void fail(const std::string& where, const std::string& why) const;
 
@@ -36,7 +36,7 @@ private:
     std::string file_, fix_;
 };
 
-// A small file as it is. Fails by StartupError: it is not there, or larger than a megabyte.
+// Returns the text of a small file. Throws StartupError if it is missing or larger than a megabyte.
 [[nodiscard]] std::string read_typed_file(const std::filesystem::path& path, const std::string& fix);
 
 }  // namespace tact

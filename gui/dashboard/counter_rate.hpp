@@ -1,4 +1,4 @@
-// How fast a counter of another process rises, over about the last second; what falls begins anew.
+// Rate of another process's counter over about the last second; a falling counter restarts the measurement.
 #pragma once
 
 #include <algorithm>

@@ -1,4 +1,5 @@
-// The dashboard: what the panels of every system show (plain data that the window fills) and what a person asked for.
+// Data of the dashboard: the state that the panels of every system show, filled by the window, and the user's
+// requests.
 //
 // Thread   frame thread, inside an ImGui frame.
 #pragma once
@@ -27,18 +28,18 @@
 
 namespace tact {
 
-// What a person clicked; the application turns it into a command of the controller.
+// A request of the user; the application turns it into a command to the controller.
 struct Request {
     CommandKind kind = CommandKind::none;
     double value = 0.0;
     std::string text;
     std::uint32_t body = 0;  // id
-    double second = 0.0;     // another number, where a command has one
+    double second = 0.0;     // second value, if the command has one
 };
 
 struct SceneState {
     bool loaded = false;
-    std::string status;  // "loading ...", or why there is none
+    std::string status;  // "loading ...", or why no scene is loaded
     std::string title, file;
     double contour = 0.0, contour_sigma = 0.0, map_sigma = 0.0, resolution_m = 0.0;
     std::uint32_t vertices_max = 0;
@@ -46,14 +47,14 @@ struct SceneState {
     std::size_t bodies = 0, atoms = 0;
     std::array<std::uint32_t, 3> voxels{};  // of a map, or of bone
     double voxel_m = 0.0;                   // edge, of bone
-    std::string warning;                    // the controller runs another scene, ...
+    std::string warning;                    // for example: the controller runs another scene
 };
 
 struct EventLine {
     std::int64_t taken_at_ns = 0;
     std::uint16_t code = 0;
-    std::uint64_t count = 1;  // how often in a row
-    std::string text;         // of the newest of them
+    std::uint64_t count = 1;  // in a row
+    std::string text;         // of the newest one
     Grade grade = Grade::unknown;
 };
 
@@ -63,7 +64,7 @@ struct History {
     std::array<PlotSeries, kPathsMax> level;
     KnobChanges knobs;
     double now_s = 0.0;
-    std::int64_t first_ns = 0;  // the monotonic clock where now_s is 0
+    std::int64_t first_ns = 0;  // monotonic clock at now_s = 0
     [[nodiscard]] double at_s(std::int64_t ns) const { return 1e-9 * static_cast<double>(ns - first_ns); }
 };
 
@@ -77,14 +78,14 @@ struct DashboardState {
     bool have_devices = false, have_tracker = false;
     DevicesTopic devices{};
     TrackerTopic tracker{};
-    std::uint32_t recorders = 0, flights = 0;           // that record this run
-    std::array<CounterRate, kDeviceHands> device_rate;  // samples a second
+    std::uint32_t recorders = 0, flights = 0;           // recorders of this run
+    std::array<CounterRate, kDeviceHands> device_rate;  // samples per second
     CounterRate tracker_rate;
     LatenessWindow lateness;
     LoadTopic load{};
-    FrameMetrics frames{};  // twice a second
+    FrameMetrics frames{};  // updated twice a second
     std::uint64_t refused_records = 0;
-    std::string command_text;  // what became of the last command
+    std::string command_text;  // result of the last command
     Grade command_grade = Grade::unknown;
     SceneState scene;
     History history;
@@ -100,10 +101,9 @@ struct DashboardState {
     double second_force_n = 0.0;
     double arrow_a_per_n = 0.0;
     std::string renderer;
-    std::string
-        stage;  // of a stereo picture: how it is shown and what becomes of the head; empty: there is none
+    std::string stage;  // of a stereo display: mode and head tracking; empty: none
     bool head_lost = false;
-    // What a person chose.
+    // The user's choices.
     SceneToggles toggles;
     int span_choice = 0;      // of the plots
     int strip = 0;            // 0: plots, 1: traces

@@ -1,4 +1,4 @@
-// Events: what happened, newest first, with its age.
+// Events panel: newest first, with their age.
 #include "gui/dashboard/panels.hpp"
 #include "gui/dashboard/widgets.hpp"
 

@@ -1,4 +1,4 @@
-// What a frame takes, pass by pass, over the 3D view: a table of ImGui's own lists, on a ground of its own.
+// Frame times per pass in a table over the 3D view, drawn with ImGui draw lists on its own background.
 #include <algorithm>
 
 #include "gui/dashboard/panels.hpp"
@@ -56,7 +56,7 @@ void draw_frame_times(const Theme& theme, const FrameMetrics& f, const PixelRect
            false);
     t.y += line;
     t.cell(0.0F, colour::kText,
-           format("all: p50 %s   p99 %s   most %s ms", ms(f.run_p50_s).c_str(), ms(f.run_p99_s).c_str(),
+           format("all: p50 %s   p99 %s   max %s ms", ms(f.run_p50_s).c_str(), ms(f.run_p99_s).c_str(),
                   ms(f.run_most_s).c_str()),
            false);
     t.y += 1.5F * line;

@@ -1,5 +1,4 @@
-// Health: how the controller is doing, in numbers, words and colour, and the buttons that a person needs
-// first.
+// Health panel: state of the controller as numbers, text and colour, and the buttons needed first.
 #include <algorithm>
 #include <cctype>
 #include <cmath>
@@ -40,7 +39,7 @@ std::string upper(std::string word) {
     return word;
 }
 
-// The rate as a length, and the goal as a mark on it.
+// Bar of the rate, with a mark at the goal.
 void rate_bar(const Theme& theme, const HealthTopic& h, ImU32 c) {
     const ImVec2 at = ImGui::GetCursorScreenPos();
     const float width = ImGui::GetContentRegionAvail().x, height = theme.px(5.0F);
@@ -57,7 +56,7 @@ void rate_bar(const Theme& theme, const HealthTopic& h, ImU32 c) {
     ImGui::Dummy({width, height + theme.px(2.0F)});
 }
 
-// What a device says comes in place of the state's own words: it knows more.
+// A device notice replaces the state's own text, because it is more specific.
 void words(const Theme& theme, const HealthTopic& h, const StatusText& state) {
     bool message = false;
     for (const std::uint8_t code : h.device_notice) {
@@ -71,7 +70,7 @@ void words(const Theme& theme, const HealthTopic& h, const StatusText& state) {
     if (!message) text_small(theme, grade_colour(state.grade), state.text);
 }
 
-// A run that is kept says so: beside the card's title, at its right.
+// Indicates a recorded run at the right of the card's title.
 void recording(const Theme& theme, const DashboardState& state) {
     const bool whole = state.recorders > 0;
     const std::string text = whole ? "recording" : "flight recorder on";
@@ -86,7 +85,7 @@ void recording(const Theme& theme, const DashboardState& state) {
     ImGui::NewLine();
 }
 
-// What is read first: what the controller does and why, and its force rate against the goal.
+// Top of the card: the state with its reason, and the force rate against the goal.
 void hero(const Theme& theme, const DashboardState& state) {
     const HealthTopic& h = state.health;
     const auto run_state = static_cast<RunState>(h.state);
@@ -94,7 +93,7 @@ void hero(const Theme& theme, const DashboardState& state) {
     const double silent_s = 1e-9 * static_cast<double>(state.now_ns - h.taken_at_ns);
     badge(theme, upper(run_state_text(run_state)), grade_colour(v.grade), theme.large);
     ImGui::SameLine();
-    ImGui::BeginGroup();  // beside it, as many lines as it takes
+    ImGui::BeginGroup();  // beside it, as many lines as needed
     if (silent_s > 1.0) badge(theme, format("silent for %.0f s", silent_s), colour::kBad);
     words(theme, h, v);
     ImGui::EndGroup();
@@ -126,19 +125,20 @@ void timing(const Theme& theme, const DashboardState& state) {
     row(theme, "Lateness p99", duration_text(1e-9 * static_cast<double>(h.lateness_p99_ns)),
         lateness_status(h.lateness_p99_ns, h.period_ns));
     row(theme, "Overruns", grouped(h.overruns), overrun_status(h, state.now_ns));
+    row(theme, "Deadlines", grouped(h.deadline_misses) + " missed", deadline_status(h, state.now_ns));
 }
 
-// A loop without a period is never late. What tells how well it does, beside its rate, is how much of each
-// step's work it still does anew.
+// A loop without a period is never late. Besides its rate, the recomputed fraction of each step's work shows its
+// performance.
 void free_running(const Theme& theme, const HealthTopic& h) {
     row(theme, "Recomputed", format("%.0f %%", 100.0 * static_cast<double>(h.recomputed_fraction_mean)),
         recomputed_status(h.recomputed_fraction_mean));
-    row(theme, "least", format("%.0f %%", 100.0 * static_cast<double>(h.recomputed_fraction_least)),
+    row(theme, "minimum", format("%.0f %%", 100.0 * static_cast<double>(h.recomputed_fraction_least)),
         "in the last 0.1 s");
     row(theme, "Idle", format("%.0f %%", 100.0 * static_cast<double>(h.rested)), "free running");
 }
 
-// How long the loop is from the encoders to the motors, and what that allows.
+// Loop delay from encoders to motors, and the stiffness that it allows.
 void delay(const Theme& theme, const HealthTopic& h) {
     if (h.delay_p99_ns <= 0) return;
     row(theme, "Loop delay", duration_text(1e-9 * static_cast<double>(h.delay_p99_ns)),
@@ -174,7 +174,8 @@ void law_and_goal(const Theme& theme, DashboardState& state) {
 }  // namespace
 
 void draw_health(const Theme& theme, DashboardState& state, const PixelRect& card) {
-    begin_card(theme, "Controller", card, true);  // two hands with much to say are higher than it
+    begin_card(theme, "Controller", card,
+               true);  // scrolls: two hands with long messages are higher than the card
     const HealthTopic& h = state.health;
     const bool known = state.have_health;
     if (state.attached && state.recorders + state.flights > 0) {
@@ -182,7 +183,7 @@ void draw_health(const Theme& theme, DashboardState& state, const PixelRect& car
         recording(theme, state);
     }
     if (!state.attached) {
-        badge(theme, known ? "GONE" : "WAITING", colour::kWatch, theme.large);
+        badge(theme, known ? "ENDED" : "WAITING", colour::kWatch, theme.large);
         ImGui::PushTextWrapPos(0.0F);
         text_coloured(colour::kWatch, state.link_text);
         ImGui::PopTextWrapPos();
@@ -191,7 +192,7 @@ void draw_health(const Theme& theme, DashboardState& state, const PixelRect& car
         text_coloured(colour::kWatch, "attached; no health data yet");
     }
     if (known && state.attached) hero(theme, state);
-    // Under what is read first: a device with much to say must not push them out.
+    // Below the top part, so that long device messages do not push the buttons out of the card.
     buttons(theme, state);
     if (!state.command_text.empty()) text_small(theme, grade_colour(state.command_grade), state.command_text);
     if (known && state.attached) {
@@ -205,7 +206,7 @@ void draw_health(const Theme& theme, DashboardState& state, const PixelRect& car
         StatusText picture = display_status(
             state.load.fps, state.have_levels ? static_cast<double>(state.levels.display_goal_hz) : 0.0);
         if (state.frames.late > 0) picture.text += ", " + grouped(state.frames.late) + " late";
-        row(theme, "Picture", format("%.0f /s", state.load.fps), picture);
+        row(theme, "Display", format("%.0f /s", state.load.fps), picture);
         const StatusText memory = memory_status(h);
         if (memory.grade != Grade::good) row(theme, "Memory", "unclean", memory);
         law_and_goal(theme, state);

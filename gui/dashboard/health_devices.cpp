@@ -1,4 +1,4 @@
-// Devices, head tracker and motors, one row each: what there is, how fast and how old it comes, and what was wrong.
+// One row each for devices, head tracker and motors: presence, rate, age and errors.
 #include <algorithm>
 
 #include "gui/dashboard/panels.hpp"
@@ -8,7 +8,7 @@
 namespace tact {
 namespace {
 
-// Under a row's value.
+// Text below a row's value.
 void below(const Theme& theme, const std::string& text) {
     ImGui::SetCursorPosX(theme.px(100.0F));
     text_small(theme, colour::kDim, text);
@@ -19,7 +19,7 @@ std::string a_second(const CounterRate& rate) {
 }
 
 std::string aged(const StatusText& status, std::int64_t age_ns) {
-    if (age_ns < 1000) return status.text;  // as an emulated device's: read in its own cycle
+    if (age_ns < 1000) return status.text;  // emulated: read in the same cycle
     return status.text + ", " + duration_text(1e-9 * static_cast<double>(age_ns)) + " old";
 }
 
@@ -32,7 +32,7 @@ void device_row(const Theme& theme, const DashboardState& state, std::size_t han
     if (!bus.clean()) below(theme, bus_text(bus));
 }
 
-// Of two hands the one that is nearer to its limit.
+// Shows the hand that is closer to its limit.
 void motor_row(const Theme& theme, const DashboardState& state) {
     const DeviceHand* shown = &state.devices.hand[0];
     for (const DeviceHand& d : state.devices.hand)

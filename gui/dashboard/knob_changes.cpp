@@ -30,7 +30,7 @@ void KnobChanges::add(double t_s, std::size_t path, double to, LevelReason reaso
     level_[path] = level;
     at_s_[path] = t_s;
     known_[path] = true;
-    // Of the newest few: paths that change together come one after the other.
+    // Searches the newest few entries: paths that change together are adjacent.
     for (std::size_t back = 0; known && back < std::min(kept_, kPathsMax); ++back) {
         KnobChange& c = ring_[(next_ + kKept - 1 - back) % kKept];
         if (c.path != path) continue;

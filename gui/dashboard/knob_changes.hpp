@@ -1,6 +1,7 @@
-// Every change of a knob with its reason, in bounded memory: what the events said, changes in a row for one reason as one.
+// History of level changes with their reasons, from events, in bounded memory; consecutive changes for one reason are
+// one entry.
 //
-// Memory   kKept entries, taken once; what is forgotten is counted.  Thread  one.
+// Memory   kKept entries, allocated once; dropped entries are counted.  Thread  one.
 #pragma once
 
 #include <array>
@@ -15,8 +16,8 @@
 namespace tact {
 
 struct KnobChange {
-    double begin_s = 0.0, end_s = 0.0;  // on the plots' clock; below 0: before this window was there
-    float from = 0.0F, to = 0.0F;       // from: NaN where nobody saw it
+    double begin_s = 0.0, end_s = 0.0;  // on the plots' clock; below 0: before this window started
+    float from = 0.0F, to = 0.0F;       // from: NaN if unknown
     std::uint32_t steps = 0;
     std::uint8_t path = 0;  // index in LevelsTopic::path
     LevelReason reason = LevelReason::start;
@@ -25,20 +26,20 @@ struct KnobChange {
 class KnobChanges {
 public:
     static constexpr std::size_t kKept = 4096;
-    static constexpr double kOne_s = 1.0;  // changes nearer than that, same way and reason, are one
+    static constexpr double kOne_s = 1.0;  // closer changes in one direction for one reason are one entry
 
     KnobChanges();
-    // A path or a level that cannot be is left out; so is a time before the newest of its path.
+    // Ignores an invalid path or level, and a time before the newest change of the path.
     void add(double t_s, std::size_t path, double to, LevelReason reason);
     void clear();
 
     [[nodiscard]] std::size_t size() const { return kept_; }
     [[nodiscard]] std::uint64_t forgotten() const { return forgotten_; }
-    // From the newest, 0, back.
+    // back = 0 is the newest.
     [[nodiscard]] const KnobChange& at(std::size_t back) const;
-    // The newest of a path; null: none.
+    // The newest change of a path; null: none.
     [[nodiscard]] const KnobChange* newest(std::size_t path) const;
-    // The one that set what a path had at t_s, or null: none is kept.
+    // The change that set the level in force at t_s; null: not kept.
     [[nodiscard]] const KnobChange* in_force(std::size_t path, double t_s) const;
     [[nodiscard]] std::size_t memory_bytes() const { return ring_.capacity() * sizeof(KnobChange); }
 

@@ -1,11 +1,11 @@
-// Knobs: rate, lateness, the governor's levels with the reason of each change, and the picture's load over time.
+// Plots over time: force rate, lateness, the governor's levels with the reason of each change, and frame load.
 #include <algorithm>
 #include <array>
 
 #include "gui/dashboard/panels.hpp"
 #include "gui/dashboard/plot.hpp"
 #include "gui/dashboard/widgets.hpp"
-#include "ipc/topics/text.hpp"
+#include "ipc/topics/level_text.hpp"
 
 namespace tact {
 namespace {
@@ -21,7 +21,7 @@ void span_choice(const Theme& theme, DashboardState& state) {
     ImGui::PopFont();
 }
 
-// The part behind the dot tells paths apart: "mesh", "force".
+// The part after the dot distinguishes the paths: "mesh", "force".
 std::string path_name(const PathLevel& p) {
     const std::string whole(p.path, std::find(p.path, p.path + kPathNameMax, '\0'));
     const std::size_t dot = whole.find('.');
@@ -50,11 +50,11 @@ void levels(const Theme& theme, const DashboardState& state, PlotSpec spec, ImVe
         const PathLevel& p = state.levels.path[i];
         name[i] = path_name(p);
         level[i] = {&h.level[i], kPathColours[i], name[i].c_str()};
-        words[i] = name[i] + format(" %.2f ", static_cast<double>(p.level)) +
-                   level_reason_text(static_cast<LevelReason>(p.reason));
+        words[i] =
+            name[i] + format(" %.2f ", static_cast<double>(p.level)) + level_status_text(p, state.now_ns);
     }
     spec.title = "Detail levels";
-    spec.unit = "of 1";
+    spec.unit = "0-1";
     spec.lines = std::span(level).first(paths);
     spec.text = std::span<const std::string>(words).first(paths);
     spec.fixed_top = 1.0;
@@ -91,7 +91,7 @@ void draw_plots(const Theme& theme, DashboardState& state, const PixelRect& card
     const History& h = state.history;
     const ImVec2 inside = ImGui::GetContentRegionAvail();
     const float gap = theme.px(12.0F);
-    // A wide window has the lateness both ways.
+    // A wide window shows both lateness views.
     const bool wide = inside.x > theme.px(900.0F);
     if (!wide) state.lateness_choice = std::clamp(state.lateness_choice, 0, 2);
     if (wide && state.lateness_choice == 2) state.lateness_choice = 0;
@@ -106,7 +106,7 @@ void draw_plots(const Theme& theme, DashboardState& state, const PixelRect& card
            state.lateness_choice);
     ImGui::PopFont();
     const ImVec2 room = ImGui::GetContentRegionAvail();
-    // A narrow one leaves out what the controller's card says as well.
+    // A narrow window omits values that the controller card shows.
     const bool narrow = inside.x < theme.px(500.0F);
     const float shares = narrow ? 2.8F : wide ? 5.8F : 4.8F, gaps = narrow ? 1.0F : wide ? 4.0F : 3.0F;
     const float unit = (room.x - gaps * gap) / shares;
@@ -141,7 +141,7 @@ void draw_plots(const Theme& theme, DashboardState& state, const PixelRect& card
     ImGui::SameLine(0.0F, gap);
 
     const PlotLine frame[] = {{&h.frame_s, colour::kAccent, "frame"}, {&h.busy_s, colour::kPink, "busy"}};
-    spec.title = "Picture";
+    spec.title = "Display";
     spec.unit = "ms";
     spec.scale = 1e3;
     spec.lines = frame;

@@ -1,5 +1,5 @@
-// How late cycles began, as a histogram over logarithmic scales both ways: one late cycle in an hour is seen beside
-// three million early ones. Colours say what it means for the period; the four figures are said in words as well.
+// Histogram of cycle lateness, logarithmic on both axes: one late cycle in an hour is visible beside three million
+// early ones. Colours relate it to the period; four values are also given as text.
 #include <algorithm>
 #include <cmath>
 
@@ -12,14 +12,14 @@ namespace {
 struct LatenessFrame {
     ImVec2 low, high;  // corners in pixels; low: left and above
     double last_ns;    // right end
-    double most;       // of a bar
+    double most;       // highest bar
 
     [[nodiscard]] float x(double ns) const {
         const double u = std::log(std::max(ns, LatenessBars::kLeastNs) / LatenessBars::kLeastNs) /
                          std::log(last_ns / LatenessBars::kLeastNs);
         return low.x + static_cast<float>(std::clamp(u, 0.0, 1.0)) * (high.x - low.x);
     }
-    // A single one is a tenth of the height.
+    // A single cycle has a tenth of the height.
     [[nodiscard]] float y(std::uint64_t count) const {
         if (count == 0) return high.y;
         const double u = 0.1 + 0.9 * std::log(static_cast<double>(count)) / std::log(std::max(most, 2.0));
@@ -64,14 +64,14 @@ void draw_lateness(const Theme& theme, const DashboardState& state, ImVec2 size,
         return;
     }
 
-    // What they mean in words, and the figures in two lines of two.
+    // Status text, and the four values in two rows of two.
     const StatusText status = lateness_status(f.p99_ns, period_ns);
     const float words_at = size.x - width_of(status.text);
     if (words_at > width_of("Lateness last 60 s "))
         label({at.x + words_at, at.y}, grade_colour(status.grade), status.text);
     const std::pair<const char*, std::int64_t> metrics[] = {
         {"p50", f.p50_ns}, {"p99", f.p99_ns}, {"p99.9", f.p999_ns}, {"max", f.max_ns}};
-    // In two columns where there is room for them.
+    // In two columns if they fit.
     const bool one = 0.5F * size.x < width_of("p99.9  99.9 µs ");
     const std::size_t columns = one ? 1 : 2;
     const float rows = one ? 4.0F : 2.0F;

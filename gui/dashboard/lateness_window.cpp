@@ -48,13 +48,10 @@ void LatenessWindow::add(const LatenessTopic& topic) {
     whole_metrics_ = lateness_metrics(r.counts, r.total, r.max_ns);
     if (kept_ == 1) return;
     const Record& first = record(kept_ - 1);
-    std::uint64_t last_ns = 0;
-    for (std::size_t i = 0; i < recent_.size(); ++i) {
-        recent_[i] = r.counts[i] - first.counts[i];
-        if (recent_[i] > 0) last_ns = DurationHistogram::upper_ns(i);
-    }
+    for (std::size_t i = 0; i < recent_.size(); ++i) recent_[i] = r.counts[i] - first.counts[i];
     recent_s_ = 1e-9 * static_cast<double>(r.taken_at_ns - first.taken_at_ns);
-    const std::uint64_t most = r.max_ns > first.max_ns ? r.max_ns : std::min(last_ns, r.max_ns);
+    const std::uint64_t most =
+        r.max_ns > first.max_ns ? r.max_ns : DurationHistogram::longest_ns(recent_.data(), r.max_ns);
     recent_metrics_ = lateness_metrics(recent_, r.total - first.total, most);
 }
 
@@ -63,7 +60,7 @@ double LatenessBars::edge_ns(std::size_t bar) {
 }
 
 LatenessBars::LatenessBars(const LatenessWindow::Counts& counts) {
-    // Four of the 16 buckets of an octave make a bar: their edges are linear within it, near enough to the bar's.
+    // Four of an octave's 16 buckets make a bar. Bucket edges are linear within an octave, close enough to the bar's.
     for (std::size_t i = 0; i < counts.size(); ++i) {
         if (counts[i] == 0) continue;
         const double ns = static_cast<double>(DurationHistogram::upper_ns(i));

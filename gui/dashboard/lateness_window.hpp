@@ -1,8 +1,9 @@
-// Lateness of the whole run and of its last minute, out of the counts that the controller publishes once a second.
+// Lateness of the whole run and of its last minute, from the counts that the controller publishes once a second.
 //
-// The counts and their buckets are the controller's (DurationHistogram); the last minute is the newest record less the
-// one of a minute before, so that both are the same measurement.
-// Memory   kKept records, taken once.  Thread  one; plain arithmetic.
+// Counts and buckets are the controller's (DurationHistogram). The last minute is the newest record minus the record
+// of
+// a minute earlier, so both are the same measurement.
+// Memory   kKept records, allocated once.  Thread  one; plain arithmetic.
 #pragma once
 
 #include <array>
@@ -22,19 +23,19 @@ struct LatenessMetrics {
 class LatenessWindow {
 public:
     using Counts = std::array<std::uint64_t, DurationHistogram::kBuckets>;
-    static constexpr std::size_t kKept = 61;  // a minute, and the one it began with
+    static constexpr std::size_t kKept = 61;  // a minute, and the record before it
 
     LatenessWindow();
-    // Of the same run as those before, or of another one: its counts fall, and everything begins anew.
+    // Adds a record. If the counts fall, another run has begun and the history is cleared.
     void add(const LatenessTopic& record);
     void clear();
 
     [[nodiscard]] bool empty() const { return kept_ == 0; }
     [[nodiscard]] const Counts& whole() const { return at(0); }
     [[nodiscard]] const Counts& recent() const { return recent_; }
-    [[nodiscard]] double recent_s() const { return recent_s_; }  // how long that is
+    [[nodiscard]] double recent_s() const { return recent_s_; }  // duration of the recent window
     [[nodiscard]] const LatenessMetrics& whole_metrics() const { return whole_metrics_; }
-    // The most late of them to a bucket's upper edge, 6 %, where it is not the most late of the whole run.
+    // max_ns is rounded to a bucket's upper edge (6 %) unless it is the maximum of the whole run.
     [[nodiscard]] const LatenessMetrics& recent_metrics() const { return recent_metrics_; }
     [[nodiscard]] std::size_t memory_bytes() const { return records_.capacity() * sizeof(Record); }
 
@@ -54,17 +55,17 @@ private:
     LatenessMetrics whole_metrics_, recent_metrics_;
 };
 
-// Counts of buckets gathered in bars of a quarter of an octave each from the first to beyond the last edge.
+// Bucket counts gathered into bars of a quarter octave, from the first to beyond the last edge.
 struct LatenessBars {
     static constexpr std::size_t kBars = 72;  // 1 us to 0.26 s
     static constexpr std::size_t kPerOctave = 4;
-    static constexpr double kLeastNs = 1024.0;  // what is less late counts in the first
+    static constexpr double kLeastNs = 1024.0;  // smaller values count in the first bar
     std::array<std::uint64_t, kBars> count{};
-    std::uint64_t most = 0;  // of a bar
+    std::uint64_t most = 0;  // highest bar
     std::size_t last = 0;    // the last bar that is not empty
 
     explicit LatenessBars(const LatenessWindow::Counts& counts);
-    [[nodiscard]] static double edge_ns(std::size_t bar);  // its lower one
+    [[nodiscard]] static double edge_ns(std::size_t bar);  // lower edge
 };
 
 }  // namespace tact

@@ -1,4 +1,4 @@
-// Text over the 3D view, with a shadow so that it is read on any ground.
+// Text over the 3D view with a shadow, readable on any background.
 //
 // Thread   frame thread, inside an ImGui frame.
 #pragma once

@@ -1,4 +1,4 @@
-// The panels that every system has, one by one; gui/window/layout.cpp places them.
+// Panels common to all systems; gui/window/layout.cpp places them.
 #pragma once
 
 #include "gui/dashboard/dashboard_state.hpp"
@@ -7,18 +7,18 @@
 namespace tact {
 
 void draw_health(const Theme& theme, DashboardState& state, const PixelRect& card);
-// Inside the controller's card: devices, tracker, motors.
+// Inside the controller card: devices, tracker, motors.
 void draw_device_rows(const Theme& theme, const DashboardState& state);
-// A plot of how late cycles began, in a box of that size.
+// Histogram of cycle lateness in a box of this size.
 void draw_lateness(const Theme& theme, const DashboardState& state, ImVec2 size, bool whole_run);
 void draw_plots(const Theme& theme, DashboardState& state, const PixelRect& card);
-// In the plots' place: every servo cycle.
+// In place of the plots: every servo cycle.
 void draw_traces(const Theme& theme, DashboardState& state);
 void draw_trace_lanes(const Theme& theme, DashboardState& state, ImVec2 size);
 void draw_events(const Theme& theme, const DashboardState& state, const PixelRect& card);
-// What a frame takes in a line; empty: not known yet.
+// Frame times as one line; empty while unknown.
 [[nodiscard]] std::string frame_line(const FrameMetrics& metrics);
-// And in a table over the 3D view.
+// Frame times as a table over the 3D view.
 void draw_frame_times(const Theme& theme, const FrameMetrics& metrics, const PixelRect& view);
 
 }  // namespace tact

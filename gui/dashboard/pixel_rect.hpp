@@ -4,6 +4,6 @@
 namespace tact {
 
 struct PixelRect {
-    float x = 0, y = 0, width = 1, height = 1;  // y from above
+    float x = 0, y = 0, width = 1, height = 1;  // y points down
 };
 }  // namespace tact

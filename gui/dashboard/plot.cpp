@@ -47,7 +47,7 @@ void draw_line(ImDrawList* draw, const Frame& f, const std::vector<PlotBin>& bin
                float thick, bool steps) {
     static thread_local std::vector<ImVec2> points;
     points.clear();
-    // Per pixel column the least and the greatest; a band where they differ, so that no spike is lost.
+    // Minimum and maximum per pixel column, and a band between them, so that no spike is lost.
     const ImU32 band = (c & 0x00FFFFFFU) | (0x60U << 24U);
     std::size_t i = 0;
     while (i < bins.size()) {
@@ -161,7 +161,7 @@ PlotHover draw_plot(const Theme& theme, const PlotSpec& spec, ImVec2 size) {
             begin_s,
             spec.now_s};
 
-    // Title and unit, then the legend with the newest values; nothing reaches into the neighbour.
+    // Title and unit, then the legend with the newest values; clipped to this plot.
     draw->PushClipRect(at, {at.x + size.x, at.y + size.y}, true);
     const std::string title = std::string(spec.title) + " ";
     draw->AddText(theme.small, line, at, colour::kText, title.c_str());

@@ -1,4 +1,4 @@
-// A plot over time, drawn with ImGui's draw lists: axes with units, a band from least to greatest per bin.
+// A plot over time, drawn with ImGui draw lists: axes with units, and a min-max band per bin.
 #pragma once
 
 #include <imgui.h>
@@ -30,24 +30,24 @@ struct PlotSpec {
     double fixed_top = 0.0;  // > 0: exactly this far
     double goal = 0.0;       // > 0: a dashed line (shown unit)
     bool steps = false;      // a value holds until the next one
-    // In place of the legend's own words, a line for each of `lines`; cut off where there is no room.
+    // Replaces the legend's values, one line for each of `lines`; clipped if too long.
     std::span<const std::string> text = {};
 };
 
-// Where the mouse is in it, for a caller that has words about that moment.
+// Mouse position in the plot, for a caller that shows a tooltip about that time.
 struct PlotHover {
     bool inside = false;
     double t_s = 0.0;
 };
 PlotHover draw_plot(const Theme& theme, const PlotSpec& spec, ImVec2 size);
 
-// Borders for an axis that shows [low, high], and its marks; tested apart from drawing.
+// Range of an axis that shows [low, high], and its tick marks; tested apart from drawing.
 struct Axis {
     double low = 0.0, high = 1.0;
     std::vector<double> mark;
 };
 [[nodiscard]] Axis linear_axis(double high, int marks_max);
-// Where 0 is not the end: whole steps around [low, high], and around the middle where both are the same.
+// For an axis that need not end at 0: whole steps around [low, high], or around the middle if both are equal.
 [[nodiscard]] Axis range_axis(double low, double high, int marks_max);
 [[nodiscard]] Axis log_axis(double low, double high);
 

@@ -1,9 +1,8 @@
-// One quantity over hours in bounded memory: rings of bins that keep the least and the greatest value.
+// One quantity over hours in bounded memory: rings of bins that keep minimum and maximum.
 //
-// Levels   bins of 50 ms, and four times as wide at each further level; 512 bins a level. A plot takes the
-//          finest level that covers its window, so that a spike of one sample is still seen after twelve
-//          hours.
-// Memory   kLevels * kBins * 16 bytes, taken once.  Thread  one; plain arithmetic.
+// Levels   bins of 50 ms, four times as wide at each further level; 512 bins per level. A plot uses the finest level
+//          that covers its window, so a spike of one sample stays visible after twelve hours.
+// Memory   kLevels * kBins * 16 bytes, allocated once.  Thread  one; plain arithmetic.
 #pragma once
 
 #include <cstddef>
@@ -26,11 +25,11 @@ public:
     static constexpr std::size_t kFactor = 4;
 
     PlotSeries();
-    // t_s must not fall; a value that is not finite, or a time that falls, is left out.
+    // t_s must not fall; a falling time and a non-finite value are ignored.
     void add(double t_s, double value);
     void clear();
 
-    // Bins that reach into [begin_s, end_s], oldest first, at most kBins of them.
+    // Bins that overlap [begin_s, end_s], oldest first, at most kBins of them.
     void window(double begin_s, double end_s, std::vector<PlotBin>& out) const;
     [[nodiscard]] bool empty() const { return last_t_s_ < 0.0; }
     [[nodiscard]] float last() const { return last_; }
@@ -38,7 +37,7 @@ public:
 
 private:
     struct Bin {
-        std::int64_t number = -1;  // which bin of its level since time 0; -1: empty
+        std::int64_t number = -1;  // of the bin in its level since time 0; -1: empty
         float low = 0.0F, high = 0.0F;
     };
     [[nodiscard]] static double width_s(std::size_t level);

@@ -1,4 +1,4 @@
-// What of a scene is shown, and how: a person's choice.
+// The user's choice of visible scene content and its style.
 #pragma once
 
 namespace tact {
@@ -7,9 +7,9 @@ struct SceneToggles {
     bool surface = true, backbone = true, codebook = true, graph = true, force = true, box = false;
     int style = 0;  // glass, solid, wire
     bool depth_cue = true;
-    bool smooth_edges = true;  // begins as the renderer allows; not kept
+    bool smooth_edges = true;  // initially as the renderer allows; not saved
     bool frame_times = false;  // the table of passes
-    bool detail = false;       // the length of edges as colour, where the scene has a forest
+    bool detail = false;       // edge lengths as colour, if the scene has a forest
     int molecule = 1;          // trace, tube, sticks, spheres
     int colouring = 0;         // by chain, element, body
 };

@@ -76,8 +76,21 @@ StatusText overrun_status(const HealthTopic& h, std::int64_t now_ns) {
     std::snprintf(text, sizeof text, "%.2g %% of the cycles", 100.0 * part);
     std::string words = text;
     const double ago_s = 1e-9 * static_cast<double>(now_ns - h.overrun_at_ns);
-    if (h.overrun_at_ns > 0 && ago_s >= 0.0) words = "the last " + ago_text(ago_s);
+    if (h.overrun_at_ns > 0 && ago_s >= 0.0) words = "last: " + ago_text(ago_s);
     return {part < 1e-3 ? Grade::watch : Grade::bad, words};
+}
+
+StatusText deadline_status(const HealthTopic& h, std::int64_t now_ns) {
+    if (h.deadline_misses == 0) return {Grade::good, "all met"};
+    if (h.deadline_miss_share > 0.0F) {
+        char text[64];
+        std::snprintf(text, sizeof text, "%.2g %% in the last second",
+                      100.0 * static_cast<double>(h.deadline_miss_share));
+        return {h.deadline_miss_share < 1e-3F ? Grade::watch : Grade::bad, text};
+    }
+    const double ago_s = 1e-9 * static_cast<double>(now_ns - h.deadline_missed_at_ns);
+    return {Grade::watch,
+            h.deadline_missed_at_ns > 0 && ago_s >= 0.0 ? "last: " + ago_text(ago_s) : "not lately"};
 }
 
 StatusText state_status(RunState state, RunReason reason) {
@@ -111,7 +124,7 @@ StatusText state_status(RunState state, RunReason reason) {
 
 namespace {
 
-// What a person does before Reset; it reads on with "Then press Reset."
+// The user's action before Reset; followed by "Then press Reset."
 const char* fix_of(RunReason reason) {
     switch (reason) {
         case RunReason::emergency_stop:
@@ -139,7 +152,7 @@ const char* fix_of(RunReason reason) {
         case RunReason::gui_silent:
             return "The display froze. Reduce the rendering detail.";
         default:
-            return "The event list has the cause.";
+            return "See the events for the cause.";
     }
 }
 
@@ -193,7 +206,7 @@ StatusText force_status(double force_n, double excess_s) {
     return {Grade::good, excess_s >= 0.05 ? text : "always below 2 N"};
 }
 
-// The numbers are those of DeviceState in the device interface, which this process does not see.
+// Numbers of DeviceState in the device interface, which this process does not include.
 const char* device_state_text(std::uint8_t device_state) noexcept {
     static constexpr const char* kTexts[] = {"closed", "ready", "powered", "watchdog tripped", "fault"};
     return device_state < 5 ? kTexts[device_state] : "unknown";
@@ -248,7 +261,7 @@ StatusText motor_status(const DeviceHand& device) {
     return {g, text};
 }
 
-// The numbers are those of TrackerState and TrackerLink, which this process does not see.
+// Numbers of TrackerState and TrackerLink, which this process does not include.
 StatusText tracker_status(const TrackerTopic& t) {
     constexpr std::uint8_t kLinkUp = 1, kFrozen = 1, kFresh = 2;
     if (t.link != kLinkUp) return {Grade::bad, head_link_text(t.link)};

@@ -1,6 +1,6 @@
-// Good, worth a look, or bad, and why in words: what the panels show in colour is always said as well.
+// Status grades (good, watch, bad) with a reason in text, so that no panel relies on colour alone.
 //
-// Pure functions of what the controller published, so that tests can state every border.
+// Pure functions of what the controller published, so that tests can check every threshold.
 #pragma once
 
 #include <cstdint>
@@ -23,17 +23,18 @@ struct StatusText {
 [[nodiscard]] std::string ago_text(double seconds);          // "12 s ago", "3 min ago"
 [[nodiscard]] const char* grade_text(Grade grade) noexcept;  // "good", "watch", "bad", "unknown"
 
-// 5 % below the goal is worth a look, 15 % is bad.
+// Watch from 5 % below the goal, bad from 15 %.
 [[nodiscard]] StatusText rate_status(double rate_hz, double goal_hz);
-// Against the period: a tenth late at the 99th percentile is worth a look, half is bad. Free running: 1 ms
-// counts.
+// Relative to the period: watch from a tenth at the 99th percentile, bad from half. Free running: relative to 1 ms.
 [[nodiscard]] StatusText lateness_status(std::int64_t p99_ns, std::int64_t period_ns);
-// Of a step's work, what is done anew on average: below 95 % is worth a look, below half is bad.
+// Mean recomputed fraction of a step's work: watch below 95 %, bad below half.
 [[nodiscard]] StatusText recomputed_status(float mean);
-// now_ns: to tell how long the last one is ago. One in a thousand cycles is bad.
+// now_ns gives the age of the last overrun. Bad from one in a thousand cycles.
 [[nodiscard]] StatusText overrun_status(const HealthTopic& health, std::int64_t now_ns);
+// Of the force model's steps.
+[[nodiscard]] StatusText deadline_status(const HealthTopic& health, std::int64_t now_ns);
 [[nodiscard]] StatusText state_status(RunState state, RunReason reason);
-// What stands over the picture while something stops the force: why, and what a person is to do. No words: nothing stops it.
+// Notice over the 3D view while something stops the force: the cause and the fix. Empty texts: nothing stops it.
 struct StopNotice {
     Grade grade = Grade::unknown;
     std::string why, fix;
@@ -41,24 +42,25 @@ struct StopNotice {
 [[nodiscard]] StopNotice stop_notice(const HealthTopic& health);
 // Allocations, locks and page faults inside servo cycles: there should be none.
 [[nodiscard]] StatusText memory_status(const HealthTopic& health);
-// From a burr to a structure to keep away from: 1 mm is bad, 2 mm is worth a look, and so is being at 1 mm within a second.
+// Burr to critical structure: bad below 1 mm; watch below 2 mm, or if it will be at 1 mm within a second.
 [[nodiscard]] StatusText distance_status(double distance_m, double closing_m_s, bool turns);
-// Of the hand on a burr; above 2 N is worth a look. excess_s: how long it was so, drilling.
+// Hand force on a burr; watch above 2 N. excess_s: time above it while drilling.
 [[nodiscard]] StatusText force_status(double force_n, double excess_s);
 [[nodiscard]] const char* device_state_text(std::uint8_t device_state) noexcept;
-// What a device asks for is worth a look, what keeps it from showing force is bad.
+// Watch if a device needs attention, bad if it cannot produce force.
 [[nodiscard]] Grade notice_grade(DeviceNotice notice) noexcept;
-// What ever was wrong on it is worth a look; whether it still is, its notice says.
+// Watch if there was ever an error; the device notice shows whether it persists.
 [[nodiscard]] StatusText bus_status(const BusCounts& counts);
 [[nodiscard]] Grade device_grade(std::uint8_t device_state) noexcept;
-// A hand's device: its state, what its last read gave, what its bus counted and what it says, the worst of them.
+// The worst of a device's state, last read, bus counters and notice.
 [[nodiscard]] StatusText device_status(const DeviceHand& device, const BusCounts& bus, DeviceNotice notice);
-// From 80 % of what the motors stand for ever the force is held back, from all of it on little is left.
+// From 80 % of the motors' continuous limit the force is reduced; from 100 % little of it remains.
 [[nodiscard]] StatusText motor_status(const DeviceHand& device);
 [[nodiscard]] StatusText tracker_status(const TrackerTopic& tracker);
-// What of a tracker's frames was wrong: "missed 3, refused 1"; empty: nothing.
+// Errors in a tracker's frames: "missed 3, refused 1"; empty: none.
 [[nodiscard]] std::string tracker_counts_text(const TrackerTopic& tracker);
-// 10 % below its goal is worth a look, 40 % is bad. No goal: 20 pictures a second are what an eye takes for motion.
+// Watch from 10 % below the goal, bad from 40 %. Without a goal: 20 frames a second, the least that appears as
+// motion.
 [[nodiscard]] StatusText display_status(double fps, double goal_hz);
 
 }  // namespace tact

@@ -19,7 +19,7 @@ constexpr FontPair kFonts[] = {
     {"/usr/share/fonts/truetype/dejavu/DejaVuSans.ttf",
      "/usr/share/fonts/truetype/dejavu/DejaVuSans-Bold.ttf", 13.0F},
 };
-// Latin, Greek, dashes and dots, primes, minus and comparisons: what units and numbers need.
+// Latin, Greek, dashes, dots, primes, minus and comparisons: the glyphs of units and numbers.
 constexpr ImWchar kGlyphs[] = {0x0020, 0x00FF, 0x0370, 0x03FF, 0x2010, 0x2033,
                                0x2212, 0x2212, 0x2248, 0x2265, 0};
 

@@ -1,7 +1,7 @@
 // Colours, fonts and sizes of the dashboard.
 //
 // Scale    1 at 1280x720; grows with the window, so that the same layout stays readable on a large screen.
-// Fonts    the first of a list of Debian's fonts that exists, else ImGui's own (and the window says so once).
+// Fonts    the first existing font of a list from Debian, else ImGui's own (reported once).
 #pragma once
 
 #include <imgui.h>
@@ -24,7 +24,7 @@ inline constexpr ImU32 kGood = IM_COL32(63, 195, 128, 255);
 inline constexpr ImU32 kWatch = IM_COL32(240, 180, 60, 255);
 inline constexpr ImU32 kBad = IM_COL32(255, 107, 94, 255);
 inline constexpr ImU32 kForce = IM_COL32(255, 92, 92, 255);
-inline constexpr ImU32 kNormal = IM_COL32(120, 220, 255, 255);  // of a touched place
+inline constexpr ImU32 kNormal = IM_COL32(120, 220, 255, 255);  // of a contact point
 inline constexpr ImU32 kSecondHand = IM_COL32(178, 132, 255, 255);
 inline constexpr ImU32 kOrange = IM_COL32(230, 159, 0, 255);
 inline constexpr ImU32 kGreen = IM_COL32(0, 190, 140, 255);
@@ -44,10 +44,10 @@ struct Theme {
     [[nodiscard]] float px(float at_scale_1) const { return at_scale_1 * scale; }
 };
 
-// For a window of this size in pixels; steps of a quarter, so that fonts are rarely built anew.
-// density  of the display, 1 at 96 points an inch: what is small and dense has larger letters, as far as 1280x720 of
-//          their size still fit
-// requested   times that, by a person who sees it
+// For a window of this size in pixels; in steps of a quarter, so that fonts are rarely rebuilt.
+// density     of the display, 1 at 96 dots per inch: text grows on a dense display as long as a 1280x720 layout of
+//             that size fits
+// requested   the user's own factor
 [[nodiscard]] float theme_scale(int width_px, int height_px, float density = 1.0F, float requested = 1.0F);
 // Clears and fills ImGui's font atlas and style. The caller uploads the atlas.
 void build_theme(Theme& theme, float scale);

@@ -21,7 +21,7 @@ void write_whole_file(const std::string& path, const std::string& text) {
         std::error_code ignored;
         std::filesystem::remove(partial, ignored);
         throw StartupError("writing the traces to " + path, why,
-                           "start the window in a folder that can be written, with space left");
+                           "start the window in a writable folder with free space");
     };
     std::FILE* const opened = std::fopen(partial.c_str(), "wbe");
     if (opened == nullptr) fail(last_error());
@@ -82,7 +82,7 @@ void TraceExport::start(const TracesState& traces) {
     const std::filesystem::path folder = std::filesystem::current_path(error);
     const std::string path = (folder / ("tact-traces-" + std::to_string(moment.count()) + ".csv")).string();
     thread_ = std::thread([this, path, cycles = std::move(cycles), channels = std::move(channels)] {
-        // Of low priority, and without a word where that is not permitted.
+        // Low priority; ignored if not permitted.
         const sched_param none{};
         static_cast<void>(sched_setscheduler(0, SCHED_IDLE, &none));
         try {

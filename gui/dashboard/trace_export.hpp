@@ -1,7 +1,7 @@
-// Writes what is seen of the traces as a table, beside the frame loop.
+// Writes the visible traces as a table, in the background.
 //
-// Thread   start() and poll() on the frame thread; one of low priority formats and writes
-// File     CSV of trace_csv(); appears whole or not at all.  Fails by words
+// Thread   follow() and finish() on the frame thread; a low-priority thread formats and writes
+// File     CSV of trace_csv(); written completely or not at all.  Fails by a message in TracesState
 #pragma once
 
 #include <atomic>
@@ -20,9 +20,9 @@ public:
     TraceExport(const TraceExport&) = delete;
     TraceExport& operator=(const TraceExport&) = delete;
 
-    // Once a frame: starts what was asked for, says what became of it.
+    // Call once a frame: starts a requested export and reports its result.
     void follow(TracesState& traces);
-    // Waits for what is under way.
+    // Waits for an export in progress.
     void finish();
 
 private:

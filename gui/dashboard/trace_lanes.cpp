@@ -1,5 +1,5 @@
-// The traces themselves: one lane for each unit that is shown, all over the same time; a band from the least to the
-// greatest of each pixel's cycles, so that no spike is lost, and the cycles one by one where there are few.
+// Draws the traces: one lane per unit over a common time axis, with a min-max band per pixel column so that no spike
+// is lost, and single cycles if only few are visible.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -40,10 +40,10 @@ struct LanePen {
     ImDrawList* draw;
     const TraceScope& scope;
     const TraceStore& store;
-    float x0, x1;          // of the time
+    float x0, x1;          // of the time axis
     float y0 = 0, y1 = 0;  // of the lane
     Axis axis{};
-    std::size_t first = 0, last = 0;  // cycles in sight
+    std::size_t first = 0, last = 0;  // visible cycles
 
     [[nodiscard]] float line() const { return theme.small->FontSize; }
     [[nodiscard]] float x(std::int64_t ns) const {
@@ -106,7 +106,7 @@ void draw_channel(const LanePen& pen, TraceChannel channel, ImU32 c) {
               bottom = pen.y(scale * static_cast<double>(e.low));
         const float x = pen.x0 + static_cast<float>(i);
         const float own_top = top, own_bottom = bottom;
-        if (before) {  // joined to the pixel before
+        if (before) {  // joined to the previous pixel
             top = std::min(top, before_low);
             bottom = std::max(bottom, before_high);
         }
@@ -117,7 +117,7 @@ void draw_channel(const LanePen& pen, TraceChannel channel, ImU32 c) {
     }
 }
 
-// In sight, and around the middle where nothing moves.
+// Range of the visible values; around the middle if they are constant.
 Axis lane_axis(const LanePen& pen, const Lane& lane) {
     double low = 1e300, high = -1e300;
     for (std::size_t k = 0; k < lane.channels; ++k) {
@@ -165,7 +165,7 @@ void draw_lane(LanePen& pen, const Lane& lane, const TriggerSettings* trigger, f
             pen.draw->AddRectFilled({x, y}, {x + pen.theme.px(3.0F), y + 1.0F}, colour::kWatch);
     }
     pen.draw->PopClipRect();
-    // The words lie over the lane's head; a dark ground keeps them readable.
+    // The labels lie over the top of the lane; a dark background keeps them readable.
     float x = pen.x0 + pen.theme.px(4.0F);
     const float y = pen.y0 - 1.05F * pen.line();
     pen.label({x, y}, colour::kText, "[" + std::string(lane.unit) + "]");
@@ -208,7 +208,7 @@ void mouse(TracesState& t, float x0, float x1) {
 }
 
 void time_marks(const LanePen& pen, float below) {
-    // Round times, counted from the right end or from the trigger.
+    // Round times, relative to the right end or to the trigger.
     const double span_s = pen.scope.span_s();
     const std::int64_t zero = pen.scope.triggered_ns() != 0 ? pen.scope.triggered_ns() : pen.scope.end_ns();
     const Axis marks =
@@ -242,7 +242,7 @@ void draw_trace_lanes(const Theme& theme, DashboardState& state, ImVec2 size) {
     LanePen pen{theme, ImGui::GetWindowDrawList(), scope, scope.shown(), at.x + gutter, at.x + size.x - 1.0F};
     if (count == 0 || pen.store.empty()) {
         pen.label({at.x + gutter, at.y + 0.5F * size.y}, colour::kDim,
-                  count == 0 ? "no channel is chosen" : "no cycle was seen yet");
+                  count == 0 ? "no channel selected" : "no cycle yet");
         return;
     }
     pen.first = pen.store.find(scope.begin_ns());

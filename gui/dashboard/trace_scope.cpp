@@ -72,7 +72,7 @@ void TraceScope::set_span(double span_s) {
 void TraceScope::zoom(double times, std::int64_t about_ns) {
     if (!(times > 0.0) || !std::isfinite(times)) return;
     if (!shows_still()) return set_span(span_s_ * times);
-    hold();  // a capture that is looked at stays
+    hold();  // an inspected capture stays
     const double before_s = span_s_;
     span_s_ = std::clamp(span_s_ * times, kLeastSpan_s, kMostSpan_s);
     const double after = static_cast<double>(still_end_ns_ - about_ns) * (span_s_ / before_s);
@@ -82,7 +82,7 @@ void TraceScope::zoom(double times, std::int64_t about_ns) {
 void TraceScope::pan(double by_s) {
     if (!std::isfinite(by_s)) return;
     hold();
-    // Some of what is kept stays in sight.
+    // Some of the stored cycles stay visible.
     const std::int64_t tenth = span_ns() / 10;
     const std::int64_t least = still_.begin_ns() + tenth, most = still_.end_ns() + span_ns() - tenth;
     still_end_ns_ =

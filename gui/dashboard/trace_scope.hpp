@@ -1,8 +1,8 @@
-// The traces as a person looks at them: what runs, what is held still, which stretch of it is seen, and two cursors on it.
+// The view of the traces: running or held, the visible window, and two cursors.
 //
-// Rolls      the newest stretch is seen; with a trigger set, the newest capture of it
-// Held       what there was at that moment stays, to be moved through; cycles go on being kept beside it
-// Memory     two stores, taken once.  Thread  one
+// Rolls      shows the newest window; with a trigger set, the newest capture
+// Held       keeps the cycles of that moment for inspection, while recording continues beside it
+// Memory     two stores, allocated once.  Thread  one
 #pragma once
 
 #include <array>
@@ -19,42 +19,42 @@ class TraceScope {
 public:
     static constexpr double kLeastSpan_s = 1e-3, kMostSpan_s = 120.0;
 
-    // Of the controller, in order.
+    // Cycles of the controller, in order.
     void add(const TraceTopic& cycle, std::int64_t period_ns);
     void add_missed(std::uint64_t cycles) { missed_ += cycles; }
-    void clear();  // another controller
+    void clear();  // for another controller
 
-    void choose_run(TraceRun run);  // begins with it at once
+    void choose_run(TraceRun run);  // takes effect at once
     [[nodiscard]] TraceRun run() const { return run_; }
-    void set_trigger(const TriggerSettings& settings);  // its mode and span are the scope's own
+    void set_trigger(const TriggerSettings& settings);  // the scope sets mode and span
     [[nodiscard]] const TriggerSettings& trigger() const { return wanted_; }
     void hold();
     void go_on();
     [[nodiscard]] bool held() const { return held_; }
 
-    // How long a stretch is seen; while it runs it ends with the newest cycle.
+    // Duration of the visible window; while running, it ends with the newest cycle.
     void set_span(double span_s);
     [[nodiscard]] double span_s() const { return span_s_; }
-    // By the mouse: that instant stays where it is. times < 1 looks nearer.
+    // Zooms about an instant, which keeps its place. times < 1 zooms in.
     void zoom(double times, std::int64_t about_ns);
-    // Only what is held still can be moved; where it runs it is held first.
+    // Moves the visible window; a running trace is held first.
     void pan(double by_s);
 
     [[nodiscard]] const TraceStore& shown() const { return shows_still() ? still_ : live_; }
     [[nodiscard]] const TraceStore& live() const { return live_; }
     [[nodiscard]] std::int64_t begin_ns() const { return end_ns() - span_ns(); }
     [[nodiscard]] std::int64_t end_ns() const;
-    // The instant of the capture that is seen, or 0.
+    // Trigger time of the visible capture, or 0.
     [[nodiscard]] std::int64_t triggered_ns() const;
     [[nodiscard]] bool forced() const { return forced_; }
-    // What it does, in words.
+    // State as text.
     [[nodiscard]] const char* status() const;
     [[nodiscard]] std::uint64_t captures() const { return captures_; }
     [[nodiscard]] std::uint64_t missed() const { return missed_; }
     [[nodiscard]] std::uint64_t refused() const { return live_.refused(); }
     [[nodiscard]] std::size_t memory_bytes() const { return live_.memory_bytes() + still_.memory_bytes(); }
 
-    // Cursors, as shares of the stretch that is seen; they stay on the window's pixels when it rolls.
+    // Cursors, as fractions of the visible window; while it rolls, they keep their pixels.
     bool cursors = false;
     std::array<double, 2> cursor{0.33, 0.67};
     [[nodiscard]] std::int64_t cursor_ns(std::size_t which) const {

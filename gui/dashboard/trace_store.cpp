@@ -13,7 +13,7 @@ namespace {
 
 constexpr float kNone = std::numeric_limits<float>::quiet_NaN();
 constexpr float kLeast = std::numeric_limits<float>::lowest(), kMost = std::numeric_limits<float>::max();
-constexpr std::int64_t kYearsNs = 1'000'000'000'000'000'000;  // thirty
+constexpr std::int64_t kYearsNs = 1'000'000'000'000'000'000;  // thirty years
 
 constexpr std::array<TraceChannelInfo, kTraceChannels> kChannels{{
     {"force", "N", 1.0, "force_n"},
@@ -28,7 +28,7 @@ constexpr std::array<TraceChannelInfo, kTraceChannels> kChannels{{
     {"lateness", "µs", 1e6, "lateness_s"},
     {"cycle", "µs", 1e6, "cost_s"},
     {"model", "µs", 1e6, "model_s"},
-    {"level", "of 1", 1.0, "level"},
+    {"level", "0-1", 1.0, "level"},
     {"items", "items", 1.0, "items"},
 }};
 
@@ -155,7 +155,7 @@ TraceExtremes TraceStore::extremes(TraceChannel channel, std::size_t first, std:
     last = std::min(last, size());
     const auto c = static_cast<std::size_t>(channel);
     const auto take = [&e](float low, float high) {
-        if (!(low <= high)) return;  // nothing in it, or no number
+        if (!(low <= high)) return;  // empty block, or NaN
         e.low = std::min(e.low, low);
         e.high = std::max(e.high, high);
         e.any = true;
@@ -190,7 +190,7 @@ std::string trace_csv(std::span<const TraceTopic> cycles, std::span<const TraceC
         out += run_state_text(static_cast<RunState>(cycle.status & 0xFFU));
         for (const TraceChannel c : channels) {
             out += ',';
-            // Nine digits say a float whole.
+            // Nine digits reproduce a float exactly.
             const auto v = static_cast<double>(trace_value(cycle, c));
             if (!std::isfinite(v)) continue;
             char text[40];

@@ -1,8 +1,8 @@
-// The last minute of servo cycles, whole, and the least and the greatest of any stretch of them without looking at each.
+// All servo cycles of the last minute, with the extremes of any range available without scanning it.
 //
-// Blocks   of 64 cycles have their extremes kept, so that a picture of a minute looks at a thousand blocks, not at all cycles
-// Memory   taken once; the oldest make way.  Thread  one; plain arithmetic
-// Hostile  a record whose time does not rise, or lies years off, is refused and counted; a value that is no number is left out
+// Blocks   store the extremes of 64 cycles each, so a frame of a minute reads a thousand blocks, not all cycles
+// Memory   allocated once; the oldest cycles are overwritten.  Thread  one; plain arithmetic
+// Hostile  a record whose time does not rise, or is years off, is refused and counted; NaN values are ignored
 #pragma once
 
 #include <array>
@@ -37,14 +37,14 @@ inline constexpr std::size_t kTraceChannels = static_cast<std::size_t>(TraceChan
 
 struct TraceChannelInfo {
     const char* name;    // "force x"
-    const char* unit;    // shown
+    const char* unit;    // as displayed
     double scale;        // stored value -> shown value
-    const char* column;  // of an exported table, SI: "force_x_n"
+    const char* column;  // in an exported table, SI: "force_x_n"
 };
 [[nodiscard]] const TraceChannelInfo& trace_channel(TraceChannel channel);
-// SI, in the world's frame; NaN where the record holds none.
+// SI, world frame; NaN if the record has none.
 [[nodiscard]] float trace_value(const TraceTopic& cycle, TraceChannel channel);
-// It ended after the next one was due; never where the loop runs freely (period_ns 0).
+// True if it ended after the next cycle was due; always false in a free-running loop (period_ns 0).
 [[nodiscard]] bool trace_overran(const TraceTopic& cycle, std::int64_t period_ns);
 [[nodiscard]] bool trace_faulted(const TraceTopic& cycle);
 
@@ -57,13 +57,12 @@ class TraceStore {
 public:
     static constexpr std::size_t kSlots = std::size_t{1} << 16;
     static constexpr std::size_t kBlock = 64;
-    static constexpr std::size_t kKept =
-        kSlots - kBlock;  // the block that is being overwritten has no extremes
+    static constexpr std::size_t kKept = kSlots - kBlock;  // the block being overwritten has no extremes
 
     TraceStore();
     bool add(const TraceTopic& cycle);
     void clear();
-    // What another holds between these times, in place of what is here.
+    // Replaces the contents by those of another store between these times.
     void copy(const TraceStore& other, std::int64_t begin_ns, std::int64_t end_ns);
 
     [[nodiscard]] std::size_t size() const { return total_ < kKept ? total_ : kKept; }
@@ -73,13 +72,13 @@ public:
     }
     [[nodiscard]] std::int64_t begin_ns() const { return empty() ? 0 : at(0).taken_at_ns; }
     [[nodiscard]] std::int64_t end_ns() const { return empty() ? 0 : at(size() - 1).taken_at_ns; }
-    // The first that is not before; size(): none.
+    // Index of the first cycle not before at_ns; size(): none.
     [[nodiscard]] std::size_t find(std::int64_t at_ns) const;
-    // Cycles are missing before it.
+    // True if cycles are missing before it.
     [[nodiscard]] bool gap_before(std::size_t index) const {
         return index > 0 && at(index).cycle != at(index - 1).cycle + 1;
     }
-    // Of [first, last).
+    // Over [first, last).
     [[nodiscard]] TraceExtremes extremes(TraceChannel channel, std::size_t first, std::size_t last) const;
 
     [[nodiscard]] std::uint64_t refused() const { return refused_; }
@@ -97,7 +96,7 @@ private:
     std::uint64_t refused_ = 0;
 };
 
-// A table of cycles as CSV: time since the first, its instant, its number, its state, and a column for each channel.
+// Cycles as CSV: time since the first one, timestamp, number, state, and a column for each channel.
 [[nodiscard]] std::string trace_csv(std::span<const TraceTopic> cycles,
                                     std::span<const TraceChannel> channels);
 

@@ -1,9 +1,9 @@
-// When a capture of servo cycles begins: as an oscilloscope's trigger, cycle by cycle.
+// Trigger for captures of servo cycles, evaluated per cycle as in an oscilloscope.
 //
-// Single     one capture, then done until it is armed again
-// Normal     a capture at each trigger, the next one not before the last one's end
-// Automatic  as normal, and one of what there is where no trigger came for a span, half a second at least
-// Thread     one; plain arithmetic. A value that is no number triggers nothing
+// Single     one capture, then done until armed again
+// Normal     a capture at each trigger, but not before the end of the last one
+// Automatic  as normal, plus a forced capture if no trigger came for one span, at least half a second
+// Thread     one; plain arithmetic. NaN triggers nothing
 #pragma once
 
 #include <cstdint>
@@ -21,13 +21,13 @@ struct TriggerSettings {
     bool rising = true;
     double level = 0.5;  // SI
     TriggerMode mode = TriggerMode::normal;
-    double pre_share = 0.5;  // of the span that lies before the trigger, 0 to 1
+    double pre_share = 0.5;  // fraction of the span before the trigger, 0 to 1
     double span_s = 1.0;
 };
 
 struct TraceCapture {
     std::int64_t trigger_ns = 0, begin_ns = 0, end_ns = 0;
-    bool forced = false;  // no trigger came
+    bool forced = false;  // no trigger occurred
 };
 
 class TraceTrigger {
@@ -36,13 +36,13 @@ public:
 
     void arm(const TriggerSettings& settings);
     void disarm() { state_ = State::idle; }
-    // The next cycle. True: a capture is complete, its last cycle is this one.
+    // Adds the next cycle. Returns true if it completes a capture.
     bool add(const TraceTopic& cycle, std::int64_t period_ns);
 
     [[nodiscard]] State state() const { return state_; }
     [[nodiscard]] const TraceCapture& capture() const { return capture_; }
     [[nodiscard]] const TriggerSettings& settings() const { return settings_; }
-    // What starts it, seen from the cycle before.
+    // True if the trigger fires between these two successive cycles.
     [[nodiscard]] static bool fires(const TriggerSettings& settings, const TraceTopic& before,
                                     const TraceTopic& now, std::int64_t period_ns);
 

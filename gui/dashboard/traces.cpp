@@ -1,4 +1,5 @@
-// Traces: every servo cycle of the last minute, as on an oscilloscope. trace_lanes.cpp draws; here is what a person turns.
+// Traces panel: every servo cycle of the last minute, as on an oscilloscope. Controls are here; trace_lanes.cpp
+// draws.
 #include "gui/dashboard/traces.hpp"
 
 #include <algorithm>

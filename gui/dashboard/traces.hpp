@@ -1,4 +1,4 @@
-// What the traces' panel keeps between frames.
+// State of the traces panel.
 #pragma once
 
 #include <array>
@@ -13,10 +13,10 @@ namespace tact {
 struct TracesState {
     TraceScope scope;
     std::bitset<kTraceChannels> channels = default_channels();
-    bool export_wanted = false;  // of what is seen; the application writes it
-    std::string message;         // what became of it
+    bool export_wanted = false;  // of the visible cycles; the application writes it
+    std::string message;         // result of the export
     Grade message_grade = Grade::unknown;
-    int dragged = -1;  // cursor under the mouse's button
+    int dragged = -1;  // index of the cursor being dragged; -1: none
 
     [[nodiscard]] static std::bitset<kTraceChannels> default_channels() {
         std::bitset<kTraceChannels> on;

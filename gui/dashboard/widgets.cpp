@@ -127,14 +127,14 @@ std::string grouped(std::uint64_t n) {
     std::string digits = std::to_string(n);
     for (std::size_t i = digits.size(); i > 3;) {
         i -= 3;
-        digits.insert(i, "\u00A0");  // where no line is broken
+        digits.insert(i, "\u00A0");  // no-break space
     }
     return digits;
 }
 
 std::string duration_text(double seconds) {
     const double a = std::fabs(seconds);
-    if (!std::isfinite(seconds)) return "not known";
+    if (!std::isfinite(seconds)) return "unknown";
     if (a < 0.9995e-6) return format("%.0f ns", seconds * 1e9);
     if (a < 0.9995e-3) return format("%.3g µs", seconds * 1e6);
     if (a < 0.9995) return format("%.3g ms", seconds * 1e3);
@@ -152,7 +152,7 @@ std::string length_text(double m) {
 }
 
 std::string rate_text(double hz) {
-    if (!std::isfinite(hz)) return "not known";
+    if (!std::isfinite(hz)) return "unknown";
     return hz < 9999.5 ? format("%.0f Hz", hz) : format("%.1f kHz", hz * 1e-3);
 }
 

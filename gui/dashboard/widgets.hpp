@@ -1,4 +1,4 @@
-// Small pieces that the panels share.
+// Widgets shared by the panels.
 #pragma once
 
 #include <imgui.h>
@@ -15,28 +15,28 @@ namespace tact {
 void begin_card(const Theme& theme, const char* title, const PixelRect& card, bool scrolls = false);
 void end_card();
 
-// A filled pill with a word.
+// A filled pill with a text.
 void badge(const Theme& theme, const std::string& word, ImU32 fill, ImFont* font = nullptr);
-// One row: what on the left, the value right of it, words after it in the colour of the grade.
+// One row: label on the left, the value, and a text in the colour of its grade.
 void row(const Theme& theme, const char* what, const std::string& value, const StatusText& status);
 void row(const Theme& theme, const char* what, const std::string& value,
          const std::string& unit_or_note = "");
-// With the first of the notes that fits, else the last.
+// With the first note that fits, else the last.
 void row(const Theme& theme, const char* what, const std::string& value, std::span<const std::string> notes);
 void text_coloured(ImU32 c, const std::string& text);
 void text_small(const Theme& theme, ImU32 c, const std::string& text, bool wrap = true);
 
-// Words in a line, one of them chosen.
+// A line of options, one of them selected.
 void choose(const Theme& theme, std::span<const char* const> words, int& chosen);
 
 [[nodiscard]] std::string format(const char* pattern, ...) __attribute__((format(printf, 1, 2)));
-// "%.2f", but a number that rounds to nothing has no sign.
+// "%.2f", but a number that rounds to zero has no sign.
 [[nodiscard]] std::string fixed(double value, int digits);
 // "1 234 567"
 [[nodiscard]] std::string grouped(std::uint64_t n);
-// In the unit that reads best: "820 ns", "12.3 us", "4.56 ms".
+// In the most readable unit: "820 ns", "12.3 us", "4.56 ms".
 [[nodiscard]] std::string duration_text(double seconds);
-// Maps are measured in angstrom, meshes may be as large as landscapes: "12 Å", "0.5 mm".
+// From the ångströms of a map to the metres of a landscape mesh: "12 Å", "0.5 mm".
 [[nodiscard]] std::string length_text(double m);
 [[nodiscard]] std::string rate_text(double hz);  // "998 Hz", "1.25 kHz"
 

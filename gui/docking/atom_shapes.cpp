@@ -51,7 +51,7 @@ std::vector<Stick> trace_of(const Structure& s) {
     for (const auto& strand : strands_of(s))
         for (std::size_t k = 0; k + 1 < strand.size(); ++k) {
             sticks.push_back(stick(s, strand[k], strand[k + 1], kTraceRadiusA));
-            // One colour a chain: what element a trace atom is, says nothing.
+            // One colour per chain: the element of a trace atom carries no information.
             sticks.back().from.element = sticks.back().to.element = sticks.back().from.chain;
         }
     return sticks;

@@ -15,7 +15,7 @@ namespace tact {
 
 using Rgba8 = std::array<std::uint8_t, 4>;
 
-// Both colourings travel with the shape: choosing one needs no new data.
+// Both colourings are stored with the shape, so switching needs no new data.
 struct AtomColours {
     Rgba8 element, chain;
 };
@@ -38,13 +38,13 @@ static_assert(sizeof(Stick) == 44);
 
 inline constexpr float kStickRadiusA = 0.25F, kTraceRadiusA = 0.35F;
 
-// By element; carbon has the colour of its chain, so that chains are told apart all the same.
+// By element, but carbon by chain, so that chains remain distinguishable.
 [[nodiscard]] AtomColours colours_of(const Structure& structure, std::size_t atom);
 // All atoms, at their van der Waals radii.
 [[nodiscard]] std::vector<Sphere> spheres_of(const Structure& structure);
-// One for each bond. An atom without bonds (an ion) is a stick of no length, half its size.
+// One per bond. An atom without bonds (an ion) is a stick of zero length with half its van der Waals radius.
 [[nodiscard]] std::vector<Stick> sticks_of(const Structure& structure, std::span<const Bond> bonds);
-// From trace atom to trace atom, straight.
+// Straight sticks from trace atom to trace atom.
 [[nodiscard]] std::vector<Stick> trace_of(const Structure& structure);
 
 }  // namespace tact

@@ -1,4 +1,4 @@
-// Bodies: who is in the hand, fixed or hidden; what the force is made of; undo, refine, snapshots, saving.
+// Bodies tab: list of bodies (held, fixed, hidden), force options, undo, refine, snapshots, saving.
 #include "gui/dashboard/widgets.hpp"
 #include "gui/docking/docking_panels.hpp"
 #include "ipc/base/units.hpp"
@@ -58,18 +58,18 @@ void actions(const DashboardState& state, FittingState& f, std::vector<Request>&
     const auto request = [&](FitAction action, const std::string& text = {}) {
         f.requests.push_back({action, id, text});
     };
-    if (button("Undo", f.can_undo, "the last gesture (Ctrl+Z)")) request(FitAction::undo);
-    if (button("Redo", f.can_redo, "(Ctrl+Y)")) request(FitAction::redo);
-    if (button("Accept", f.can_undo, "accept the present places; Revert returns to them (Enter)"))
+    if (button("Undo", f.can_undo, "undo the last gesture (Ctrl+Z)")) request(FitAction::undo);
+    if (button("Redo", f.can_redo, "redo the last gesture (Ctrl+Y)")) request(FitAction::redo);
+    if (button("Accept", f.can_undo, "accept the current poses; Revert returns to them (Enter)"))
         request(FitAction::accept);
-    if (button("Revert", f.can_undo, "back to the last accepted places (Esc)")) request(FitAction::revert);
-    if (button("Refine", held != nullptr && !f.refining, "refine the held body from its present place (R)"))
+    if (button("Revert", f.can_undo, "return to the accepted poses (Esc)")) request(FitAction::revert);
+    if (button("Refine", held != nullptr && !f.refining, "refine the held body from its current pose (R)"))
         request(FitAction::refine);
     if (button("Copy", held != nullptr && f.bodies.size() < kBodiesMax, "copy the held body"))
         request(FitAction::copy);
     if (button("Remove", held != nullptr && f.bodies.size() > 1, "remove the held body from the scene"))
         requests.push_back({CommandKind::remove_body, 0.0, {}, id});
-    if (button("Save", !f.saving, "PDB or mmCIF, matrix and CSV of every body, in a new folder"))
+    if (button("Save", !f.saving, "save PDB or mmCIF, matrix and CSV of every body in a new folder"))
         request(FitAction::save);
     ImGui::BeginDisabled(!state.attached);
     if (ImGui::Button("Snapshot", {width, 0.0F}))

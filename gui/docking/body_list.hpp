@@ -1,7 +1,7 @@
-// The bodies as the picture shows them: who they are, where they will be when the picture is seen.
+// The displayed bodies, with their poses predicted for display time.
 //
-// Follows   BodiesTopic by id, so that a body keeps its speed and its being hidden while others come and go.
-//           Until a controller has spoken: one body per structure, at home.
+// Follows   BodiesTopic by id, so that a body keeps its velocity and its visibility while others come and go.
+//           Before the first record: one body per structure, at home.
 // Hostile   a body of a structure that the scene does not have is not shown.
 // Thread    frame thread.
 #pragma once
@@ -20,18 +20,18 @@ struct ShownBody {
     std::uint32_t id = 0;
     std::uint16_t structure = 0;
     std::uint16_t flags = 0;  // BodyFlag
-    bool hidden = false;      // here only; it is felt all the same
-    Pose newest;              // as the controller said
+    bool hidden = false;      // in this window only; its force remains
+    Pose newest;              // as published
     Pose T_model_body;        // predicted
     PosePredictor predictor;
 };
 
 class BodyList {
 public:
-    // The scene's structures at home, under the ids that a controller gives them at its start.
+    // The scene's structures at their home poses, with the ids that a controller assigns at its start.
     void start(std::span<const Pose> homes);
     void follow(const BodiesTopic& topic);
-    void forget_motion();  // of another controller
+    void forget_motion();  // for another controller
     void predict(std::int64_t now_ns);
     void set_hidden(std::uint32_t id, bool hidden);
 

@@ -11,11 +11,11 @@ namespace tact {
 namespace {
 
 constexpr std::uint8_t kSulphur = 16;
-// Above the longest bond of the table, so that a bond reaches into the next cell at most.
+// Above the longest possible bond, so that a bond reaches the next cell at most.
 constexpr double kCellA = 4.8;
 constexpr std::int64_t kPlaceMax = std::int64_t{1} << 20;
 
-// Sorted by cell: the atoms of a cell are neighbours in the list.
+// Sorted by cell, so that the atoms of a cell are contiguous.
 struct Celled {
     std::uint64_t cell;
     std::uint32_t atom;
@@ -26,8 +26,8 @@ struct Celled {
 
 using Place = std::array<std::int64_t, 3>;
 
-// Structures reach 1e-3 m at most (read_structure), which is two million cells to either side: clamped, atoms
-// out there are only looked at more often.
+// Structures extend 1e-3 m at most (read_structure), two million cells to either side. Cells are clamped; atoms
+// beyond the clamp are only compared more often.
 Place place_of(const Structure& s, std::size_t i) {
     Place p{};
     const std::array<float, 3> at{s.x_m[i], s.y_m[i], s.z_m[i]};
@@ -71,7 +71,7 @@ std::vector<Bond> find_bonds(const Structure& s) {
     for (std::uint32_t i = 0; i < s.size(); ++i) {
         const Place centre = place_of(s, i);
         std::size_t of_atom = 0;
-        for (int n = 0; n < 9; ++n) {  // rows of three cells along x, which is the lowest part of a key
+        for (int n = 0; n < 9; ++n) {  // rows of three cells along x, the lowest part of a key
             const Place first{centre[0] - 1, centre[1] + n % 3 - 1, centre[2] + n / 3 - 1};
             const std::uint64_t last = key_of({centre[0] + 1, first[1], first[2]});
             auto at = std::lower_bound(list.begin(), list.end(), Celled{key_of(first), 0});

@@ -24,7 +24,7 @@ RefineContour refine_by_child(std::shared_ptr<const SceneContent> content, const
         const std::string out = (folder.path() / "contour.tact").string();
         char text[48];
         std::snprintf(text, sizeof text, "--level=%.17g", level);
-        ChildJob job;  // ends before its folder goes
+        ChildJob job;  // destroyed before its folder
         job.start(program, {"contour", content->path.string(), text, "-o", out, "--vertices-max",
                             std::to_string(kContourVerticesMax), "--ends-with", std::to_string(getpid())});
         const Instant until = Monotonic::now() + kPatience;
@@ -32,7 +32,7 @@ RefineContour refine_by_child(std::shared_ptr<const SceneContent> content, const
         while (!(outcome = job.poll())) {
             if (stop()) throw Cancelled{};
             if (Monotonic::now() > until)
-                throw StartupError("refining the contour", program + " has not ended in two minutes",
+                throw StartupError("refining the contour", program + " did not finish within two minutes",
                                    "choose a higher level, or bin the map");
             std::this_thread::sleep_for(kLook);
         }
@@ -40,7 +40,7 @@ RefineContour refine_by_child(std::shared_ptr<const SceneContent> content, const
             throw StartupError(
                 "refining the contour",
                 program + " ended with code " + std::to_string(outcome->exit_code) + ": " + outcome->output,
-                "the surface stays as it is; see what it said");
+                "the surface stays unchanged; the reason is in this message");
         return read_contour(SceneFile::open(out), {content->checksum, level});
     };
 }

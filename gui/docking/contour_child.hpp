@@ -1,8 +1,7 @@
-// The final surface of a contour, made by `tact-prep contour` as a child: what simplifies meshes belongs
-// there.
+// Makes the final surface of a contour with `tact-prep contour` as a child: mesh simplification belongs there.
 //
-// Thread   the worker's (ContourWorker); the child has its low priority.
-// Fails by StartupError with what the child said. Nothing of what it wrote is believed unchecked.
+// Thread   the worker's (ContourWorker); the child inherits its low priority.
+// Fails by StartupError with the child's output. The file it wrote is checked before use.
 #pragma once
 
 #include "gui/render/contour_worker.hpp"

@@ -7,7 +7,7 @@
 namespace tact {
 namespace {
 
-// All of the text, as a finite number.
+// Parses the whole text as a finite number.
 std::optional<double> number(const std::string& text) {
     char* end = nullptr;
     const double value = std::strtod(text.c_str(), &end);
@@ -28,8 +28,8 @@ std::optional<Eigen::Vector3f> colour_of(const std::string& text) {
 
 ContourOption read_contour_option(const std::string& text) {
     const auto refuse = [&text](const std::string& part) {
-        throw CLI::ValidationError("--contour",
-                                   "'" + part + "' in '" + text + "' is no level, colour, opacity or style");
+        throw CLI::ValidationError(
+            "--contour", "'" + part + "' in '" + text + "' is not a level, colour, opacity or style");
     };
     std::vector<std::string> parts(1);
     for (const char c : text)

@@ -1,4 +1,4 @@
-// A contour as it is written on a command line: LEVEL[:RRGGBB][:OPACITY][:STYLE].
+// A contour on the command line: LEVEL[:RRGGBB][:OPACITY][:STYLE].
 #pragma once
 
 #include <optional>
@@ -10,7 +10,7 @@
 
 namespace tact {
 
-enum class LevelUnit { map, sigma, volume };  // volume: fraction of the map's box that is inside
+enum class LevelUnit { map, sigma, volume };  // volume: enclosed fraction of the map's box
 
 struct ContourOption {
     double value = 0.0;
@@ -20,7 +20,7 @@ struct ContourOption {
     std::optional<SurfaceStyle> style;
 };
 
-// "1.5", "2.5s", "8%", "0.7:ffc259:0.5:solid". Throws CLI::ValidationError in words.
+// "1.5", "2.5s", "8%", "0.7:ffc259:0.5:solid". Throws CLI::ValidationError with a message.
 [[nodiscard]] ContourOption read_contour_option(const std::string& text);
 [[nodiscard]] double level_of(const ContourOption& option, const ContourScale& scale);
 [[nodiscard]] std::vector<Contour> contours_of(std::span<const ContourOption> options,

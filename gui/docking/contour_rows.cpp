@@ -41,7 +41,7 @@ void begin_contours(const Contours& contours, const ContourScale& scale, Contour
 void follow_contours(Contours& contours, const ContourScale& scale, ContourRowState& state) {
     if (state.add && state.row.size() < state.rows_max) {
         Contour next;
-        // Halfway up from the highest: inside of what is shown.
+        // Halfway between the highest level and the map's maximum: inside the surfaces shown.
         double highest = state.row.empty() ? state.least : state.row.front().level;
         for (const ContourRow& r : state.row) highest = std::max(highest, r.level);
         next.level = 0.5 * (highest + state.greatest);

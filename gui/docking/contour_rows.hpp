@@ -1,4 +1,4 @@
-// The contours of the view and the rows of the panel that choose them.
+// Keeps the view's contours and the rows of the contours panel consistent.
 //
 // Thread   frame thread.
 #pragma once
@@ -8,11 +8,11 @@
 
 namespace tact {
 
-// Another scene: the rows are those of the view.
+// For a new scene: takes the rows from the view.
 void begin_contours(const Contours& contours, const ContourScale& scale, ContourRowState& state);
-// What the panel changed goes to the view, what the view and the map know of it comes back.
+// Applies the panel's changes to the view, and updates the rows from the view and the map.
 void follow_contours(Contours& contours, const ContourScale& scale, ContourRowState& state);
-// The first contour, by so many tenths of a sigma.
+// Moves the first contour by this many tenths of a sigma.
 void nudge_contour(ContourRowState& state, const ContourScale& scale, double tenths);
 
 }  // namespace tact

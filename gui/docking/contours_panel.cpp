@@ -1,4 +1,4 @@
-// Contours: the map's histogram with the levels in it, and for each its unit, sigma and enclosed volume.
+// Contours tab: the map's histogram with the levels, and for each its unit, sigma and enclosed volume.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -54,7 +54,7 @@ void histogram(const Theme& theme, ContourRowState& state) {
     for (const ContourRow& c : state.row)
         draw->AddRectFilled({x_of(c.level) - 1.0F, at.y}, {x_of(c.level) + 1.0F, at.y + size.y},
                             colour_of(c));
-    if (ImGui::IsItemHovered()) ImGui::SetTooltip("voxels at each density, counts logarithmic; drag a level");
+    if (ImGui::IsItemHovered()) ImGui::SetTooltip("voxels at each density, log scale; drag a level");
 }
 
 void one(const Theme& theme, ContourRowState& state, std::size_t i) {

@@ -1,4 +1,4 @@
-// What a docking scene has beside its map and mesh: structures, their codebooks and bonds.
+// Content of a docking scene besides map and mesh: structures, their codebooks and bonds.
 #pragma once
 
 #include <vector>
@@ -18,7 +18,7 @@ public:
     void each_point(const std::function<void(const Vec3&)>& take) const override;
 };
 
-// Of the scene; without bodies where it is of another system.
+// Has no bodies if the scene belongs to another system.
 [[nodiscard]] const DockingContent& docking_of(const SceneContent& content);
 // Throws StartupError naming the file.
 [[nodiscard]] std::unique_ptr<SystemContent> read_docking(SceneFile file, SceneContent& content);

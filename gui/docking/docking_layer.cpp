@@ -9,12 +9,12 @@
 namespace tact {
 namespace {
 
-// Balls of a fine codebook must not hide the backbone: smaller where there are more of them.
+// The balls of a fine codebook must not hide the backbone: the more balls, the smaller.
 float ball_radius_a(GLsizei points) {
     return std::clamp(1.3F * std::cbrt(50.0F / static_cast<float>(std::max(points, 1))), 0.5F, 1.4F);
 }
 
-// More vectors than this are a cloud that hides the backbone, and cost a picture in software its rate.
+// More vectors are a cloud that hides the backbone, and too slow for software rendering.
 constexpr std::uint32_t kCodebookShownMax = 400;
 constexpr float kBallRgba[4] = {0.93F, 0.94F, 0.97F, 1.0F};
 constexpr float kGraphRgba[4] = {0.80F, 0.84F, 0.90F, 0.38F};

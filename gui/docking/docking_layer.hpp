@@ -1,4 +1,4 @@
-// What is drawn of a docking scene beside its contours: the bodies, their codebooks and graphs.
+// Draws a docking scene besides its contours: the bodies, their codebooks and graphs.
 //
 // Thread   frame thread, context current.
 #pragma once
@@ -15,17 +15,17 @@ namespace tact {
 
 class DockingLayer : public SceneLayer {
 public:
-    // As it is to be drawn now.
+    // Content of the next frame.
     struct Frame {
         bool backbone = true, codebook = true, graph = true;
         std::span<const DrawnBody> bodies;
-        std::uint32_t points_summed = 0;  // picks the level of the codebook that is shown
+        std::uint32_t points_summed = 0;  // selects the level of the codebook
     };
 
     DockingLayer(std::shared_ptr<const SceneContent> content, Programs& programs);
 
     Frame frame;
-    // A person's choice for the bodies.
+    // The user's choice for the bodies.
     [[nodiscard]] Molecules& molecules() { return molecules_; }
 
     void draw_structures(const LayerPass& pass) override;
@@ -42,11 +42,11 @@ private:
 
     std::shared_ptr<const SceneContent> content_;
     Molecules molecules_;
-    std::vector<std::vector<Points>> codebooks_;  // levels of each structure
+    std::vector<std::vector<Points>> codebooks_;  // levels per structure
 };
 
-// Which level of a codebook is drawn where this many points are felt: the largest not above it that is still
-// legible (400 vectors), at least the first.
+// Level of a codebook to draw if this many points are summed: the largest not above it that is still legible (400
+// vectors), at least the first.
 [[nodiscard]] std::size_t codebook_level(const Codebook& codebook, std::uint32_t points_summed);
 
 }  // namespace tact

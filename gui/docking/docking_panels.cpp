@@ -1,4 +1,4 @@
-// The scene's card of docking: bodies, contours, and what is loaded, at which contour, and what of it is drawn.
+// Scene card of docking: the tabs for bodies and contours, and the loaded data with its display options.
 #include "gui/docking/docking_panels.hpp"
 
 #include <array>
@@ -15,7 +15,7 @@ void scene_rows(const Theme& theme, const DashboardState& state) {
     row(theme, "Contour", format("%.4g", s.contour), format("map units, %.2f σ", s.contour_sigma));
     row(theme, "Map", format("%u × %u × %u", s.voxels[0], s.voxels[1], s.voxels[2]),
         s.resolution_m > 0.0 ? format("%.1f Å", s.resolution_m / kAngstromM)
-                             : std::string("resolution not known"));
+                             : std::string("resolution unknown"));
     row(theme, "Structure", grouped(s.atoms),
         s.bodies == 1 ? std::string("atoms, 1 body") : format("atoms, %zu bodies", s.bodies));
     row(theme, "Surface", grouped(state.load.vertices_drawn),

@@ -1,4 +1,4 @@
-// The panels of a docking scene: bodies, their fit, contours of the map. Plain data that the window fills and takes.
+// Panels of a docking scene: bodies, their fit, contours of the map. Plain data that the window fills and reads.
 //
 // Thread   frame thread, inside an ImGui frame.
 #pragma once
@@ -16,7 +16,7 @@
 
 namespace tact {
 
-// What a person asked to be done with the bodies that takes more than one command.
+// User actions on bodies that take more than one command.
 enum class FitAction : std::uint8_t { undo, redo, revert, accept, copy, refine, snapshot, restore, save };
 struct FitRequest {
     FitAction action = FitAction::undo;
@@ -34,26 +34,26 @@ struct BodyState {
 
 struct FittingState {
     std::vector<BodyState> bodies;
-    std::uint32_t options = 0;  // DockingOption, as felt now
+    std::uint32_t options = 0;  // DockingOption, currently in effect
     bool building = false;      // the controller prepares another density
     bool refining = false, saving = false;
     bool can_undo = false, can_redo = false;
-    std::size_t gestures = 0;  // that can be undone
+    std::size_t gestures = 0;  // undoable
     std::vector<std::string> snapshots;
-    std::string message;  // what the last action did
+    std::string message;  // result of the last action
     Grade message_grade = Grade::unknown;
     // Emptied by the window.
     std::vector<FitRequest> requests;
     std::vector<std::pair<std::uint32_t, bool>> hide_requests;  // id, hidden
 };
 
-// What the metrics of a fit mean: ipc/scene/fit/fit_metrics.hpp.
+// Definitions of the metrics: ipc/scene/fit/fit_metrics.hpp.
 struct FitState {
     bool known = false;
-    std::string status;  // "computing", or why there is none
+    std::string status;  // "computing", or why there is no result
     FitMetrics all;      // of all bodies together
     std::size_t bodies = 0;
-    std::uint32_t body_id = 0;  // of the one in the hand; 0: none
+    std::uint32_t body_id = 0;  // of the held body; 0: none
     FitMetrics body;
     double resolution_m = 0.0;
     bool resolution_assumed = false;
@@ -62,13 +62,13 @@ struct FitState {
 };
 
 struct ContourRow {
-    // What a person chose.
+    // Chosen by the user.
     double level = 0.0;  // in the map's unit
     float colour[3] = {1.0F, 1.0F, 1.0F};
     float opacity = 1.0F;
     int style = 0;  // as the view, glass, solid, wire
     bool shown = true;
-    // What it means and how far it is.
+    // Derived values and progress.
     double sigma = 0.0, fraction_inside = 0.0;
     bool final = true;
     std::string error;
@@ -80,7 +80,7 @@ struct ContourRowState {
     std::size_t rows_max = 1;
     std::vector<std::uint64_t> histogram;  // voxels, bins of equal width from least to greatest
     double least = 0.0, greatest = 0.0;    // of the map, in its unit
-    bool changed = false, add = false;     // what a person did; for the application to take
+    bool changed = false, add = false;     // user input, taken by the application
     std::size_t dragged = kNone, removed = kNone;
 };
 
@@ -96,7 +96,7 @@ public:
     [[nodiscard]] std::string drawn_text(const DashboardState& state) const override;
 };
 
-// The scene card's tabs.
+// Tabs of the scene card.
 void draw_bodies_tab(const Theme& theme, DashboardState& state, FittingState& fitting);
 void draw_contours_tab(const Theme& theme, ContourRowState& contours);
 

@@ -10,7 +10,7 @@
 namespace tact {
 namespace {
 
-// Atoms or bonds drawn as impostors where the processor draws: more take longer than a picture may
+// Limit of atoms or bonds drawn as impostors on a software renderer: more take longer than a frame may
 // (tests/bench/draw_bench.cpp).
 constexpr std::size_t kShapesMaxInSoftware = 8000;
 
@@ -144,14 +144,14 @@ void DockingSystem::drawn(const SystemContext& context) {
     left_out_ = left_out;
     if (left_out > 0)
         spdlog::info(
-            "bodies drawn as tubes, as this renderer has no time for "
+            "bodies drawn as tubes, because this renderer is too slow for "
             "their atoms: {}",
             left_out);
 }
 
 void DockingSystem::finish(const SystemContext& context) {
     static_cast<void>(context);
-    fit_controller_.finish_saving(std::chrono::seconds(8));  // whoever asked grants ten to end
+    fit_controller_.finish_saving(std::chrono::seconds(8));  // the launcher allows ten to end
 }
 
 }  // namespace tact

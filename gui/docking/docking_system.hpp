@@ -18,7 +18,7 @@ namespace tact {
 
 class DockingSystem : public SceneSystem {
 public:
-    // contours: in place of the scene's own; empty: that.
+    // contours: replace the scene's own unless empty.
     explicit DockingSystem(std::vector<ContourOption> contours) : options_(std::move(contours)) {}
 
     [[nodiscard]] SystemPanels& panels() override { return panels_; }

@@ -18,7 +18,7 @@
 namespace tact {
 namespace {
 
-// Okabe and Ito's colours, which also those tell apart who see fewer; the same order as in the 3D view.
+// Okabe-Ito palette, safe for colour-blind users; same order as in the 3D view.
 constexpr std::array<ImU32, 7> kBodyColours{IM_COL32(230, 159, 0, 255),  IM_COL32(86, 180, 233, 255),
                                             IM_COL32(0, 158, 115, 255),  IM_COL32(240, 228, 66, 255),
                                             IM_COL32(0, 114, 178, 255),  IM_COL32(213, 94, 0, 255),
@@ -33,7 +33,7 @@ std::string folder_name() {
     return text;
 }
 
-// As tact-prep export and tact-rt --poses read it.
+// Format of tact-prep export and tact-rt --poses.
 nlohmann::ordered_json poses_json(const BodyList& list, const SceneContent& content) {
     nlohmann::ordered_json bodies = nlohmann::ordered_json::array();
     for (const ShownBody& b : list.bodies()) {
@@ -105,7 +105,7 @@ void FitController::follow(const BodyList& list, const BodiesTopic* topic, std::
             else if (done->result.end == RefineEnd::no_density)
                 report(Grade::watch, "refine: the map is flat here; move the body closer");
             else if (topic == nullptr)
-                report(Grade::watch, "refine: no controller is there to move the body");
+                report(Grade::watch, "refine: no controller to move the body");
             else if (list.find(done->start.id) != nullptr) {
                 commands.push_back(placement(done->start.id, done->result.T_model_body));
                 report(Grade::good, end_text(*done));
@@ -147,9 +147,10 @@ void FitController::perform(const FitRequest& request, const BodyList& list, std
             return go(history_.revert());
         case FitAction::accept:
             history_.accept();
-            return report(Grade::good, "accepted: revert leads here from now on");
+            return report(Grade::good, "accepted; Revert returns to these poses");
         case FitAction::snapshot:
-            if (!history_.snapshot(request.text)) report(Grade::watch, "no more snapshots can be kept");
+            if (!history_.snapshot(request.text))
+                report(Grade::watch, "snapshot not kept: too many, or name in use");
             return;
         case FitAction::restore:
             return go(history_.restore(request.text));
@@ -165,7 +166,7 @@ void FitController::perform(const FitRequest& request, const BodyList& list, std
     }
 }
 
-// Beside the last copy, where it is seen and does not overlap.
+// Places it beside the last copy, where it is visible and does not overlap.
 void FitController::copy(const ShownBody& body, const BodyList& list, std::vector<Command>& commands) {
     const Structure& s = docking_of(*content_).bodies[body.structure];
     float reach_m = 0.0F;
@@ -182,14 +183,16 @@ void FitController::save(const BodyList& list) {
     saving_to_ = folder_name();
     try {
         if (!std::filesystem::create_directory(saving_to_))
-            throw StartupError("saving in " + saving_to_, "it is there already", "save again in a second");
+            throw StartupError("saving in " + saving_to_, "the folder exists already",
+                               "save again in a second");
         const std::string poses = saving_to_ + "/poses.json";
         std::ofstream out(poses);
         out << poses_json(list, *content_)
                    .dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace)
             << '\n'
             << std::flush;
-        if (!out) throw StartupError("writing " + poses, "it failed", "check the space of the disk");
+        if (!out)
+            throw StartupError("writing " + poses, "the write failed", "check the free space of the disk");
         saving_.start("tact-prep", {"export", content_->path.string(), "--poses", poses, "-o", saving_to_});
     } catch (const std::exception& e) {
         report(Grade::bad, e.what());

@@ -1,7 +1,7 @@
-// What a person does with the bodies beyond holding them: measure, undo, refine, copy, take snapshots, save.
+// Actions on bodies other than holding them: measure, undo, refine, copy, take snapshots, save.
 //
-// Reads    the bodies as the controller publishes them; changes them only by commands, which it returns
-// Does     the slow work beside the frame loop: metrics and refinement on threads, saving in tact-prep
+// Reads    the bodies that the controller publishes; changes them only by the commands it returns
+// Does     the slow work in the background: metrics and refinement on threads, saving in tact-prep
 // Thread   frame thread
 #pragma once
 
@@ -21,14 +21,14 @@ namespace tact {
 
 class FitController {
 public:
-    // Another scene, or none: everything begins anew.
+    // Another scene, or none: resets everything.
     void use(std::shared_ptr<const SceneContent> content);
-    // Once a frame; topic: of the attached controller, or null. Commands that became due are added.
+    // Call once a frame; topic: of the attached controller, or null. Adds commands that became due.
     void follow(const BodyList& list, const BodiesTopic* topic, std::vector<Command>& commands);
     void perform(const FitRequest& request, const BodyList& list, std::vector<Command>& commands);
-    // At the end: a save under way is let end, for so long at the most.
+    // At the end: waits for a save in progress, at most this long.
     void finish_saving(Duration patience);
-    // For the panels.
+    // Fills the panels' state.
     void describe(const BodyList& list, const BodiesTopic* topic, FittingState& state, FitState& fit) const;
 
 private:

@@ -14,7 +14,7 @@ bool same(const Pose& a, const Pose& b, double within) {
     return (a.p_m - b.p_m).norm() <= within * kAngstromM && a.q.angularDistance(b.q) <= within * kDegreeRad;
 }
 
-// The places of `to` at which a body of `from` is not.
+// The moves of `to` that differ from the poses in `from`.
 FitHistory::Places difference(const FitHistory::Places& from, const FitHistory::Places& to,
                               double within = kStill) {
     FitHistory::Places moves;
@@ -28,8 +28,8 @@ FitHistory::Places difference(const FitHistory::Places& from, const FitHistory::
 
 bool differ(const FitHistory::Places& a, const FitHistory::Places& b) { return !difference(a, b).empty(); }
 
-// A device trembles in the hand, and it goes on holding what undo() moved: without more patience there, the
-// tremble would be a gesture, and undo() could never go back twice.
+// A device trembles in the hand while it holds a body that undo() moved. Without a larger limit the tremble would be
+// a gesture, and undo() could never go back twice.
 bool differ(const FitHistory::Places& a, const FitHistory::Places& b, bool resumed) {
     return !difference(a, b, resumed ? kTremble : kStill).empty();
 }
@@ -57,10 +57,10 @@ void FitHistory::observe(std::span<const Move> now, const Boundary& boundary) {
     }
     if (!(boundary == boundary_)) {
         boundary_ = boundary;
-        // The new gesture began between two looks: where the bodies were at the last look is where the old
-        // one ended, save for what a command placed since.
+        // The new gesture began between two observations: the old one ended at the last observed poses, except for
+        // bodies that a command has placed since.
         commit();
-        if (resumed_) base_ = now_;  // a tremble that another gesture begins from
+        if (resumed_) base_ = now_;  // the next gesture begins from the tremble
         resumed_ = false;
         now_.assign(now.begin(), now.end());
         commit();
@@ -71,7 +71,7 @@ void FitHistory::observe(std::span<const Move> now, const Boundary& boundary) {
 
 void FitHistory::commit() {
     if (!differ(now_, base_, resumed_)) {
-        // Bodies that came meanwhile are part of what is there.
+        // Bodies added meanwhile belong to the base.
         if (!now_.empty() && !(resumed_ && now_.size() == base_.size())) base_ = now_;
         return;
     }

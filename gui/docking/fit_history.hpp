@@ -1,11 +1,11 @@
-// Undo and redo of gestures, acceptance, snapshots: what a person may go back to.
+// Undo and redo of gestures, acceptance, and snapshots.
 //
-// Gesture   from one boundary to the next. A boundary is a grip (the hand takes hold), a placement by command
-//           or a selection: BodiesTopic.grips, .placements and .active. Where no body moved by a hundredth of
-//           an ångström or of a degree, there was no gesture; nor by one whole where the hand just goes on
-//           holding what was moved by undo or its like.
-// Gives     lists of moves, which the caller sends as one placement each. Until the controller has made them
-//           (or kPatience looks), what the bodies do in between counts for nothing.
+// Gesture   from one boundary to the next. A boundary is a grip (the hand takes hold), a placement by command,
+//           or a selection: BodiesTopic.grips, .placements and .active. Motion below a hundredth of an ångström
+//           or of a degree is no gesture; the limit is a whole one while the hand keeps holding a body that undo
+//           or the like has moved.
+// Gives     lists of moves, which the caller sends as one placement each. Motion is ignored until the controller
+//           has made the moves, or for kPatience observations.
 // Bounds    the last kGesturesMax gestures, kSnapshotsMax snapshots.
 // Thread    one.
 #pragma once
@@ -26,7 +26,7 @@ public:
     static constexpr int kPatience = 300;
     struct Move {
         std::uint32_t id = 0;  // of the body
-        Pose T_model_body;     // where it is to go
+        Pose T_model_body;     // target pose
     };
     using Places = std::vector<Move>;
     struct Boundary {
@@ -36,32 +36,32 @@ public:
     };
 
     void clear();
-    // Once a frame, with every body. Counters that go back belong to another controller: all is forgotten.
+    // Call once a frame with every body. Falling counters belong to another controller and clear the history.
     void observe(std::span<const Move> now, const Boundary& boundary);
 
     [[nodiscard]] std::size_t undoable() const;
     [[nodiscard]] std::size_t redoable() const { return undone_.size(); }
-    Places undo();    // also a gesture that is under way
-    Places redo();    // nothing once another gesture was made
-    Places revert();  // to what was accepted last, at first to the beginning; can itself be undone
-    void accept();    // from here on undo and revert go back to here and no farther
+    Places undo();    // includes a gesture in progress
+    Places redo();    // empty after another gesture
+    Places revert();  // to the last accepted poses, at first the initial ones; can itself be undone
+    void accept();    // undo and revert then go back no farther than this
 
-    // False where there are too many, or the name is there already.
+    // Returns false if there are too many, or the name exists.
     bool snapshot(const std::string& name);
     Places restore(const std::string& name);
     [[nodiscard]] std::vector<std::string> snapshots() const;
 
 private:
-    void commit();  // ends the gesture that is under way
+    void commit();  // ends the gesture in progress
     Places go(const Places& to);
 
     bool begun_ = false;
     std::uint64_t awaited_ = 0;  // placements until go() is carried out
-    int patience_ = 0;           // 0: nothing is awaited
+    int patience_ = 0;           // 0: not waiting
     bool resumed_ = false;       // no boundary since go() was carried out
     Boundary boundary_;
     Places now_, base_, accepted_;
-    std::deque<Places> done_;  // places before each gesture, oldest first
+    std::deque<Places> done_;  // poses before each gesture, oldest first
     std::vector<Places> undone_;
     struct Snapshot {
         std::string name;

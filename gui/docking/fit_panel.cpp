@@ -1,4 +1,4 @@
-// Fit: how well the structures, where they are now, explain the map. Every number says how it is defined.
+// Fit card: how well the structures, at their current poses, explain the map. Every value states its definition.
 #include <array>
 #include <string>
 
@@ -13,7 +13,7 @@ namespace {
 void metrics(const Theme& theme, const FitMetrics& m) {
     row(theme, "Correlation", fixed(m.cc_zero, 4), "about zero");
     row(theme, "", fixed(m.cc_mean, 4), "about the mean");
-    // In the map's unit too, where there is room for the number.
+    // With the value in the map's unit if it fits.
     const std::array<std::string, 3> notes{format("%.4g, mean over atoms", m.mean_density),
                                            format("%.2g, mean over atoms", m.mean_density),
                                            std::string("mean over atoms")};

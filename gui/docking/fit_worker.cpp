@@ -51,7 +51,7 @@ bool FitWorker::take(FitOutcome& outcome) {
 }
 
 void FitWorker::work() {
-    // Nice values belong to threads on Linux. That it may fail (it never does upwards) changes nothing.
+    // Linux applies nice values per thread. A failure is harmless; raising the value never fails.
     (void)setpriority(PRIO_PROCESS, static_cast<id_t>(gettid()), 10);
     std::vector<FitBody> places;
     std::unique_lock lock(mutex_);

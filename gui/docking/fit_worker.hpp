@@ -1,7 +1,7 @@
-// Computes the fit of the bodies in the map beside the frame loop, as it takes longer than a frame.
+// Computes the fit of the bodies to the map in the background, because it takes longer than a frame.
 //
-// Thread   one of its own, at low priority. It works on the newest request, at most once a second, never more
-//          than a tenth of the time, and not again while nothing has moved.
+// Thread   its own, at low priority. It processes the newest request, at most once a second, for at most a tenth of
+//          the time, and only after something moved.
 #pragma once
 
 #include <condition_variable>
@@ -19,7 +19,7 @@
 
 namespace tact {
 
-// A body of the scene: which of the content's structures, and where.
+// A body of the scene: its structure's index in the content, and its pose.
 struct FitBody {
     std::uint32_t id = 0;
     std::uint16_t structure = 0;
@@ -28,14 +28,14 @@ struct FitBody {
 
 struct FitOutcome {
     bool good = false;
-    std::string error;           // where not good
+    std::string error;           // if not good
     FitMetrics all;              // of all bodies together
-    std::vector<FitBody> body;   // those that were measured, where they were
-    std::vector<FitMetrics> of;  // each of them by itself
+    std::vector<FitBody> body;   // the measured bodies and their poses
+    std::vector<FitMetrics> of;  // one per body
     double resolution_m = 0.0;
-    bool resolution_assumed = false;  // three voxels, as the scene does not say
+    bool resolution_assumed = false;  // three voxels, because the scene states none
     double compute_s = 0.0;
-    std::uint64_t number = 0;  // rises with every outcome
+    std::uint64_t number = 0;  // increases with every outcome
 };
 
 class FitWorker {
@@ -47,9 +47,9 @@ public:
     FitWorker(const FitWorker&) = delete;
     FitWorker& operator=(const FitWorker&) = delete;
 
-    // Bodies of structures that the content does not have are left out.
+    // Ignores bodies of structures that the content does not have.
     void request(std::span<const FitBody> bodies);
-    // True when there is one newer than outcome.number.
+    // Returns true if there is one newer than outcome.number.
     [[nodiscard]] bool take(FitOutcome& outcome);
 
 private:
@@ -66,8 +66,7 @@ private:
     std::thread thread_;
 };
 
-// Whether a difference can be seen in the numbers: other bodies, or a hundredth of an ångström or of a
-// degree.
+// True if the difference shows in the numbers: other bodies, or a hundredth of an ångström or of a degree.
 [[nodiscard]] bool moved(std::span<const FitBody> a, std::span<const FitBody> b);
 
 }  // namespace tact

@@ -1,7 +1,7 @@
-// Bounds of a sphere in perspective: Mara, McGuire, "2D Polyhedral Bounds of a Clipped, Perspective-Projected
-// 3D Sphere", JCGT 2013, axis-aligned case. All is reckoned in slopes, x / -z and y / -z, in which
-// perspective is already done. Rays start where they are nearest to the shape: single precision then holds
-// its radius also from far away, where the usual b^2 - ac has lost it (0.25 ångström at 1000).
+// Bounds of a sphere in perspective: Mara, McGuire, "2D Polyhedral Bounds of a Clipped, Perspective-Projected 3D
+// Sphere", JCGT 2013, axis-aligned case. The computation uses slopes, x / -z and y / -z, which include the
+// perspective division. Rays start at their nearest point to the shape: single precision then resolves its radius
+// even from far away, where the usual b^2 - ac has lost it (0.25 ångström at 1000).
 #include "gui/docking/impostors.hpp"
 
 namespace tact {
@@ -11,14 +11,14 @@ constexpr char kCommon[] = R"(
 uniform int u_pick;    // 0 chain, 1 element, 2 body
 uniform vec3 u_body;
 vec3 picked(vec4 element, vec4 chain) { return u_pick == 2 ? u_body : u_pick == 1 ? element.rgb : chain.rgb; }
-// At the shape's nearest point, but never in front of the near plane.
+// At the shape's nearest point, but not in front of the near plane.
 vec4 on_quad(vec2 slope, float nearest) {
     float near = u_projection[3][2] / (u_projection[2][2] - 1.0);
     float w = max(nearest, 1.0001 * near);
     return u_projection * vec4(slope * w, -w, 1.0);
 }
 vec2 corner() { return vec2((gl_VertexID & 1) != 0 ? 1.0 : -1.0, (gl_VertexID & 2) != 0 ? 1.0 : -1.0); }
-// How far the outline of a sphere reaches from the slope of its centre, at most.
+// Greatest distance of a sphere's outline from its centre, as slopes.
 float reach(vec3 c, float r) {
     float s = length(c.xy), d = c.z * c.z - r * r;
     return (s * -c.z + r * sqrt(s * s + d)) / d - s / -c.z;
@@ -107,7 +107,7 @@ void main() {
     float start = dot(ray, 0.5 * (a + v_to)) / length2;
     vec3 o = start * ray - a;
     float axis2 = dot(axis, axis);
-    // Of o and ray, the parts across the axis, times axis2.
+    // Components of o and ray across the axis, times axis2.
     float along_ray = dot(axis, ray), along_o = dot(axis, o);
     float qa = axis2 * length2 - along_ray * along_ray;
     float qb = axis2 * dot(o, ray) - along_o * along_ray;
@@ -147,7 +147,7 @@ void finish(vec3 base, vec3 n, vec3 ray, float length2, float depth) {
 }
 )";
 
-// finish() writes what main() declares, so it stands between the two.
+// finish() writes to outputs that `text` declares before main(), so it stands between the two.
 std::string fragment(const char* text) {
     std::string whole = shader(text);
     whole.insert(whole.find("void main()"), kFinish + 1);

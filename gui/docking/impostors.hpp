@@ -1,9 +1,9 @@
-// Spheres and sticks drawn as impostors: a quad each, on which the fragment shader meets the eye's ray with
-// the true shape. Round at any size, with the depth and the light of every pixel its own.
+// Spheres and sticks as impostors: one quad per shape, on which the fragment shader intersects the eye ray with the
+// exact shape. Round at any size, with per-pixel depth and lighting.
 //
-// Quad     the bounds of the shape seen in perspective, at its nearest point; all corners have one depth, so
-//          that what is interpolated is exact. A shape that reaches the eye is not drawn.
-// Depth    of the surface that is met: impostors cut each other and meshes where the shapes do.
+// Quad     the bounds of the shape in perspective, at its nearest point; all corners have one depth, so that
+//          interpolation is exact. A shape that reaches the eye is not drawn.
+// Depth    of the intersection: impostors intersect each other and meshes correctly.
 // Thread   frame thread, context current.
 #pragma once
 
@@ -17,12 +17,12 @@
 
 namespace tact {
 
-// What one draw needs to know beside the shapes.
+// Parameters of a draw besides the shapes.
 struct ImpostorView {
     Eigen::Matrix4f eye_from_local, projection;  // local: ångström
     const Haze& haze;
     Colouring colouring = Colouring::chain;
-    Rgb8 body{255, 255, 255};  // where by body
+    Rgb8 body{255, 255, 255};  // for colouring by body
 };
 
 // The shapes of one structure in graphics memory, shared by all its copies.

@@ -51,7 +51,7 @@ void Molecules::draw(std::span<const DrawnBody> bodies, const Eigen::Matrix4f& e
             draw_tube(body.structure, view);
             continue;
         }
-        // Told by the atoms before anything is made for them.
+        // Decided by the number of atoms, before any shapes are made.
         const std::size_t atoms = docking_of(*content_).bodies[body.structure].size();
         const std::size_t shapes_drawn = l.style == MoleculeStyle::trace ? 0 : atoms;
         if (shapes_drawn > room) {

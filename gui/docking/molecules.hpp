@@ -1,10 +1,10 @@
-// The bodies of a scene, each in the style and colouring that a person chose for it.
+// The bodies of a scene, each in the style and colouring that the user chose.
 //
-// Shared   what a structure needs on the graphics card is made when a style is first drawn, once for all its
-//          copies; a body brings its pose alone.
-// Cost     trace and tube are cheap anywhere. Sticks and spheres are impostors, as many as bonds and atoms:
-//          easy for a graphics card, dear where the processor draws. Of one frame, at most shapes_max are
-//          drawn (set_shapes_max); bodies that find no room are drawn as tubes, and left_out() counts them.
+// Shared   the graphics data of a structure is created when a style is first drawn, once for all its copies; a
+//          body adds only its pose.
+// Cost     trace and tube are cheap anywhere. Sticks and spheres are impostors, one per bond or atom: cheap on a
+//          graphics card, expensive in software. A frame draws at most shapes_max of them (set_shapes_max);
+//          further bodies are drawn as tubes, and left_out() counts them.
 // Thread   frame thread, context current.
 #pragma once
 
@@ -23,22 +23,22 @@
 
 namespace tact {
 
-// A body as it is to be drawn now. Copies share a structure.
+// A body to draw. Copies share a structure.
 struct DrawnBody {
     Pose T_model_body;
-    std::uint32_t structure = 0;  // of the scene
-    std::uint32_t id = 0;         // names the body for the setters below
+    std::uint32_t structure = 0;  // index in the scene
+    std::uint32_t id = 0;         // identifies the body for the setters below
     bool hidden = false;
 };
 
 class Molecules {
 public:
-    static constexpr std::size_t kTubeVertices = 20000;  // of all structures together
+    static constexpr std::size_t kTubeVertices = 20000;  // total of all structures
     static constexpr std::size_t kNoLimit = std::numeric_limits<std::size_t>::max();
 
     Molecules(std::shared_ptr<const SceneContent> content, Programs& programs);
 
-    void set_look(const MoleculeLook& look);  // of all bodies, also of those to come
+    void set_look(const MoleculeLook& look);  // of all bodies, including later ones
     void set_look(std::uint32_t id, const MoleculeLook& look);
     [[nodiscard]] MoleculeLook look(std::uint32_t id) const;
     void set_shapes_max(std::size_t shapes) { shapes_max_ = shapes; }
@@ -46,7 +46,7 @@ public:
     // Opaque; depth test and depth writing on.
     void draw(std::span<const DrawnBody> bodies, const Eigen::Matrix4f& eye_from_scene,
               const Eigen::Matrix4f& projection, const Haze& haze);
-    // Bodies of the last draw() that were to be sticks or spheres and were drawn as tubes.
+    // Bodies that the last draw() drew as tubes instead of sticks or spheres.
     [[nodiscard]] std::size_t left_out() const { return left_out_; }
 
 private:
@@ -59,7 +59,7 @@ private:
 
     std::shared_ptr<const SceneContent> content_;
     Programs& programs_;
-    std::unique_ptr<ImpostorPrograms> impostors_;  // compiled when first needed
+    std::unique_ptr<ImpostorPrograms> impostors_;  // compiled at first use
     std::vector<OfStructure> structures_;
     MoleculeLook look_;
     std::map<std::uint32_t, MoleculeLook> look_of_;

@@ -21,7 +21,7 @@ std::optional<RefineOutcome> RefineWorker::poll() {
 }
 
 RefineOutcome RefineWorker::work(const FitBody& body) {
-    (void)setpriority(PRIO_PROCESS, static_cast<id_t>(gettid()), 10);  // of this thread, on Linux
+    (void)setpriority(PRIO_PROCESS, static_cast<id_t>(gettid()), 10);  // this thread, on Linux
     RefineOutcome outcome{body, {}, {}};
     try {
         const SceneMeta& meta = content_->meta;

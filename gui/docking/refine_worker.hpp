@@ -1,6 +1,6 @@
-// Refines one body beside the frame loop (ipc/scene/fit/refine.hpp).
+// Refines one body in the background (ipc/scene/fit/refine.hpp).
 //
-// Thread   start(), poll() and cancel() on the frame thread; the work on one of its own, at low priority.
+// Thread   start(), poll() and cancel() on the frame thread; the work on its own thread, at low priority.
 #pragma once
 
 #include <atomic>
@@ -17,20 +17,20 @@ namespace tact {
 struct RefineOutcome {
     FitBody start;
     RefineResult result;
-    std::string error;  // not empty: it failed
+    std::string error;  // not empty: failed
 };
 
 class RefineWorker {
 public:
-    // The content needs a map. It is prepared at the first start(), on the worker's thread.
+    // The content needs a map, which the first start() prepares on the worker's thread.
     explicit RefineWorker(std::shared_ptr<const SceneContent> content) : content_(std::move(content)) {}
-    ~RefineWorker() { cancel(); }  // and the future waits for the thread
+    ~RefineWorker() { cancel(); }  // the future's destructor then waits for the thread
 
-    // Not while running(), and only for a structure of the content.
+    // Call only if not running(), and for a structure of the content.
     void start(const FitBody& body);
     [[nodiscard]] bool running() const { return outcome_.valid(); }
     void cancel() { cancelled_ = true; }
-    [[nodiscard]] std::optional<RefineOutcome> poll();  // once, when it is done
+    [[nodiscard]] std::optional<RefineOutcome> poll();  // once, when done
 
 private:
     [[nodiscard]] RefineOutcome work(const FitBody& body);

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "gui/drilling/particles.hpp"
@@ -13,9 +14,9 @@ namespace {
 
 constexpr double kBenchStep_s = 0.01;
 constexpr double kBenchPlenty_s = 10.0;
-constexpr std::uint32_t kBenchNamed = 100000;  // whose keys also stand without a number
+constexpr std::uint32_t kBenchNamed = 100000;  // its keys also stand without a number
 
-// Most of what there is lies where it fell.
+// Most particles rest where they fell.
 class BenchSite {
 public:
     explicit BenchSite(std::uint32_t most)
@@ -37,7 +38,7 @@ private:
                 for (std::uint32_t x = 0; x < 256; ++x) density_[bricks_.voxel(x, y, z)] = 200;
         return density_;
     }
-    // The next hundredth.
+    // Adds the next hundredth.
     void come() {
         std::size_t left = most_ / 100;
         for (std::size_t misses = 0; left > 0 && misses < 1000 && particles_.all().size() < most_;) {
@@ -53,7 +54,7 @@ private:
 
     std::uint32_t most_;
     double layers_ =
-        std::max(6.0, 6.0 * most_ / kBenchNamed);  // where they come, so that there is room for all
+        std::max(6.0, 6.0 * most_ / kBenchNamed);  // layers in which they appear, with room for all
     BoneBricks bricks_{.size = {256, 128, 128}, .voxel_m = 3e-4};
     std::vector<std::uint8_t> density_;
     Particles particles_;
@@ -67,13 +68,14 @@ nlohmann::json bench_particles(const ParticlesBenchSettings& settings) {
     for (const std::uint32_t most : settings.counts) {
         BenchSite site(most);
         const double budget_s = settings.budget_s * most / kBenchNamed;
-        std::vector<double> off;
+        std::vector<double> off, step_us;
         double moved = 0.0, seconds = 0.0, alive = 0.0;
         for (int i = 0; i < settings.steps; ++i) {
             const ParticleStep step = site.step(budget_s);
             moved += step.moved;
             seconds += step.cost_s;
             alive += step.alive;
+            step_us.push_back(1e6 * step.cost_s);
             if (step.moved < step.alive - step.alive / 50)
                 off.push_back(std::abs(step.cost_s / budget_s - 1.0));
         }
@@ -81,6 +83,13 @@ nlohmann::json bench_particles(const ParticlesBenchSettings& settings) {
         nlohmann::json of = {{"particle_ns_each", 1e9 * seconds / std::max(moved, 1.0)},
                              {"particle_moves", moved / steps},
                              {"particles_alive", alive / steps}};
+        std::sort(step_us.begin(), step_us.end());
+        for (const auto& [name, p] : {std::pair{"p50", 0.5}, {"p99", 0.99}, {"p999", 0.999}, {"max", 1.0}}) {
+            const double rank = std::ceil(p * static_cast<double>(step_us.size()) - 1e-9);
+            if (!step_us.empty())
+                of["particle_step_us_" + std::string(name)] =
+                    step_us[static_cast<std::size_t>(std::max(rank, 1.0)) - 1];
+        }
         if (!off.empty()) {
             double sum = 0.0;
             for (const double e : off) sum += e;

@@ -8,8 +8,8 @@ namespace {
 
 constexpr std::array<std::string_view, 8> kVesselWords{"sinus",   "carotid", "jugular", "artery",
                                                        "arteria", "vessel",  "vein",    "vena"};
-// Drops of one voxel each. A sigmoid sinus of 40 opened voxels fills a cavity of a cubic centimetre, 37,000 voxels
-// of 0.3 mm, in some seconds; a wall oozes; marrow only stains.
+// Drops are one voxel each. A sigmoid sinus with 40 opened voxels fills a cavity of a cubic centimetre (37,000 voxels
+// of 0.3 mm) in a few seconds; a wall oozes; marrow only stains.
 constexpr double kVesselPerS = 150.0, kVesselLastsS = 40.0;
 constexpr double kWallPerS = 12.0, kWallLastsS = 8.0;
 constexpr double kMarrowPerS = 8.0, kMarrowLastsS = 5.0;
@@ -40,7 +40,7 @@ Bleeding::Bleeding(const BoneBricks& bricks, const std::vector<BoneStructure>& s
 }
 
 bool Bleeding::vessel(std::uint32_t x, std::uint32_t y, std::uint32_t z) const noexcept {
-    // Below the first voxel is beyond the last one.
+    // Unsigned: the voxel before the first wraps beyond the last.
     return x < bricks_.size[0] && y < bricks_.size[1] && z < bricks_.size[2] &&
            is_vessel_[label_[bricks_.voxel(x, y, z)]];
 }

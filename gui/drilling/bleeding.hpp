@@ -1,9 +1,9 @@
-// Where cut bone bleeds: vessels that were opened, walls of vessels, and red marrow a little.
+// Bleeding of cut bone: opened vessels, walls of vessels, and a little from red marrow.
 //
-// Opens    vessel: a voxel of a structure whose name is a vessel's; wall: bone right beside one; marrow: some of the
-//          spongy voxels
-// Stops    after its time, five times sooner where dust or paste lies on it: nothing comes out then
-// Bounds   kWoundsMost at a time; a new one takes the place of an older one
+// Opens    vessel: a voxel of a structure named as a vessel; wall: bone next to one; marrow: a few of the spongy
+//          voxels
+// Stops    after its time, five times sooner under dust or paste, which also block the flow
+// Bounds   kWoundsMost at a time; a new one replaces the oldest
 // Thread   one; no allocation after construction
 #pragma once
 
@@ -20,16 +20,16 @@ class Bleeding {
 public:
     static constexpr std::size_t kWoundsMost = 400;
 
-    // label: as BoneLabelsView, or empty; it must outlive the object.
+    // label: as in BoneLabelsView, or empty; it must outlive this object.
     Bleeding(const BoneBricks& bricks, const std::vector<BoneStructure>& structures,
              std::span<const std::uint8_t> label, std::uint64_t seed);
 
-    // A voxel of this density is bone no more.
+    // A voxel of this density has been removed.
     void cut(std::uint32_t x, std::uint32_t y, std::uint32_t z, std::uint8_t density) noexcept;
-    // At most so many drops in this step.
+    // At most this many drops in this step.
     void step(double dt_s, std::size_t drops_most, Particles& particles) noexcept;
     [[nodiscard]] std::size_t wounds() const noexcept { return wounds_.size(); }
-    // Drops that came out so far.
+    // Total number of drops so far.
     [[nodiscard]] std::uint64_t drops() const noexcept { return drops_; }
 
 private:
@@ -44,7 +44,7 @@ private:
     std::span<const std::uint8_t> label_;
     std::array<bool, 256> is_vessel_{};  // by label
     std::vector<Wound> wounds_;
-    std::size_t oldest_ = 0;  // where there are as many as there may be
+    std::size_t oldest_ = 0;  // once kWoundsMost is reached
     SeededRandom random_;
     std::uint64_t drops_ = 0;
 };

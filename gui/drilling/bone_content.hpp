@@ -1,4 +1,4 @@
-// Bone to drill as it was baked, and which structure its voxels belong to, as mapped.
+// Baked bone and the structure of each of its voxels, memory-mapped.
 #pragma once
 
 #include <cstdint>
@@ -24,8 +24,8 @@ public:
     SceneFile file;
     BoneVolumeView volume;
     BoneLabelsView labels;                 // none: no structures
-    std::vector<DistanceField> distances;  // to the critical ones
-    std::vector<std::uint8_t> free_cells;  // as baked (BoneField); none: measured when it is shown
+    std::vector<DistanceField> distances;  // to the critical structures
+    std::vector<std::uint8_t> free_cells;  // as baked (BoneField); empty: measured when first shown
 };
 
 // Throws StartupError naming the file.

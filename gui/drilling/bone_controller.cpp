@@ -16,7 +16,7 @@ void BoneController::meet(const Controller& controller) {
     if (!follower_ || !controller.attached()) return;
     const std::string why =
         controller.bone_refusal().empty() ? follower_->attach(controller.bone()) : controller.bone_refusal();
-    if (!why.empty()) spdlog::warn("the bone is shown as baked, not as it is drilled: {}", why);
+    if (!why.empty()) spdlog::warn("showing the bone as baked, without drilling: {}", why);
 }
 
 void BoneController::leave() {

@@ -1,7 +1,7 @@
-// The bone of the scene that is shown, kept the same as the controller's: the one place that joins both.
+// Keeps the bone of the displayed scene equal to the controller's: the only place that connects both.
 //
-// Frame     use() when a scene came, meet() when a controller came or a scene did, leave() when it went; then follow()
-//           once a frame, and changes() is what has changed in it, for everything that shows bone.
+// Frame     use() for a new scene, meet() for a new controller or scene, leave() when the controller leaves; then
+//           follow() once a frame. changes() holds its changes, for everything that shows bone.
 // Thread    frame thread
 #pragma once
 
@@ -16,15 +16,15 @@ namespace tact {
 class BoneController {
 public:
     static constexpr std::size_t kBricksAFrame =
-        512;  // 256 KiB; a burr changes some ten a cycle, mostly the same
+        512;  // 256 KiB; a burr changes about ten per cycle, mostly the same
 
-    void use(std::unique_ptr<BoneFollower> follower);  // null: the scene is not of bone
+    void use(std::unique_ptr<BoneFollower> follower);  // null: not a bone scene
     void meet(const Controller& controller);
     void leave();
     void follow();
 
     [[nodiscard]] std::span<const BrickChange> changes() const { return changes_; }
-    // Null: the scene is not of bone. The copy as it is now.
+    // The current copy; null: not a bone scene.
     [[nodiscard]] const BoneVolumeView* volume() const { return follower_ ? &follower_->volume() : nullptr; }
 
 private:

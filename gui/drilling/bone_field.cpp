@@ -39,8 +39,8 @@ double BoneField::reach_voxels(const Vec3& centre) const {
     return most;
 }
 
-// Between two voxels the surface may come as near as their midpoint, or a whole edge where one is solid: with the
-// voxels about a cell counted, nothing of it lies in an empty one.
+// Between two voxels the surface may lie up to a whole edge from the solid one. The voxels around a cell are
+// therefore included, so that no surface lies in an empty cell.
 bool BoneField::empty(std::uint32_t cx, std::uint32_t cy, std::uint32_t cz) const {
     const std::array<std::uint32_t, 3> c{cx, cy, cz};
     std::array<std::uint32_t, 3> from{}, to{};
@@ -91,7 +91,7 @@ void BoneField::mark_own() {
     }
 }
 
-// Distances by two sweeps: forward from the thirteen neighbours before a cell, backward from those behind.
+// Distances by two sweeps: forward from the thirteen adjacent cells before a cell, backward from those after it.
 void BoneField::measure() {
     constexpr int kMost = 255;
     const std::uint32_t nx = cells_[0], ny = cells_[1], nz = cells_[2];
@@ -99,7 +99,8 @@ void BoneField::measure() {
         return (std::size_t{z} * ny + y) * nx + x;
     };
     mark_own();
-    // free_ is 1 where a cell's own voxels are all clear. Only where a neighbour's are not, voxels decide.
+    // free_ is 1 where a cell's own voxels are all clear. Voxels are tested again only if an adjacent cell is not
+    // clear.
     std::vector<std::uint8_t> none(free_.size());
     for (std::uint32_t z = 0; z < nz; ++z)
         for (std::uint32_t y = 0; y < ny; ++y)

@@ -1,10 +1,12 @@
-// What of a bone volume is seen: how solid each voxel is to the eye, and how far from bone each place is at least.
+// Visible bone: the opacity of each voxel, and for each place a lower bound of the distance to bone.
 //
-// Solid     0 to 255. Bone is as solid as it is dense. A labelled structure that is soft (nerve, vessel, dura) is solid by
-//           the share of it that is left, so it is seen as clearly as bone; what a scan shows nothing of stays as labelled.
-// Cells     of 4 voxels a side. 0: there may be something; k: all cells nearer than k (the largest of the three differences)
-//           are empty, so a ray may leave them at once. Bone only goes: distances stay true while it is drilled.
-// Surface   where solid, interpolated linearly between voxel centres, reaches kSurface.
+// Solid     opacity, 0 to 255. Bone is as opaque as it is dense. A soft labelled structure (nerve, vessel, dura) has
+//           the opacity of its remaining fraction, so it is as visible as bone; one invisible in the scan is shown
+//           as labelled.
+// Cells     of 4 voxels a side. 0: may hold something; k: all cells nearer than k (the largest of the three
+//           differences) are empty, so a ray can skip them at once. Bone is only removed: distances stay valid while
+//           drilling.
+// Surface   where the opacity, interpolated linearly between voxel centres, reaches kSurface.
 // Thread    frame thread
 #pragma once
 
@@ -31,8 +33,9 @@ public:
     static constexpr std::uint32_t kCell = 4;
     static constexpr std::uint8_t kSurface = 77;
 
-    // All must outlive it; `now` changes brick by brick, told by changed(). free_cells: of one made before for the same
-    // `now`, as measuring a large volume takes a good part of a second; of another size, or none: they are measured.
+    // All arguments must outlive this object; `now` changes brick by brick, reported to changed(). free_cells: of an
+    // earlier field with the same `now`, because measuring a large volume takes much of a second; measured if empty
+    // or of another size.
     BoneField(const BoneVolumeView& baked, const BoneLabelsView& labels, const BoneVolumeView& now,
               std::span<const std::uint8_t> free_cells = {});
 
@@ -41,13 +44,14 @@ public:
     [[nodiscard]] std::uint8_t label(std::size_t voxel) const {
         return labels_.label.empty() ? std::uint8_t{0} : labels_.label[voxel];
     }
-    // Of a brick, x fastest.
+    // Opacities of a brick, x fastest.
     void solids(std::uint32_t brick, std::span<std::uint8_t, BoneBricks::kVoxels> out) const;
-    // Its cells, as they are now. False: there is bone where there was none, so all distances are measured anew.
+    // Updates the cells of a brick. Returns false if bone appeared in an empty cell: all distances were measured
+    // again.
     bool changed(std::uint32_t brick);
 
     [[nodiscard]] const std::array<std::uint32_t, 3>& cells() const { return cells_; }
-    // Of a ball about a place, voxels, that holds all that may be seen; 0: nothing.
+    // Radius of a ball about a centre that contains everything visible, voxels; 0: nothing.
     [[nodiscard]] double reach_voxels(const Vec3& centre) const;
     [[nodiscard]] std::span<const std::uint8_t> free_cells() const { return free_; }  // x fastest
 

@@ -16,17 +16,17 @@ BoneFollower::BoneFollower(const BoneVolumeView& as_baked, std::uint64_t scene_c
 
 std::string BoneFollower::attach(const MappedBoneRegion& region) {
     region_ = nullptr;
-    if (region.empty()) return "it is not there";
+    if (region.empty()) return "the controller has no bone region";
     const BoneRegionHead& head = region.head();
     const BoneBricks& b = volume_.bricks;
-    if (head.scene_checksum != checksum_) return "it is of another scene";
+    if (head.scene_checksum != checksum_) return "the controller's bone is of another scene";
     const auto same = [&](int axis) {
         return head.size[axis] == b.size[static_cast<std::size_t>(axis)] &&
                head.origin_m[axis] == b.origin_m[axis];
     };
     if (head.bricks != seen_.size() || head.brick_bytes != BoneBricks::kVoxels || head.voxel_m != b.voxel_m ||
         !same(0) || !same(1) || !same(2))
-        return "its size, its voxels or its place are not those of the scene";
+        return "size, voxel size or position of the controller's bone differ from the scene";
     region_ = &region;
     for (std::size_t i = 0; i < seen_.size(); ++i) {
         seen_[i] = region.revision(i);
@@ -60,7 +60,7 @@ std::span<const BrickChange> BoneFollower::follow(std::size_t most) {
                     {static_cast<std::uint32_t>(i), {before_.data() + at, kVoxels}, after, unknown_[i] == 0});
                 changed_[i] = 1;
             }
-            seen_[i] = revision;  // loaded before the copy: a later change moves it again
+            seen_[i] = revision;  // loaded before the copy: a later change is copied again
             unknown_[i] = 0;
         }
         i = i + 1 == seen_.size() ? 0 : i + 1;
@@ -75,7 +75,7 @@ void BoneFollower::keep_to_size(std::size_t brick, std::span<std::uint8_t> voxel
     const std::array<std::uint32_t, 3> at{static_cast<std::uint32_t>(brick % n[0]),
                                           static_cast<std::uint32_t>(brick / n[0] % n[1]),
                                           static_cast<std::uint32_t>(brick / n[0] / n[1])};
-    std::array<std::uint32_t, 3> here{};  // voxels of the brick that are inside
+    std::array<std::uint32_t, 3> here{};  // voxels of the brick inside the volume
     for (std::size_t axis = 0; axis < 3; ++axis)
         here[axis] = std::min(kEdge, volume_.bricks.size[axis] - at[axis] * kEdge);
     if (here == std::array{kEdge, kEdge, kEdge}) return;

@@ -1,12 +1,13 @@
-// The bone as it is drilled: a copy of the scene's densities that follows the controller's, brick by brick.
+// A copy of the scene's bone densities that follows the controller's drilling, brick by brick.
 //
-// Without a controller the copy stays as it is; at first it is the scene's. What a controller's bone is when it is found
-// (another one may have drilled before, or this one for a while) is told as changes as well, with cut_now false.
-// Mass     of every brick, after - before over all changes is what its copy has lost, exactly; once the controller
-//          rests and follow() tells nothing more, the copy is the controller's bone.
-// Hostile  a region of another scene is refused in words. Densities may be any; what lies beyond the volume's size
-//          stays 0.
-// Thread   frame thread. follow() allocates where more is changed at once than ever before.
+// Without a controller the copy stays as it is; initially it is the scene's. The bone of a newly found controller
+// (which
+// may have drilled before) is also reported as changes, with cut_now false.
+// Mass     for each brick, after - before over all changes is exactly the loss of its copy; once the controller
+//          rests and follow() reports no more changes, the copy equals the controller's bone.
+// Hostile  a region of another scene is refused with a reason. Densities may have any value; voxels beyond the
+//          volume's size stay 0.
+// Thread   frame thread. follow() allocates only for more simultaneous changes than ever before.
 #pragma once
 
 #include <cstdint>
@@ -22,22 +23,22 @@ namespace tact {
 struct BrickChange {
     std::uint32_t brick;                          // index, order of BoneBricks
     std::span<const std::uint8_t> before, after;  // BoneBricks::kVoxels each
-    bool cut_now;  // since the last look; false: it was so when the controller was found
+    bool cut_now;  // since the last call; false: before the controller was found
 };
 
 class BoneFollower {
 public:
     BoneFollower(const BoneVolumeView& as_baked, std::uint64_t scene_checksum);
 
-    // From now on this bone, which stays where it is until detach() or another attach(). Returns why it cannot be
-    // followed, or nothing.
+    // Follows this bone, which must stay mapped until detach() or another attach(). Returns the reason if it cannot
+    // be followed, else nothing.
     std::string attach(const MappedBoneRegion& region);
     void detach() { region_ = nullptr; }
 
-    // Copies bricks that changed, `most` at a call, in turn. Valid until the next call.
+    // Copies changed bricks, at most `most` per call, round robin. Valid until the next call.
     std::span<const BrickChange> follow(std::size_t most);
 
-    // The copy; its densities stay where they are as long as the follower does.
+    // The copy; its densities keep their address as long as the follower lives.
     [[nodiscard]] const BoneVolumeView& volume() const { return volume_; }
 
 private:
@@ -47,10 +48,10 @@ private:
     BoneVolumeView volume_;
     std::uint64_t checksum_;
     const MappedBoneRegion* region_ = nullptr;
-    std::vector<std::uint32_t> seen_;    // revision that was copied, or found
-    std::vector<std::uint8_t> unknown_;  // what the region holds was not looked at yet
-    std::vector<std::uint8_t> changed_;  // the copy is not as baked
-    std::size_t next_ = 0;               // brick to look at first
+    std::vector<std::uint32_t> seen_;    // revision copied or found
+    std::vector<std::uint8_t> unknown_;  // not yet compared with the region
+    std::vector<std::uint8_t> changed_;  // the copy differs from the baked bone
+    std::size_t next_ = 0;               // first brick to check
     std::vector<std::uint8_t> before_, after_;
     std::vector<BrickChange> changes_;
 };

@@ -13,7 +13,7 @@ namespace {
 
 constexpr char kRayVertex[] = R"(
 layout(location = 0) in vec2 corner;
-uniform vec4 u_tan;  // half the view over its distance; its middle over that
+uniform vec4 u_tan;  // xy: half view / distance; zw: centre / distance
 uniform mat3 u_from_eye;
 out vec3 v_ray;      // voxels
 out float v_y;
@@ -31,7 +31,7 @@ uniform vec3 u_label_size;
 uniform sampler2D u_palette;
 uniform vec3 u_size;
 uniform vec3 u_cells;
-uniform vec3 u_origin;  // of the rays, voxels
+uniform vec3 u_origin;  // ray origin, voxels
 uniform vec3 u_lamp;    // direction, voxels
 uniform float u_step;
 in vec3 v_ray;
@@ -86,8 +86,8 @@ void main() {
     }
     vec3 p = u_origin + high * d;
 
-    // The slope over a tetrahedron's corners, four looks instead of six; near, for what is fine, and wide, as the steps
-    // from voxel to voxel are else seen as terraces.
+    // Gradient from a tetrahedron's corners, four samples instead of six; narrow for fine detail, and wide because the
+    // steps between voxels would otherwise appear as terraces.
     vec2 e = vec2(1.0, -1.0);
     vec3 slope = vec3(0.0);
     for (int i = 0; i < 2; ++i) {
@@ -122,7 +122,7 @@ void main() {
     vec3 n_eye = normalize(mat3(u_eye) * n);
     vec3 towards = normalize(-at);
     vec4 c = lit(base, n_eye, towards);
-    // A microscope's lamp shines from where one looks: into a hole as far as one sees.
+    // A microscope's lamp shines along the line of sight: as deep into a hole as the view.
     vec3 light = c.rgb * (1.0 - 0.5 * shade) + 0.42 * base * max(dot(n_eye, towards), 0.0);
     light *= mix(vec3(0.46, 0.33, 0.30), vec3(1.0), open);
     colour = hazed(vec4(light, 1.0), -at.z, v_y);
@@ -165,7 +165,7 @@ void volume_texture(GLuint name, GLint filter, GLenum wrap, const std::array<std
                  static_cast<GLsizei>(size[2]), 0, GL_RED, GL_UNSIGNED_BYTE, nullptr);
 }
 
-// The bricks at one height, put together, into a texture of the volume's size.
+// Assembles the bricks of one layer into a texture of the volume's size.
 template <class Value>
 void fill_slab(const BoneBricks& bricks, std::uint32_t bz, std::vector<std::uint8_t>& slab,
                const Value& value) {
@@ -211,14 +211,14 @@ void BoneTextures::make_next(const BoneField& field) {
         volume_texture(solid_.get(), GL_LINEAR, GL_CLAMP_TO_BORDER, bricks.size);
     } else if (unmade_ == 2) {
         volume_texture(label_.get(), GL_NEAREST, GL_CLAMP_TO_EDGE, label_size_);
-        if (!field.labelled()) {  // one voxel says so
+        if (!field.labelled()) {  // one voxel stands for all
             const std::uint8_t none = 0;
             glTexSubImage3D(GL_TEXTURE_3D, 0, 0, 0, 0, 1, 1, 1, GL_RED, GL_UNSIGNED_BYTE, &none);
         }
     } else {
         const auto& cells = field.cells();
         volume_texture(cells_.get(), GL_NEAREST, GL_CLAMP_TO_EDGE, cells);
-        // Empty, and left one by one: nothing that was sent is leapt over.
+        // Empty with distance 1: rays cross them one by one and skip nothing that was sent.
         const std::vector<std::uint8_t> empty(std::size_t{cells[0]} * cells[1] * cells[2], std::uint8_t{1});
         glTexSubImage3D(GL_TEXTURE_3D, 0, 0, 0, 0, static_cast<GLsizei>(cells[0]),
                         static_cast<GLsizei>(cells[1]), static_cast<GLsizei>(cells[2]), GL_RED,
@@ -229,7 +229,7 @@ void BoneTextures::make_next(const BoneField& field) {
         throw StartupError("showing bone of " + std::to_string(bricks.size[0]) + " x " +
                                std::to_string(bricks.size[1]) + " x " + std::to_string(bricks.size[2]) +
                                " voxels",
-                           "the graphics driver has no room for it, error " + std::to_string(error),
+                           "not enough graphics memory, error " + std::to_string(error),
                            "bake a part of it with --crop, or larger voxels with --voxel-mm");
     --unmade_;
 }
@@ -272,7 +272,7 @@ void BoneTextures::send(const BoneField& field, std::uint32_t brick) {
     const BoneBricks& bricks = field.bricks();
     const auto n = bricks.bricks();
     const std::array<std::uint32_t, 3> at{brick % n[0], brick / n[0] % n[1], brick / n[0] / n[1]};
-    if (at[2] < unsent_) return;  // it will be sent as it is then
+    if (at[2] < unsent_) return;  // it will be sent later, in its current state
     std::array<std::uint8_t, BoneBricks::kVoxels> voxels{};
     field.solids(brick, voxels);
     std::array<GLint, 3> first{};
@@ -354,7 +354,7 @@ void BoneProgram::use(BoneTextures& textures, const BoneField& field, const Eige
     view_.set(eye_from_voxels, projection, haze);
     const Eigen::Matrix4d inverse = eye_from_voxels.cast<double>().inverse();
     const Eigen::Vector3f origin = inverse.topRightCorner<3, 1>().cast<float>();
-    // Of length 1 in voxels for the ray in the middle, so that no number is far from 1.
+    // Length 1 in voxels for the central ray, so that all numbers are near 1.
     Eigen::Matrix3d from_eye = inverse.topLeftCorner<3, 3>();
     from_eye /= from_eye.col(2).norm();
     const Eigen::Matrix3f turned = from_eye.cast<float>();

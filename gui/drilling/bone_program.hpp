@@ -1,9 +1,9 @@
-// The rays through the bone, and putting what they saw on the screen.
+// Ray casting of the bone, and drawing of its image on the screen.
 //
-// Ray       leaves empty cells at once (BoneField), steps by `step_voxels` elsewhere, and halves the step at which it
-//           entered the surface. Colour: of the structure, else by how dense the bone is behind its surface. Light: as
-//           everything else, times how much of the sky above the surface is open, times a soft shadow of the lamp.
-// Frames    voxels (centre of voxel 0 at the origin) inside the shader; eye space in ångström as all programs
+// Ray       skips empty cells at once (BoneField), steps by `step_voxels` elsewhere, and halves the step that
+//           entered the surface. Colour: of the structure, else by the density behind the surface. Light: as for
+//           everything else, times the open fraction of the sky above the surface, times a soft shadow of the lamp.
+// Frames    voxels (origin at the centre of voxel 0) inside the shader; eye space in ångström as in all programs
 // Thread    frame thread, context current
 #pragma once
 
@@ -13,18 +13,19 @@
 
 namespace tact {
 
-// The volume in graphics memory. It is made and filled over many pictures: a texture at a time, as memory for a large one
-// takes a good part of a frame; then from its front, the largest z, slab by slab. What was not sent yet is not seen.
+// The volume in graphics memory, created and filled over many frames: one texture at a time, because memory for a
+// large one takes a good part of a frame; then slab by slab from the front (largest z). Voxels not yet sent are
+// invisible.
 class BoneTextures {
 public:
     BoneTextures(const BoneField& field, std::span<const BoneStructure> structures);
-    // Goes on for so long, and for one texture or slab at least. Throws StartupError where the graphics driver has no room
-    // for it.
+    // Continues for this long, and for at least one texture or slab. Throws StartupError if the graphics driver has
+    // not enough memory.
     void fill(const BoneField& field, double seconds);
-    [[nodiscard]] bool made() const { return unmade_ == 0; }  // there is something to draw with
+    [[nodiscard]] bool made() const { return unmade_ == 0; }  // ready to draw with
     [[nodiscard]] bool full() const { return made() && unsent_ == 0; }
-    [[nodiscard]] float filled(const BoneField& field) const;  // share
-    // Of what was sent already:
+    [[nodiscard]] float filled(const BoneField& field) const;  // fraction
+    // For parts already sent:
     void send(const BoneField& field, std::uint32_t brick);  // its voxels and cells
     void send_cells(const BoneField& field);                 // all of them
     void bind();
@@ -36,15 +37,15 @@ private:
                     std::uint32_t count);  // of these layers of bricks
 
     GlTexture solid_, cells_, label_, palette_;
-    std::array<std::uint32_t, 3> label_size_{};  // 1 x 1 x 1 where nothing is labelled
+    std::array<std::uint32_t, 3> label_size_{};  // 1 x 1 x 1 without labels
     int unmade_ = 3;                             // textures
-    std::uint32_t unsent_;                       // layers of bricks, from z = 0 on
+    std::uint32_t unsent_;                       // layers of bricks, from z = 0
 };
 
 class BoneProgram {
 public:
     BoneProgram();
-    // Corners in clip space, two numbers each, are attribute 0 of what is drawn next.
+    // The next draw supplies attribute 0: corners in clip space, two numbers each.
     void use(BoneTextures& textures, const BoneField& field, const Eigen::Matrix4f& eye_from_voxels,
              const Eigen::Matrix4f& projection, const Haze& haze, float step_voxels);
 
@@ -54,11 +55,11 @@ private:
     GLint size_, label_size_, cells_, origin_, from_eye_, tan_, step_, lamp_;
 };
 
-// Draws a part of an image with its depths over what is there, where they are nearer.
+// Draws part of an image with its depths over the existing content where it is nearer.
 class BoneOnScreen {
 public:
     BoneOnScreen();
-    // Clip space as above; what is shown there is image(clip -> [0, `share`]).
+    // Clip space as above, which shows the part [0, `share`] of the image.
     void use(GLuint colour, GLuint depth, float share_x, float share_y, bool smooth);
 
 private:

@@ -1,8 +1,8 @@
-// Which parts of the sharp picture of the bone are to be drawn again: tiles of 64 pixels.
+// Selects the parts of the sharp bone image to redraw: tiles of 64 pixels.
 //
-// Wrong     of another view: must not be shown.   Stale   bone has changed in it: shown until it is drawn again.
-// Order     stale ones first, then wrong ones from the middle of the view outwards, as many as the rays reach; at
-//           least one, so that the picture is complete at last.
+// Wrong     of another view: must not be shown.   Stale   its bone has changed: shown until redrawn.
+// Order     stale ones first, then wrong ones from the centre of the view outwards, as many as the rays suffice for;
+//           at least one, so that the image is complete at last.
 // Thread    any; plain data
 #pragma once
 
@@ -43,7 +43,7 @@ public:
         std::sort(order_.begin(), order_.end(),
                   [&](std::uint32_t a, std::uint32_t b) { return off(a) < off(b); });
     }
-    // Another view; bone lies within `bounds` alone.
+    // Another view; bone lies only within `bounds`.
     void all_wrong(const PixelBox& bounds) {
         bounds_ = bounds.cut(view_);
         std::fill(tile_.begin(), tile_.end(), State::wrong);
@@ -67,7 +67,7 @@ public:
     [[nodiscard]] bool all_good() const {
         return std::all_of(tile_.begin(), tile_.end(), [](State s) { return s == State::good; });
     }
-    // Those to draw now, with so many rays; they are good from now on. Valid until the next call.
+    // Takes the tiles to draw now, limited by this many rays, and marks them good. Valid until the next call.
     std::span<const std::uint32_t> take(std::uint32_t rays_most) {
         taken_.clear();
         std::uint32_t left = rays_most;

@@ -9,10 +9,9 @@
 namespace tact {
 namespace {
 
-constexpr double kReachVoxels =
-    10.0;  // how far light and openness look for bone, where it is seen that they changed
+constexpr double kReachVoxels = 10.0;  // range of lighting and openness, within which a change is visible
 constexpr float kSharpStep = 1.0F, kCoarseStep = 1.4F;  // voxels
-constexpr int kCoarsest = 12;                           // pixels a ray
+constexpr int kCoarsest = 12;                           // pixels per ray
 
 bool same_view(const BoneFrame& a, const BoneFrame& b) {
     return a.eye_from_scene == b.eye_from_scene && a.projection == b.projection &&
@@ -63,7 +62,7 @@ void BoneView::Picture::resize(int width, int height) {
     glFramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, colour.get(), 0);
     glFramebufferTexture2D(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_TEXTURE_2D, depth.get(), 0);
     if (glCheckFramebufferStatus(GL_FRAMEBUFFER) != GL_FRAMEBUFFER_COMPLETE)
-        throw StartupError("keeping a picture of the bone", "the graphics driver refuses it",
+        throw StartupError("creating the image of the bone", "the graphics driver rejects it",
                            "use a smaller --size");
 }
 

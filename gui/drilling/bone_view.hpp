@@ -1,11 +1,11 @@
-// The bone on the screen: a sharp picture that is kept from frame to frame, and rays where it does not hold.
+// The bone on the screen: a sharp image kept from frame to frame, and new rays where it is invalid.
 //
-// Still     only tiles in which bone was drilled are seen through again.
-// Moving    a picture of fewer rays, as many as a frame may have, is shown until tiles of the sharp one replace it, from
-//           the middle outwards.
-// Knob      rays a frame: the governor's level of "gui.volume" is their share of the pixels.
-// Depth     that of the surface in each pixel, so everything drawn before and after is hidden or hides as it should.
-// Thread    frame thread, context current; the frame buffer and viewport that were bound are bound again.
+// Still     rays are cast again only in tiles whose bone was drilled.
+// Moving    a coarser image, with as many rays as a frame allows, is shown until sharp tiles replace it from the
+//           centre outwards.
+// Level     rays per frame: the governor's level of "gui.volume" is a fraction of the pixels.
+// Depth     that of the surface in each pixel, so bone and everything else hide each other correctly.
+// Thread    frame thread, context current; the framebuffer and viewport that were bound are bound again.
 #pragma once
 
 #include <array>
@@ -23,28 +23,28 @@ struct BoneFrame {
     Haze haze;
     int x_px = 0, y_px = 0, width_px = 1, height_px = 1;  // of the viewport
     std::uint32_t rays_most = 0;
-    std::size_t eye = 0;  // which of two: each keeps a picture
-    double fill_s = 1e9;  // at most, for what is not in graphics memory yet
+    std::size_t eye = 0;  // index; each keeps an image
+    double fill_s = 1e9;  // at most, to upload bone
 };
 
 class BoneView {
 public:
-    // All must outlive it; `now` is the bone as it is drilled. centre_model_m: origin of the scene frame.
+    // All arguments must outlive it; `now` is the bone as drilled. centre_model_m: origin of the scene frame.
     BoneView(const BoneContent& bone, const Vec3& centre_model_m, const BoneVolumeView& now);
-    // Its densities in `now` are others than at the last call, or at the start.
+    // Reports that the brick's densities in `now` changed since the last call, or since the start.
     void changed(std::uint32_t brick);
-    // Throws StartupError: no room for it in graphics memory, of which it takes some at each of its first calls.
+    // Throws StartupError if graphics memory, allocated step by step in the first calls, does not suffice.
     void draw(const BoneFrame& frame);
 
-    // Of the last draw() of each eye, together; at the most one a pixel.
+    // Total of the last draw() of each eye; at most one per pixel.
     [[nodiscard]] std::uint32_t rays() const { return eye_[0].rays + eye_[1].rays; }
     [[nodiscard]] std::uint32_t rays_max() const { return eye_[0].pixels() + eye_[1].pixels(); }
-    // Of a ball about the scene's centre that holds the bone as it is, ångström.
+    // Radius of a ball about the scene's centre that contains the current bone, ångström.
     [[nodiscard]] float reach_a() const;
-    [[nodiscard]] bool sharp() const {  // nothing is left to draw
+    [[nodiscard]] bool sharp() const {  // nothing left to draw
         return textures_.full() && eye_[0].tiles.all_good() && eye_[1].tiles.all_good();
     }
-    // Share of the bone that can be seen yet.
+    // Fraction of the bone that is visible so far.
     [[nodiscard]] float filled() const { return textures_.filled(field_); }
 
 private:
@@ -59,10 +59,10 @@ private:
         Picture sharp, coarse;
         BoneTiles tiles;
         BoneFrame last{};
-        std::vector<std::uint32_t> changed;  // bricks, since its last draw()
+        std::vector<std::uint32_t> changed;  // bricks, since this eye's last draw()
         float coarse_share_x = 0.0F,
-              coarse_share_y = 0.0F;  // of the coarse picture that is in use; 0: none yet
-        float filled = -1.0F;         // of the bone, at its last draw()
+              coarse_share_y = 0.0F;  // part of the coarse image in use; 0: none yet
+        float filled = -1.0F;         // fraction of the bone, at the last draw()
         std::uint32_t rays = 0;
         [[nodiscard]] std::uint32_t pixels() const {
             return static_cast<std::uint32_t>(sharp.width_px) * static_cast<std::uint32_t>(sharp.height_px);

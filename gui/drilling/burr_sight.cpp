@@ -8,11 +8,11 @@ namespace tact {
 namespace {
 
 constexpr std::size_t kRays = 5;
-constexpr double kFromHead = 1.15;       // of the radius: bone that the head rests in does not hide it
-constexpr double kAcross = 0.6;          // of the radius, of the rays about the middle one
-constexpr double kBeside = 1.0;          // cells: how far a particle reaches
+constexpr double kFromHead = 1.15;       // of the radius: bone that touches the head does not hide it
+constexpr double kAcross = 0.6;          // of the radius: offset of the outer rays
+constexpr double kBeside = 1.0;          // cells: radius of a particle
 constexpr double kStep = 0.5;            // cells, along a ray through bone
-constexpr double kSightStepsMost = 1e6;  // no site has as many cells
+constexpr double kSightStepsMost = 1e6;  // no site has this many cells
 
 double opacity(Matter matter) {
     switch (matter) {
@@ -32,7 +32,7 @@ bool ends_in_bone(const ParticleCells& cells, Vec3 at, const Vec3& towards, doub
     for (int i = 0; i < steps; ++i, at += kStep * towards) {
         const Cell c = {static_cast<int>(std::floor(at.x())), static_cast<int>(std::floor(at.y())),
                         static_cast<int>(std::floor(at.z()))};
-        if (!cells.inside(c)) return false;  // the site is a box, and the ray began in it
+        if (!cells.inside(c)) return false;  // the site is a box, and the ray began inside
         if (cells.bone(c)) return true;
     }
     return false;
@@ -71,7 +71,7 @@ double share_seen(const Particles& particles, const Vec3& head_m, double radius_
     }
     double seen = 0.0;
     for (std::size_t k = 0; k < kRays; ++k) {
-        // Hardly anything comes through: bone need not be looked for.
+        // Hardly visible: bone need not be searched.
         if (dimmed[k] < 4.0 && !ends_in_bone(cells, from[k], towards, length))
             seen += std::exp(-dimmed[k]) / kRays;
     }

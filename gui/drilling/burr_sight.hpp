@@ -1,7 +1,7 @@
-// How much of a burr's head an eye sees: what flows, lies and stands between them.
+// Visible fraction of a burr's head: fluids, dust and bone between eye and head hide it.
 //
-// Rays     from the side of the head that faces the eye, five of them, to the edge of the site. A ray ends in bone, and
-//          is dimmed by the particles beside it, by Beer's law with the weights of the drawing.
+// Rays     five, from the side of the head that faces the eye to the edge of the site. A ray ends in bone; the
+//          particles beside it attenuate it by Beer's law, with the weights of the rendering.
 // Thread   any; no allocation
 #pragma once
 
@@ -9,7 +9,7 @@
 
 namespace tact {
 
-// 0 (nothing) to 1 (all of it); 0 for what is not finite.
+// 0 (hidden) to 1 (fully visible); 0 for non-finite arguments.
 [[nodiscard]] double share_seen(const Particles& particles, const Vec3& head_m, double radius_m,
                                 const Vec3& eye_m) noexcept;
 

@@ -9,8 +9,8 @@ namespace tact {
 namespace {
 
 constexpr std::size_t kEventsKept = 100;
-constexpr std::uint16_t kOwnEvent = 0xFFFF;  // no EventCode of the controller's
-constexpr double kAgainM = 3e-4;             // farther before nearness is said again
+constexpr std::uint16_t kOwnEvent = 0xFFFF;  // not an EventCode of the controller
+constexpr double kAgainM = 3e-4;             // hysteresis before a warning repeats
 
 std::string near_text(const std::string& name, double distance_m) {
     char text[128];

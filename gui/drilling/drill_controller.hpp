@@ -1,6 +1,6 @@
-// What is shown and kept of drilling: distances to structures, warnings, a trainee's figures, the report at the end.
+// Drilling metrics on display and in the report: distances to structures, warnings, the trainee's metrics.
 //
-// Frame     use() when a scene came; then follow() once a frame, after the bone's changes are known
+// Frame     use() for a new scene; then follow() once a frame, after the bone's changes are known
 // Thread    frame thread
 #pragma once
 
@@ -22,11 +22,11 @@ namespace tact {
 class DrillController {
 public:
     void use(std::shared_ptr<const SceneContent> content);  // null: none
-    // A controller came: its cycles and its tools are others.
+    // For a new controller, whose cycles and tools differ.
     void meet() { missed_ = 0; }
     void follow(Controller& controller, std::span<const BrickChange> changes, DashboardState& dashboard,
                 DrillingState& state);
-    // Empty path, or a scene without bone: nothing. Throws StartupError.
+    // Does nothing for an empty path or a scene without bone. Throws StartupError.
     void save(const std::string& path, const std::optional<BurrVisibility>& visibility) const;
 
 private:
@@ -38,10 +38,10 @@ private:
     void report(DashboardState& state, std::string text, Grade grade) const;
 
     std::shared_ptr<const SceneContent> content_;
-    const BoneContent* bone_ = nullptr;  // of it
+    const BoneContent* bone_ = nullptr;  // of content_
     std::unique_ptr<StructureWatch> watch_;
     std::unique_ptr<DrillMetrics> metrics_;
-    std::vector<Nearness> nearness_;  // of the burr, by field
+    std::vector<Nearness> nearness_;  // of the burr, per field
     std::uint64_t missed_ = 0;
 };
 

@@ -6,7 +6,7 @@
 namespace tact {
 namespace {
 
-constexpr double kTurnAPictureRad = 0.23;  // a good third of the way from one cutting edge to the next
+constexpr double kTurnAPictureRad = 0.23;  // over a third of the angle between two cutting edges
 
 }  // namespace
 

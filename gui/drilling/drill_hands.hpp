@@ -1,7 +1,7 @@
-// The instruments of a drilling scene as they are drawn, from what the controller says of the hands.
+// The instruments to draw in a drilling scene, from the controller's record of the hands.
 //
-// A burr at 60 000 turns a minute would be seen standing or turning backwards; it is drawn turning as slowly as the eye can
-// follow at this rate of pictures, and standing when it stands.
+// At 60 000 rpm a burr would appear to stand or to turn backwards. It is therefore drawn turning as slowly as the eye
+// can follow at the frame rate, and standing when it stands.
 // Thread   frame thread
 #pragma once
 
@@ -16,7 +16,7 @@ namespace tact {
 
 class DrillHands {
 public:
-    // Checked topic (region_checks.hpp). Valid until the next call.
+    // The topic must be checked (region_checks.hpp). The result is valid until the next call.
     std::span<const DrawnDrillTool> follow(const DrillTopic& topic, const SceneMeta& meta);
 
 private:

@@ -46,7 +46,7 @@ void DrillMetrics::cycle(const TraceTopic& t) {
     f.seen_s += dt_s;
     if (!turns) return;
     f.drilling_s += dt_s;
-    if (way_m > kPathStepM) {  // the steps of an encoder are no way
+    if (way_m > kPathStepM) {  // ignores encoder steps
         f.path_m += way_m;
         path_at_m_ = at_m;
     }
@@ -89,7 +89,7 @@ std::uint8_t DrillMetrics::brick(std::uint32_t brick, std::span<const std::uint8
         return 0;
     const auto n = bricks_.bricks();
     const Vec3 corner(kEdge * (brick % n[0]), kEdge * (brick / n[0] % n[1]), kEdge * (brick / n[0] / n[1]));
-    // Whole bricks are mostly far from everything.
+    // Most bricks are far from every structure.
     const double half_m = 0.5 * std::sqrt(3.0) * kEdge * bricks_.voxel_m * meta_.world_per_model;
     const Vec3 middle = corner + Vec3::Constant(0.5 * (kEdge - 1.0));
     double error_m = 0.0;

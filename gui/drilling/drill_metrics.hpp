@@ -1,12 +1,12 @@
-// What a trainee did: bone taken, by structure and near to critical ones, force, strokes, times, injuries.
+// Metrics of a trainee: bone removed (by structure, and near critical ones), force, strokes, times, injuries.
 //
-// Fed       every servo cycle (traces), the newest state of the tools, every brick that changed
-// Numbers   of the burr in the first hand. Drilling: it turns. Cutting: and bone went in that cycle.
-//           Force is what the hand was shown; excess is above kForceExcessN while drilling.
-//           Near: distance of the head's surface (times), or of the voxel that went (volumes), to a critical structure.
-//           An injury is bone of a critical structure that goes, after none of it went for kInjuryPauseS.
-//           Cycles that nobody saw, as the window was not there or stood still, are counted, not guessed.
-// Unit      SI in the hand's space; bone in levels, 255 a voxel of solid bone
+// Input     every servo cycle (traces), the newest state of the tools, every changed brick
+// Numbers   of the burr in the first hand. Drilling: it turns. Cutting: it also removed bone in that cycle.
+//           Force is the force on the hand; excess is above kForceExcessN while drilling.
+//           Near: distance to a critical structure from the head's surface (times) or the removed voxel (volumes).
+//           An injury is the removal of a critical structure's bone after none was removed for kInjuryPauseS.
+//           Cycles that the window missed are counted, not estimated.
+// Unit      SI in the hand's space; bone in density levels, 255 per voxel of solid bone
 // Thread    one
 #pragma once
 
@@ -25,12 +25,12 @@ namespace tact {
 inline constexpr std::array kDrillNearM{1e-3, 2e-3};  // red and amber
 inline constexpr double kForceExcessN = 2.0, kInjuryPauseS = 1.0, kDrillGapS = 0.05;
 
-// Of one labelled structure, or of bone that is none.
+// Of one labelled structure, or of unlabelled bone.
 struct StructureMetrics {
     std::uint64_t removed_levels = 0;
     std::uint64_t injuries = 0;
-    double nearest_m = 1e9;                           // while the burr turned; critical ones alone
-    std::array<double, kDrillNearM.size()> near_s{};  // drilling within; likewise
+    double nearest_m = 1e9;                           // while the burr turned; critical ones only
+    std::array<double, kDrillNearM.size()> near_s{};  // drilling time within; critical ones only
 };
 
 struct DrillMetricsRow {
@@ -41,9 +41,9 @@ struct DrillMetricsRow {
     StrokeMetrics strokes;
     std::uint64_t removed_levels = 0;
     std::array<std::uint64_t, kDrillNearM.size()> near_levels{};
-    std::array<double, kDrillNearM.size()> near_s{};  // drilling within, of any critical structure
+    std::array<double, kDrillNearM.size()> near_s{};  // drilling time within, any critical structure
     std::uint64_t injuries = 0;
-    std::vector<StructureMetrics> structure;  // by label; the first is bone without one
+    std::vector<StructureMetrics> structure;  // by label; the first is unlabelled bone
     double level_m3 = 0.0;
 
     [[nodiscard]] double force_cutting_n() const {
@@ -53,15 +53,15 @@ struct DrillMetricsRow {
 
 class DrillMetrics {
 public:
-    // What is referred to must outlive it.
+    // Referenced arguments must outlive it.
     DrillMetrics(const BoneBricks& bricks, const BoneLabelsView& labels,
                  std::span<const DistanceField> fields, const SceneMeta& meta);
 
     void tools(const DrillTopic& drill);
     void cycle(const TraceTopic& trace);
     void unseen(std::uint64_t cycles) { metrics_.unseen_cycles += cycles; }
-    // cut_now: at the time of the newest cycle; else it had gone when the controller was found. Returns the label of
-    // the critical structure that is injured by it anew, or 0.
+    // cut_now: at the time of the newest cycle; else before the controller was found. Returns the label of a critical
+    // structure that this newly injures, or 0.
     std::uint8_t brick(std::uint32_t brick, std::span<const std::uint8_t> before,
                        std::span<const std::uint8_t> after, bool cut_now);
 
@@ -76,12 +76,12 @@ private:
     SceneMeta meta_;
     DrillMetricsRow metrics_;
     Strokes strokes_;
-    HeadBalls head_;  // of the burr, when tools() was last called
+    HeadBalls head_;  // of the burr, at the last call of tools()
     Vec3 head_at_m_ = Vec3::Zero();
     bool head_known_ = false, seen_ = false;
     double cycle_s_ = 0.0;
     Vec3 path_at_m_ = Vec3::Zero();
-    std::vector<double> injured_s_;  // by label: when it was cut last
+    std::vector<double> injured_s_;  // by label: time of the last cut
 };
 
 }  // namespace tact

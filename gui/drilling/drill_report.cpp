@@ -51,7 +51,7 @@ json drill_report(const DrillMetricsRow& f, const BoneLabelsView& labels,
            f.strokes.time_s > 0.0 ? json(1e3 * f.strokes.mean_speed_m_s()) : json(nullptr)}}},
         {"path_mm", 1e3 * f.path_m}};
     j["burr_visible_share"] = visibility ? share(visibility->seen_s, visibility->drilling_s) : json(nullptr);
-    // Without labels nobody knows what is critical.
+    // Without labels, no structure is known to be critical.
     j["near_critical"] = !critical ? json(nullptr)
                                    : json{{"drilling_within_1_mm_s", f.near_s[0]},
                                           {"drilling_within_2_mm_s", f.near_s[1]},

@@ -1,5 +1,5 @@
-// What showing bone that is drilled needs and takes longer than a frame to make: the copy of its densities, and the cells
-// that particles move through.
+// Data for drilling that takes longer than a frame to prepare: the copy of the densities, and the cells for
+// particles.
 //
 // Thread   made on the loader thread, used on the frame thread
 #pragma once
@@ -17,8 +17,8 @@ class DrillStart : public SceneStart {
 public:
     explicit DrillStart(const SceneContent& content);
 
-    std::unique_ptr<BoneFollower> follower;  // null: the scene is not of bone
-    std::unique_ptr<SiteEffects> site;       // reads the follower's copy: goes first
+    std::unique_ptr<BoneFollower> follower;  // null: not a bone scene
+    std::unique_ptr<SiteEffects> site;       // reads the follower's copy: destroyed first
 };
 
 }  // namespace tact

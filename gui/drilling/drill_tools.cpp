@@ -1,5 +1,5 @@
-// A burr's head is a surface of revolution whose radius goes up and down ten times around: cutting edges that lean against
-// the turn and run along the head in a slight helix, as those of a cutting burr do.
+// A burr's head is a surface of revolution whose radius rises and falls ten times around: cutting edges that lean
+// against the rotation and run along the head in a slight helix, as on a cutting burr.
 #include "gui/drilling/drill_tools.hpp"
 
 #include <Eigen/Geometry>
@@ -25,7 +25,7 @@ constexpr float kPi = std::numbers::pi_v<float>;
 
 float in_a(double m) { return static_cast<float>(m / kAngstromM); }
 
-// Half of the head's profile by s from 0, its far end, to 1, where the shaft begins: radius and place along z.
+// Half of the head's profile for s from 0 (far end) to 1 (start of the shaft): radius and position along z.
 struct Profile {
     float radius, z;
 };
@@ -65,7 +65,7 @@ void add_fluted_head(TubeMesh& mesh, const DrawnDrillTool& t) {
     const auto point = [&](float s, float around) {
         const Profile p = profile(t, s);
         const float ridge = flute(kFlutes * around + kTwistRad * s * kFlutes / (2.0F * kPi));
-        // At both poles the grooves run out.
+        // The grooves end at both poles.
         const float deep = kGrooveDepth * std::min(1.0F, 4.0F * std::min(s, 1.0F - s));
         const float r = p.radius * (1.0F - deep * (1.0F - ridge));
         const float a = 2.0F * kPi * around;
@@ -122,7 +122,7 @@ TubeMesh build_drill_tool(const DrawnDrillTool& t) {
     add_fluted_head(mesh, t);
     const float top = profile(t, 1.0F).z, shaft = in_a(t.shaft_radius_m);
     if (!(shaft > 0.0F)) return mesh;
-    // The shaft, its collet and the handpiece; each as much thicker as a drill's are.
+    // The shaft, its collet and the handpiece, with the proportions of a drill.
     const float begin = top - 0.35F * r, end = std::max(in_a(t.shaft_length_m), top + 14.0F * shaft);
     add_revolved(mesh,
                  std::array<ProfileRing, 4>{{{begin, 0.55F * std::min(r, shaft), 0.0F},

@@ -41,7 +41,7 @@ void DrillingLayer::draw_volume(const LayerPass& pass) {
 
 void DrillingLayer::draw_fluids(const LayerPass& pass) {
     if (frame.particles == nullptr) return;
-    if (frame.time_particles) {  // what is left of the bone is not theirs
+    if (frame.time_particles) {  // excludes remaining work on the bone
         const PassClock::Scope scope(pass.passes, Pass::bone);
         glFinish();
     }

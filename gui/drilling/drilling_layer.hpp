@@ -1,4 +1,4 @@
-// What is drawn of bone that is drilled: the bone, the tools, and what flies and flows about the burr.
+// Draws a drilling scene: the bone, the tools, and the particles around the burr.
 //
 // Thread   frame thread, context current.
 #pragma once
@@ -19,10 +19,10 @@ namespace tact {
 
 class DrillingLayer : public SceneLayer {
 public:
-    // As it is to be drawn now.
+    // Content of the next frame.
     struct Frame {
-        std::uint32_t bone_rays = 0;  // through the bone, at most, of all eyes together
-        double bone_fill_s = 1e9;     // at most, for bone that is not in graphics memory yet
+        std::uint32_t bone_rays = 0;  // limit for all eyes together
+        double bone_fill_s = 1e9;     // limit to upload bone
         std::span<const DrawnDrillTool> tools;
         const Particles* particles = nullptr;
         bool time_particles = false;  // waits for the renderer, see particles_draw_s()
@@ -32,15 +32,15 @@ public:
     explicit DrillingLayer(const Vec3& centre_model_m) : centre_model_m_(centre_model_m) {}
 
     Frame frame;
-    // From now on this bone as it is in `now`; both must outlive this. Where there turns out to be no room
-    // for it, it is drawn no more and bone_error() says so.
+    // Shows this bone as in `now`; both must outlive this. If graphics memory does not suffice, the bone is no longer
+    // drawn and bone_error() gives the reason.
     void show_bone(const BoneContent& bone, const BoneVolumeView& now) {
         bone_ = std::make_unique<BoneView>(bone, centre_model_m_, now);
     }
-    [[nodiscard]] BoneView* bone() { return bone_.get(); }  // null: none is shown
+    [[nodiscard]] BoneView* bone() { return bone_.get(); }  // null: none shown
     [[nodiscard]] const BoneView* bone() const { return bone_.get(); }
     [[nodiscard]] const std::string& bone_error() const { return bone_error_; }
-    // Of the last picture that was to time it: where the processor draws, that is its time.
+    // Drawing time of the last frame with time_particles; meaningful where the CPU renders.
     [[nodiscard]] double particles_draw_s() const { return particles_draw_s_; }
 
     void draw_structures(const LayerPass& pass) override;
@@ -56,8 +56,8 @@ private:
     Vec3 centre_model_m_;
     std::unique_ptr<BoneView> bone_;
     std::string bone_error_;
-    std::array<ToolInHand, 2> tool_;        // with the shapes that their meshes are of
-    std::unique_ptr<ParticleCloud> cloud_;  // from the first particles on
+    std::array<ToolInHand, 2> tool_;        // with the shapes of their meshes
+    std::unique_ptr<ParticleCloud> cloud_;  // created with the first particles
     double particles_draw_s_ = 0.0;
 };
 

@@ -1,4 +1,4 @@
-// Drilling: the tools, what they took, the force, and how far the burr is from each structure to keep away from.
+// Drilling card: tools, bone removed, force, and the distance of the burr from each critical structure.
 #include <algorithm>
 #include <cmath>
 
@@ -97,7 +97,7 @@ void DrillingPanels::draw_in_scene_card(const Theme& theme, DashboardState& stat
 std::string DrillingPanels::drawn_text(const DashboardState& state) const {
     std::string text;
     if (bone_shown < 1.0F) text = format("loading bone, %.0f %%   ", 100.0 * static_cast<double>(bone_shown));
-    // Only what changed is drawn again.
+    // Only changes are redrawn.
     text += state.load.vertices_drawn <= 1 ? std::string("sharp")
                                            : format("%s rays", grouped(state.load.vertices_drawn).c_str());
     return text + format("   %s particles", grouped(state.load.particles).c_str());

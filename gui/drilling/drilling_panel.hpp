@@ -1,4 +1,4 @@
-// The panels of drilling: plain data that the window fills.
+// Panels of drilling: plain data that the window fills.
 //
 // Thread   frame thread, inside an ImGui frame.
 #pragma once
@@ -13,21 +13,21 @@
 
 namespace tact {
 
-// A tool that drills or sucks, in the hand's space.
+// A burr or suction tube, in the hand's space.
 struct ToolDescription {
     bool there = false;
     int shape = 0;  // ball, cylinder, cone
     double diameter_m = 0.0, length_m = 0.0;
-    double rpm = 0.0;  // 0: it stands
+    double rpm = 0.0;  // 0: stopped
     bool water = false, suction = false;
-    double depth = 0.0;  // of its radius, in bone
+    double depth = 0.0;  // penetration into bone, in radii
 };
 
 struct DrillingState {
     struct Structure {
         std::string name;
         ImU32 colour = colour::kText;
-        double burr_m = 0.0, closing_m_s = 0.0;  // below zero: in it
+        double burr_m = 0.0, closing_m_s = 0.0;  // below zero: inside
         double suction_tube_m = 1e9;
     };
     bool known = false, labelled = false;
@@ -35,13 +35,13 @@ struct DrillingState {
     double removed_m3 = 0.0, force_n = 0.0, drilling_s = 0.0, excess_s = 0.0;
     std::uint64_t strokes = 0, injuries = 0;
     double stroke_m = 0.0, stroke_m_s = 0.0;
-    std::vector<Structure> structures;  // to keep away from, the nearest first
+    std::vector<Structure> structures;  // critical ones, nearest first
 };
 
 class DrillingPanels : public SystemPanels {
 public:
     DrillingState drilling;
-    float bone_shown = 1.0F;  // share of the bone that is in graphics memory
+    float bone_shown = 1.0F;  // fraction of the bone in graphics memory
 
     [[nodiscard]] CardSize card_size() const override { return {300.0F, 0.37F}; }
     void draw_card(const Theme& theme, const PixelRect& card) const override;

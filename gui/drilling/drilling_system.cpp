@@ -13,9 +13,9 @@
 namespace tact {
 namespace {
 
-constexpr double kFillS = 12e-3;       // of a picture, for bone that goes into graphics memory
-constexpr float kBurrsShown = 4.0F;    // radii about a burr that is looked at
-constexpr float kArrowShare = 0.012F;  // of the force's arrow, which must not hide the burr
+constexpr double kFillS = 12e-3;       // per frame, to upload bone
+constexpr float kBurrsShown = 4.0F;    // radii around a burr in close view
+constexpr float kArrowShare = 0.012F;  // thickness of the force arrow, which must not hide the burr
 
 }  // namespace
 
@@ -98,8 +98,8 @@ void DrillingSystem::move(double frame_s, const Vec3& eye_model_m, const SystemC
 
 float DrillingSystem::particles_share(const SystemContext& context) const {
     const Controller& controller = context.controller;
-    const bool by_hand = controller.have_levels &&
-                         std::string_view(controller.levels.law) == "fixed";  // ends with 0, as was checked
+    const bool by_hand = controller.have_levels && std::string_view(controller.levels.law) ==
+                                                       "fixed";  // null-terminated, as checked on reading
     if (!context.software || by_hand) return particles_level_;
     return std::min(particles_level_,
                     static_cast<float>(particle_pace_.most()) / static_cast<float>(SiteEffects::kMost));
@@ -170,9 +170,10 @@ void DrillingSystem::finish(const SystemContext& context) {
         visibility = {site_->metrics().drilling_s, site_->metrics().seen_s};
         const Ledger& l = site_->particles().ledger();
         spdlog::info(
-            "levels of bone: {} taken by the controller, {} seen to go while shown: {} sucked, {} carried, "
+            "bone density levels: {} removed by the controller, {} received while shown: {} sucked, {} "
+            "carried, "
             "{} left, {} "
-            "given up, {} too few for a grain",
+            "discarded, {} too few for a grain",
             controller.have_drill ? controller.drill.removed_levels : 0, l.drilled, l.sucked, l.carried,
             l.left, l.given_up, l.pooled);
     }

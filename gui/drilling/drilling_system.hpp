@@ -1,9 +1,8 @@
-// Drilling in the window: the bone as it is now, what flies and flows about the burr, the tools, distances and a trainee's
-// report.
+// Drilling in the window: the current bone, particles around the burr, tools, distances, and the trainee's report.
 //
-// Start     a large volume goes into graphics memory over many pictures; a share of it is seen meanwhile, and said
-// Levels    "gui.volume" and "gui.particles" stay as the controller last told. Where the processor draws, no more than fit
-//           a picture by the clock; of particles not where a person fixed the level.
+// Start     a large volume is uploaded over many frames; meanwhile a fraction is visible, and shown as text
+// Levels    "gui.volume" and "gui.particles" keep the controller's newest values. A software renderer limits them to
+//           what fits a frame by the clock, except for particles at a level that the user fixed.
 // Thread    frame thread
 #pragma once
 
@@ -26,8 +25,8 @@ namespace tact {
 
 struct DrillingOptions {
     std::string report;           // JSON, at the end; empty: none
-    std::uint32_t particles = 0;  // there are always so many over the bone (SiteEffects::keep())
-    bool near_burr = false;       // the view goes there once the burr is in bone
+    std::uint32_t particles = 0;  // always this many over the bone (SiteEffects::keep()); 0: off
+    bool near_burr = false;       // moves the view to the burr once it is in bone
 };
 
 class DrillingSystem : public SceneSystem {
@@ -62,13 +61,13 @@ private:
     std::shared_ptr<const SceneContent> content_;
     SceneView* view_ = nullptr;
     BoneController bone_;
-    std::unique_ptr<SiteEffects> site_;     // goes before the bone that it reads
+    std::unique_ptr<SiteEffects> site_;     // destroyed before the bone that it reads
     std::unique_ptr<DrillingLayer> layer_;  // likewise
     ParticlePace particle_pace_;
     RayPace ray_pace_;
     float particles_level_ = 1.0F;
     double rays_share_ = 1.0;  // of the pixels
-    float reach_a_ = 0.0F;     // of the bone as it was when it came; 0: none is drawn
+    float reach_a_ = 0.0F;     // radius of the bone when loaded; 0: none drawn
     bool near_burr_wanted_ = options_.near_burr;
     DrillController controller_;
     DrillHands hands_;

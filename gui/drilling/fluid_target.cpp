@@ -24,7 +24,7 @@ GLuint make_texture(GLint inside, GLenum format, int width_px, int height_px, GL
 
 FluidTarget::FluidTarget(int picture_width_px, int picture_height_px, int coarser)
     : width_px_(picture_width_px), height_px_(picture_height_px), coarser_(coarser) {
-    // Whole floats: sums of depths have to tell a puddle's surface from its bed.
+    // 32-bit floats: sums of depths must distinguish a puddle's surface from its bed.
     sums_ = make_texture(GL_RGBA32F, GL_RGBA, width_px(), height_px(), GL_LINEAR);
     depth_ = make_texture(GL_DEPTH_COMPONENT24, GL_DEPTH_COMPONENT, width_px_, height_px_, GL_NEAREST);
     GLint before = 0;
@@ -36,9 +36,9 @@ FluidTarget::FluidTarget(int picture_width_px, int picture_height_px, int coarse
     const GLenum status = glCheckFramebufferStatus(GL_FRAMEBUFFER);
     glBindFramebuffer(GL_FRAMEBUFFER, static_cast<GLuint>(before));
     if (status != GL_FRAMEBUFFER_COMPLETE)
-        throw StartupError("making an image of " + std::to_string(width_px()) + "x" +
-                               std::to_string(height_px()) + " pixels to gather water and blood in",
-                           "the graphics driver refuses it, status " + std::to_string(status),
+        throw StartupError("creating an image of " + std::to_string(width_px()) + "x" +
+                               std::to_string(height_px()) + " pixels for water and blood",
+                           "the graphics driver rejects it with status " + std::to_string(status),
                            "update the graphics driver, or set LIBGL_ALWAYS_SOFTWARE=1");
 }
 

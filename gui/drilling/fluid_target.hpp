@@ -1,8 +1,8 @@
-// Where fluids are gathered before they are laid over the picture: sums by pixel, and the depth of the scene that may
-// hide them. Coarser than the picture by a whole factor.
+// Accumulation buffers for fluids: sums per pixel, and the depth of the scene that may hide them. Coarser than the
+// frame by a whole factor.
 //
 // Thread   frame thread, context current.
-// Fails by StartupError where the driver refuses such an image.
+// Fails by StartupError: the driver rejects such an image.
 #pragma once
 
 #include "gui/render/gl.hpp"
@@ -11,13 +11,13 @@ namespace tact {
 
 class FluidTarget {
 public:
-    // coarser: pixels of the picture along an edge of one here.
+    // coarser: edge of one pixel here, in pixels of the frame.
     FluidTarget(int picture_width_px, int picture_height_px, int coarser);
     ~FluidTarget();
     FluidTarget(const FluidTarget&) = delete;
     FluidTarget& operator=(const FluidTarget&) = delete;
 
-    // The depth of the bound frame buffer, whose lower left corner of the picture is given.
+    // Copies the depth of the bound framebuffer, from this lower left corner of the view.
     void take_depth(int x_px, int y_px) const;
     void bind() const { glBindFramebuffer(GL_FRAMEBUFFER, frame_); }  // to draw sums into
     void bind_sums(GLenum unit) const;                                // to read from
@@ -30,7 +30,7 @@ public:
     [[nodiscard]] int coarser() const { return coarser_; }
 
 private:
-    int width_px_, height_px_, coarser_;  // of the picture
+    int width_px_, height_px_, coarser_;  // of the frame
     GLuint frame_ = 0, sums_ = 0, depth_ = 0;
 };
 

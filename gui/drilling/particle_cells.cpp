@@ -11,16 +11,16 @@ ParticleCells::ParticleCells(const BoneBricks& bricks, std::span<const std::uint
     std::size_t cells = 1;
     for (std::size_t i = 0; i < 3; ++i) {
         if (bricks.size[i] == 0 || bricks.size[i] > kMost || margin > kMost)
-            throw StartupError("the room for particles would have " + std::to_string(bricks.size[i]) +
+            throw StartupError("the volume of the particles would have " + std::to_string(bricks.size[i]) +
                                    " voxels along an axis",
-                               "at least 1 and at most 4096 are possible", "crop or resample the volume");
+                               "the range is 1 to 4096", "crop or resample the volume");
         size_[i] = static_cast<int>(bricks.size[i] + 2 * margin);
         cells *= static_cast<std::size_t>(size_[i]);
     }
     if (!density.empty() && density.size() != bricks.bytes())
         throw StartupError(
             "the bone's densities do not fit its size",
-            std::to_string(density.size()) + " bytes where " + std::to_string(bricks.bytes()) + " belong",
+            std::to_string(density.size()) + " bytes instead of " + std::to_string(bricks.bytes()),
             "bake the scene again");
     state_.resize((cells + 3) / 4);
 }

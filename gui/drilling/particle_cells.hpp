@@ -1,8 +1,8 @@
-// Where particles may be: the voxels of the bone volume and a margin about them. One particle a cell.
+// The cells of particles: the voxels of the bone volume and a margin around them. One particle per cell.
 //
 // Unit     cells: voxels, counted from the corner of the margin; a point p lies in cell floor(p)
-// Memory   two bits a cell
-// Bone     read as it is now: another process erodes it meanwhile
+// Memory   two bits per cell
+// Bone     read in its current state: another process removes it meanwhile
 // Thread   one; no allocation after construction
 #pragma once
 
@@ -22,10 +22,11 @@ enum class CellState : std::uint8_t { free, grain, liquid, paste };
 
 class ParticleCells {
 public:
-    // A voxel is bone from this density on: soft structures too, which are 40 (prep/synthetic). Cells of the margin never are.
+    // Lowest density of bone: includes soft structures, which have 40 (prep/synthetic). Cells of the margin are never
+    // bone.
     static constexpr std::uint8_t kBoneFrom = 32;
 
-    // density: as `bricks` orders it, or empty where there is no bone; it must outlive the object.
+    // density: in the order of `bricks`, or empty without bone; it must outlive this object.
     ParticleCells(const BoneBricks& bricks, std::span<const std::uint8_t> density, std::uint32_t margin);
 
     [[nodiscard]] const Cell& size() const noexcept { return size_; }
@@ -35,7 +36,7 @@ public:
                static_cast<unsigned>(c[1]) < static_cast<unsigned>(size_[1]) &&
                static_cast<unsigned>(c[2]) < static_cast<unsigned>(size_[2]);
     }
-    // The cell is inside.
+    // The cell must be inside.
     [[nodiscard]] CellState state(const Cell& c) const noexcept {
         const std::size_t i = index(c);
         return static_cast<CellState>(state_[i / 4] >> (2 * (i % 4)) & 3U);
@@ -54,10 +55,10 @@ public:
             return false;
         return __atomic_load_n(&density_[bricks_.voxel(x, y, z)], __ATOMIC_RELAXED) >= kBoneFrom;
     }
-    // Neither bone nor a particle; the cell is inside.
+    // Neither bone nor a particle; the cell must be inside.
     [[nodiscard]] bool free(const Cell& c) const noexcept { return state(c) == CellState::free && !bone(c); }
 
-    // What the next questions about a cell, which is inside, will read.
+    // Prefetches the data of a cell, which must be inside.
     void fetch(const Cell& c) const noexcept {
         prefetch(&state_[index(c) / 4]);
         const auto x = static_cast<std::uint32_t>(c[0] - margin_),

@@ -1,8 +1,9 @@
-// Fluid as of screen space (van der Laan, Green, Sainz, "Screen space fluid rendering with curvature flow", I3D 2009),
-// in one pass over the particles instead of three: each adds a soft disc larger than its cell to sums of thickness, of
-// it of water and of blood, and of its distance in proportion; what is neither water nor blood is paste. Where the sums reach a threshold there is fluid: discs that
-// overlap merge into one body, and single ones are drops. Its mean distance and its thickness give the normal, Beer's
-// law gives how much it hides. What lies behind the scene adds nothing, so no depth has to be kept.
+// Screen-space fluids (van der Laan, Green, Sainz, "Screen space fluid rendering with curvature flow", I3D 2009), in
+// one pass over the particles instead of three. Each particle adds a soft disc larger than its cell to four sums:
+// thickness, thickness of water, thickness of blood, and distance weighted by thickness; the rest is paste. Fluid is
+// where the thickness exceeds a threshold: overlapping discs merge into one body, single ones are drops. Mean
+// distance and thickness give the normal, Beer's law gives the opacity. Particles behind the scene add nothing, so no
+// depth is stored.
 #include "gui/drilling/particle_cloud.hpp"
 
 #include <algorithm>
@@ -11,23 +12,23 @@
 namespace tact {
 namespace {
 
-// In cells. Grains of neighbouring cells overlap, or bone would shine through their piles; discs of fluid reach over
-// the cells about theirs.
+// In cells. Grains of adjacent cells overlap, or bone would shine through their piles; discs of fluid cover the
+// adjacent cells.
 constexpr float kGrainRadius = 0.58F, kDiscRadius = 1.7F;
-// A disc of fluid is gathered with some three pixels of radius: more cost time and show no more.
+// Discs of fluid are accumulated at a radius of about three pixels: more costs time and shows no more.
 constexpr float kDiscPx = 3.0F;
 constexpr int kFinest = 2, kCoarsestPixel = 8;
 
 constexpr char kGrainVertex[] = R"(
 layout(location = 0) in vec3 at;
 layout(location = 1) in vec4 look;  // matter, shade, 0, 0
-uniform vec2 u_size;  // radius; pixels of a length at distance 1
+uniform vec2 u_size;  // radius; pixels per length at distance 1
 flat out vec3 v_colour;
-flat out vec4 v_ground;  // and how much of it
+flat out vec4 v_ground;  // background colour, fraction of haze
 void main() {
     vec4 p = u_eye * vec4(at, 1.0);
     v_colour = mix(vec3(0.84, 0.79, 0.68), vec3(1.0, 0.97, 0.90), look.y / 255.0);
-    // Its face, and not its middle, is what bone may hide.
+    // The depth test uses its front, not its centre.
     gl_Position = u_projection * vec4(p.xy, p.z + 0.7 * u_size.x, 1.0);
     gl_PointSize = clamp(2.0 * u_size.x * u_size.y / max(-p.z, 1e-3), 1.5, 64.0);
     v_ground = vec4(mix(u_ground_bottom, u_ground_top, 0.5 + 0.5 * gl_Position.y / gl_Position.w),
@@ -42,7 +43,7 @@ void main() {
     vec2 d = 2.0 * gl_PointCoord - 1.0;
     float r2 = dot(d, d);
     if (r2 > 1.0) discard;
-    // Flatter than a ball: many together are powder, not pearls.
+    // Flatter than a ball: many together look like powder, not pearls.
     vec4 c = lit(v_colour, normalize(vec3(0.6 * d.x, -0.6 * d.y, 0.45 + sqrt(1.0 - r2))), vec3(0.0, 0.0, 1.0));
     colour = vec4(mix(c.rgb - vec3(0.2 * c.a), v_ground.rgb, v_ground.a), 1.0);
 }
@@ -51,7 +52,7 @@ void main() {
 constexpr char kSumVertex[] = R"(
 layout(location = 0) in vec3 at;
 layout(location = 1) in vec4 look;
-uniform vec2 u_size;  // radius of a disc; pixels of a length at distance 1
+uniform vec2 u_size;  // radius of a disc; pixels per length at distance 1
 out vec3 v_adds;
 void main() {
     vec4 p = u_eye * vec4(at, 1.0);
@@ -83,10 +84,10 @@ void main() {
 constexpr char kSurfaceFragment[] = R"(
 uniform sampler2D u_sums;
 uniform sampler2D u_scene;
-uniform vec4 u_view;   // lower left corner, 1 / size of the sums in pixels of the picture
-uniform vec3 u_place;  // radius of a disc; size of a pixel at distance 1; pixels along an edge of one of the sums
+uniform vec4 u_view;   // lower left corner, 1 / size of the sums in pixels of the frame
+uniform vec3 u_place;  // radius of a disc; size of a pixel at distance 1; edge of a sum's pixel in pixels
 out vec4 colour;
-// A tent over three by three: without it the coarser pixels are seen.
+// Tent filter, three by three: without it the coarser pixels are visible.
 vec4 smooth_sums(vec2 uv, vec2 step) {
     vec4 s = 4.0 * texture(u_sums, uv);
     s += 2.0 * (texture(u_sums, uv + vec2(step.x, 0.0)) + texture(u_sums, uv - vec2(step.x, 0.0)) +
@@ -94,7 +95,7 @@ vec4 smooth_sums(vec2 uv, vec2 step) {
     return s / 12.0;
 }
 float step_of(vec4 s) { return smoothstep(0.02, 0.2, s.w); }
-// How near the surface is: the mean distance less half of what is thick.
+// Height of the surface: minus the mean distance, plus half of the thickness.
 float height(vec4 s) { return s.w > 1e-4 ? 0.45 * u_place.x * sqrt(s.w) - s.z / s.w : 0.0; }
 void main() {
     vec2 at = gl_FragCoord.xy - u_view.xy;
@@ -103,14 +104,14 @@ void main() {
     float there = smoothstep(0.10, 0.42, s.w);
     if (there <= 0.0) discard;
     float mean = s.z / s.w;
-    // At an edge of the scene the coarse sums reach over it: not in front of what is nearer.
+    // Coarse sums extend beyond depth edges of the scene: they must not cover nearer content.
     float scene = 2.0 * texelFetch(u_scene, ivec2(at), 0).r - 1.0;
     float scene_a = u_projection[3][2] / (scene + u_projection[2][2]);
     there *= smoothstep(-1.6, -0.8, (scene_a - mean) / u_place.x);
     vec4 sx0 = texture(u_sums, uv - vec2(step.x, 0.0)), sx1 = texture(u_sums, uv + vec2(step.x, 0.0));
     vec4 sy0 = texture(u_sums, uv - vec2(0.0, step.y)), sy1 = texture(u_sums, uv + vec2(0.0, step.y));
     float h = height(s), across = u_place.z * u_place.y * mean;
-    // From one body to another behind it is no slope.
+    // The step to another body behind is no slope.
     float most = 1.5 * u_place.x;
     vec2 slope = vec2(clamp(height(sx1) - h, -most, most) * step_of(sx1) -
                           clamp(height(sx0) - h, -most, most) * step_of(sx0),
@@ -125,13 +126,13 @@ void main() {
                 max(0.3 * water + blood + paste, 1e-4);
     float clear = exp(-1.3 * blood - 1.7 * paste);
     float hides = 1.0 - clear + 0.45 * (1.0 - exp(-0.06 * water)) * clear;
-    // At its rim a drop bends what lies behind it away.
+    // At its rim a drop refracts the background away.
     hides = max(hides, mix(0.08, 0.45, 1.0 - n.z) * water / s.w);
     vec4 c = lit(base, n, vec3(0.0, 0.0, 1.0));
     float shine = c.a * c.a * (1.0 - 0.75 * paste / s.w);
-    // Light goes through water: no side of it is dark.
+    // Light passes through water: no side of it is dark.
     vec3 seen = mix(c.rgb, max(c.rgb, 0.8 * base), water / s.w) + vec3(0.6 * shine - 0.15 * c.a * paste / s.w);
-    // Wet: what shines is not let through.
+    // Wet: highlights are opaque.
     colour = hazed(vec4(seen, there * min(hides + 0.8 * shine, 1.0)), mean, 2.0 * at.y * u_view.w - 1.0);
 }
 )";
@@ -140,7 +141,7 @@ float px_at_1(const ParticleCloud::View& view) {
     return 0.5F * static_cast<float>(view.height_px) * view.projection(1, 1);
 }
 
-// By the size of a disc in the middle of the fluids.
+// Chosen by the size of a disc at the centre of the fluids.
 int coarser_for(const ParticleCloud::View& view, const DotRanges& sent) {
     Eigen::Vector4f middle(0.0F, 0.0F, 0.0F, 1.0F);
     for (std::size_t i = 0; i < 3; ++i)
@@ -208,7 +209,8 @@ std::optional<ParticleCloud::Box> ParticleCloud::fluid_box(const View& view) con
             corner[static_cast<Eigen::Index>(i)] =
                 (k >> i & 1U) != 0 ? sent_.fluids_high[i] + kDiscRadius : sent_.fluids_low[i] - kDiscRadius;
         const Eigen::Vector4f clip = view.projection * (view.eye_from_cells * corner);
-        if (!(clip.w() > 0.0F)) return Box{0, 0, view.width_px, view.height_px};  // beside the eye
+        if (!(clip.w() > 0.0F))
+            return Box{0, 0, view.width_px, view.height_px};  // a corner is behind the eye
         const Eigen::Array2f at = clip.head<2>().array() / clip.w();
         low = low.min(at);
         high = high.max(at);

@@ -1,9 +1,9 @@
-// Dust as small lit balls; water, blood and paste as wet bodies, laid over what is drawn already.
+// Dust as small lit balls; water, blood and paste as wet bodies, drawn over the scene.
 //
-// Hides    by the depth of what is drawn before: bone and instruments. Fluids leave no depth behind, grains do.
-// Fluid    particle_cloud.cpp
-// Cost     one point a particle, and the pixels of the box about the fluids
-// Thread   frame thread, context current; draws into the bound frame buffer.
+// Hides    by the depth of earlier content: bone and instruments. Grains write depth, fluids do not.
+// Fluid    method in particle_cloud.cpp
+// Cost     one point per particle, and the pixels of the fluids' bounding box
+// Thread   frame thread, context current; draws into the bound framebuffer.
 #pragma once
 
 #include <memory>
@@ -26,7 +26,7 @@ public:
         Haze haze;
         int x_px = 0, y_px = 0, width_px = 1, height_px = 1;  // of the viewport
     };
-    // Sends what there is now; its positions are in cells.
+    // Uploads the current particles; positions are in cells.
     void fill(std::span<const Particle> particles);
     void draw(const View& view);
     [[nodiscard]] const DotRanges& sent() const { return sent_; }
@@ -36,11 +36,11 @@ private:
         Program(const char* what, const char* vertex, const char* fragment);
         GlProgram program;
         ViewUniforms view;
-        GLint size;  // radius of a cell, pixels of a length at distance 1
+        GLint size;  // radius of a cell; pixels per length at distance 1
     };
     void draw_grains(const View& view);
     void draw_fluids(const View& view);
-    // Pixels of the viewport that the fluids may reach; empty: none.
+    // Pixels of the viewport that the fluids may cover; empty: none.
     struct Box {
         int x = 0, y = 0, width = 0, height = 0;
     };

@@ -8,7 +8,7 @@ namespace {
 
 bool wet(const Particle& p) { return p.matter != Matter::dust; }
 
-// A number of the cell that it lies in: what rests does not flicker when others are removed before it.
+// Hash of its cell: a resting particle does not flicker when others before it are removed.
 std::uint8_t shade_of(const std::array<float, 3>& at) {
     auto bits = static_cast<std::uint32_t>(at[0]) * 73856093U ^
                 static_cast<std::uint32_t>(at[1]) * 19349663U ^ static_cast<std::uint32_t>(at[2]) * 83492791U;
@@ -24,7 +24,7 @@ DotRanges build_dots(std::span<const Particle> particles, std::vector<ParticleDo
     DotRanges ranges;
     ranges.fluids_low.fill(std::numeric_limits<float>::max());
     ranges.fluids_high.fill(std::numeric_limits<float>::lowest());
-    // Grains from the front, what is wet from the back: one pass, no second list.
+    // Grains from the front, wet ones from the back: one pass, no second list.
     std::size_t back = dots.size();
     for (const Particle& p : particles) {
         const bool fluid = wet(p);

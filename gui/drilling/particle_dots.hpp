@@ -1,6 +1,6 @@
-// Particles as they are sent to be drawn: grains first, then what is wet: water, blood and paste.
+// Particles prepared for drawing: grains first, then wet ones (water, blood and paste).
 //
-// Unit     cells, as Particle::at; a colour's spread is the particle's own and stays with its place
+// Unit     cells, as Particle::at; the variation of colour depends on the cell and stays with it
 // Thread   any; pure
 #pragma once
 
@@ -16,17 +16,17 @@ namespace tact {
 struct ParticleDot {
     std::array<float, 3> at;
     Matter matter;
-    std::uint8_t shade;  // of 255: how light or dark this one is among its like
+    std::uint8_t shade;  // 0 to 255: variation of brightness among its kind
     std::uint8_t reserved[2];
 };
 static_assert(sizeof(ParticleDot) == 16);
 
 struct DotRanges {
     std::size_t grains = 0, fluids = 0;                // in this order
-    std::array<float, 3> fluids_low{}, fluids_high{};  // box about the fluids' centres; where there are some
+    std::array<float, 3> fluids_low{}, fluids_high{};  // bounding box of the fluids' centres, if any
 };
 
-// Fills `dots`, whose memory is kept from frame to frame.
+// Fills `dots`; its memory is reused from frame to frame.
 DotRanges build_dots(std::span<const Particle> particles, std::vector<ParticleDot>& dots);
 
 }  // namespace tact

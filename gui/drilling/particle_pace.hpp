@@ -1,7 +1,7 @@
-// Keeps how many particles fit into a picture where the processor draws it, on whatever machine this is.
+// Estimates how many particles fit into a frame of a software renderer, on any machine.
 //
-// A few milliseconds of a drawing are for its pixels, however few particles there are: they are not counted to them.
-// Too slow a drawing is believed at once, a quicker one slowly.
+// Some milliseconds of a drawing are for its pixels, whatever the number of particles, and are excluded. The estimate
+// follows a slower drawing quickly, a faster one slowly.
 #pragma once
 
 #include <algorithm>
@@ -11,9 +11,9 @@ namespace tact {
 
 class ParticlePace {
 public:
-    static constexpr double kDraw_s = 0.016;  // of a picture, about: half of 30 pictures a second
+    static constexpr double kDraw_s = 0.016;  // of a frame: about half of one at 30 Hz
     static constexpr double kPixels_s = 0.004;
-    static constexpr std::uint32_t kLeast = 5000;  // fewer do not say any more where water and blood are
+    static constexpr std::uint32_t kLeast = 5000;  // fewer no longer show where water and blood are
 
     void took(std::size_t particles, double draw_s) noexcept {
         if (particles < kWorth || !(draw_s >= 0.0)) return;

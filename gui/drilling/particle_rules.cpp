@@ -1,12 +1,13 @@
-// How one particle moves.
+// Motion of a single particle.
 //
-// Flight   gravity and drag over the time since its last move, then from cell to cell along its way until bone or another
-//          particle stops it in the last free cell.
-// Rest     what rests falls when the cell below it is free; topples where a neighbour and the cell below that are:
-//          liquids always, dust every other time (so its piles are about as steep as they are wide), paste
-//          seldom; a liquid on top of particles spreads sideways.
-// Paste    dust that runs into a liquid, or the other way round: the one that moves becomes paste, and the cell of the
-//          other says so to it. Blood stays blood. Water runs off paste: else all of it became paste in the end.
+// Flight   gravity and drag over the time since its last move, then from cell to cell along its path until bone or
+//          another particle stops it in the last free cell.
+// Rest     a resting particle falls when the cell below it is free. It topples where an adjacent cell and the one
+//          below that are free: liquids always, dust every other time (so its piles are about as steep as they are
+//          wide), paste seldom. A liquid on top of particles spreads sideways.
+// Paste    dust that meets a liquid, or the reverse: the moving particle becomes paste at once, the other one at its
+//          next move, from the state of its cell. Blood stays blood. Water runs off paste, or all of it would become
+//          paste.
 #include <algorithm>
 #include <cmath>
 
@@ -15,11 +16,11 @@
 namespace tact {
 namespace {
 
-constexpr float kLongestS = 0.1F;  // what waited longer moves as if for so long
+constexpr float kLongestS = 0.1F;  // longer waits move for this long
 constexpr int kCellsMost = 96;     // of one flight
 constexpr float kToppleDust = 0.5F, kTopplePaste = 0.05F;
-constexpr float kSlides = 0.4F;         // what a liquid keeps of its speed along what it hits
-constexpr float kSlowestShare = 2e-3F;  // of the fastest: slower is at rest
+constexpr float kSlides = 0.4F;         // fraction of speed that a liquid keeps along an obstacle
+constexpr float kSlowestShare = 2e-3F;  // of the fastest: slower particles rest
 
 CellState state_of(Matter matter) {
     switch (matter) {
@@ -48,7 +49,7 @@ Cell sum(const Cell& a, const Cell& b) { return {a[0] + b[0], a[1] + b[1], a[2] 
 void Particles::carry(Particle& p, const Cell& from, const Cell& to) noexcept {
     cells_.set(from, CellState::free);
     cells_.set(to, state_of(p.matter));
-    // Anywhere in the cell, or piles would show its grid.
+    // A random position in the cell, or piles would show the grid.
     for (std::size_t i = 0; i < 3; ++i)
         p.at[i] = static_cast<float>(to[i]) + 0.1F + 0.8F * static_cast<float>(random_.uniform());
 }
@@ -78,7 +79,7 @@ Particles::Fate Particles::fly(Particle& p, float dt_s) noexcept {
     }
     const Cell from = cell_of(p.at);
     Cell at = from, turn{};
-    std::array<float, 3> next{}, each{};  // shares of the way to the next border of a cell, and between two
+    std::array<float, 3> next{}, each{};  // fractions of the path: to the next cell border, and between two
     std::array<float, 3> end{};
     for (std::size_t i = 0; i < 3; ++i) {
         const float way = p.velocity[i] * dt_s;
@@ -112,13 +113,13 @@ Particles::Fate Particles::fly(Particle& p, float dt_s) noexcept {
             cells_.set(at, state_of(p.matter));
         }
         p.at = end;
-    } else if (at != from) {  // rounding at a border, or a way that was too long
+    } else if (at != from) {  // rounding at a border, or too long a path
         carry(p, from, at);
     }
     return Fate::stays;
 }
 
-// It was stopped in `at` by `hit`.
+// `hit` stopped the particle in `at`.
 void Particles::land(Particle& p, const Cell& at, const Cell& hit) noexcept {
     const CellState other = cells_.state(hit);
     if (p.matter == Matter::dust && other == CellState::liquid) {
@@ -178,7 +179,7 @@ Particles::Fate Particles::settle(Particle& p, Cell at) noexcept {
     return Fate::stays;
 }
 
-// A free cell at most two away.
+// Finds a free cell, at most two away.
 bool Particles::room_near(Cell& at) noexcept {
     if (cells_.inside(at) && cells_.free(at)) return true;
     for (int attempt = 0; attempt < 40; ++attempt) {
@@ -192,7 +193,7 @@ bool Particles::room_near(Cell& at) noexcept {
     return false;
 }
 
-// More than half of the tip is in bone.
+// True if more than half of the tip is in bone.
 bool Particles::blocked(const Vec3& tip, double radius) const noexcept {
     int bone = 0, looked = 0;
     for (int x = -2; x <= 2; ++x)

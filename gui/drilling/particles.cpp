@@ -8,12 +8,12 @@
 namespace tact {
 namespace {
 
-// Moves between two looks at the clock: as many as this share of a step, so that a short one is kept as well.
+// Moves between two readings of the clock: this fraction of a step, so that a short budget is kept as well.
 constexpr std::size_t kBetweenLooks = 64, kBetweenLooksLeast = 8;
 constexpr double kBetweenLooksShare = 1.0 / 32.0;
 constexpr std::size_t kFetchAhead = 8;
-constexpr double kFewest = 0.1;    // of the particles that a step should be able to move
-constexpr double kBelieved = 0.2;  // of a new measurement
+constexpr double kFewest = 0.1;    // fraction of the particles that a step should be able to move
+constexpr double kBelieved = 0.2;  // weight of a new measurement
 constexpr double kPassByShare = 0.1, kGiveUpShare = 0.25;  // of the budget
 constexpr std::uint32_t kRoomShare = 50;
 constexpr int kRounds = 4;
@@ -22,7 +22,7 @@ constexpr std::size_t kSamples = 128;
 constexpr double kDrawnFrom = 3.0;                       // radii of the tip
 constexpr double kDrawnSpeed = 0.6;                      // of the fastest, at the tip's radius
 constexpr float kFlungOut = 0.25F, kFlungAlong = 0.35F;  // of the fastest
-constexpr float kScatter = 0.3F;                         // of the speed that dust flies off with
+constexpr float kScatter = 0.3F;                         // of the speed at which dust flies off
 
 float squared(const std::array<float, 3>& v) { return v[0] * v[0] + v[1] * v[1] + v[2] * v[2]; }
 
@@ -45,9 +45,8 @@ Particles::Particles(const BoneBricks& bricks, std::span<const std::uint8_t> den
       most_(settings.most) {
     if (settings.most == 0 || settings.grain_levels == 0 || !(settings.fastest_m_s > 0.0) ||
         !(settings.drag_per_s >= 0.0) || !settings.gravity_m_s2.allFinite())
-        throw StartupError("the settings of the particles are not possible",
-                           "how many, their mass and their greatest speed have to be above zero",
-                           "correct them");
+        throw StartupError("checking the particle settings",
+                           "number, mass and maximum speed must be above zero", "correct them");
     particle_.reserve(settings.most);
     gravity_ = floats(settings.gravity_m_s2 / cells_.cell_m());
     fastest_ = static_cast<float>(settings.fastest_m_s / cells_.cell_m());
@@ -72,7 +71,7 @@ void Particles::drilled(std::uint32_t x, std::uint32_t y, std::uint32_t z, std::
     while (ledger_.pooled >= settings_.grain_levels) {
         const Vec3 velocity =
             velocity_m_s + static_cast<double>(kScatter) * velocity_m_s.norm() * random_.direction();
-        // What finds no room stays pooled.
+        // Dust without space stays pooled.
         if (!spawn(Matter::dust, at, velocity / cells_.cell_m(), settings_.grain_levels)) break;
         ledger_.pooled -= settings_.grain_levels;
         ledger_.carried += settings_.grain_levels;
@@ -110,7 +109,7 @@ bool Particles::spawn(Matter matter, const Vec3& at, const Vec3& velocity, std::
     return true;
 }
 
-// Its cell is free already, or freed here where it is still its own.
+// Its cell is free already, or is freed here if it still belongs to it.
 void Particles::remove(std::uint32_t i, std::uint64_t& account) noexcept {
     ledger_.carried -= particle_[i].mass;
     account += particle_[i].mass;
@@ -151,8 +150,8 @@ void Particles::move_group(std::size_t group, std::size_t moves, std::size_t bet
     }
 }
 
-// Goes on through all particles, some of them a step, and looks for those near the suction tube's tip and in the head that
-// turns.
+// Continues the pass over all particles, some per step, and finds those near the suction tip and in the rotating
+// head.
 void Particles::pass_by(const Suction& suction, const Stir& stir, Instant deadline,
                         ParticleStep& step) noexcept {
     bool sucks = suction.radius_m > 0.0 && suction.tip_m.allFinite();
@@ -193,7 +192,7 @@ void Particles::pass_by(const Suction& suction, const Stir& stir, Instant deadli
     }
 }
 
-// Out of a turning head and along its surface.
+// Out of a rotating head and along its surface.
 void Particles::fling(Particle& p, const std::array<float, 3>& off,
                       const std::array<float, 3>& spin) const noexcept {
     const std::array<float, 3> along = {spin[1] * off[2] - spin[2] * off[1],
@@ -210,7 +209,7 @@ float Particles::importance(const Particle& p, const std::array<float, 3>& looke
     return (speed + 0.01F) / (distance(p.at, looked_at) + 1.0F);
 }
 
-// That of the particle below which a share of all lies, as a sample of them says.
+// Importance below which this fraction of all particles lies, estimated from a sample.
 float Particles::importance_below(double share, const std::array<float, 3>& looked_at) noexcept {
     std::array<float, kSamples> sample{};
     for (float& s : sample) s = importance(particle_[random_.below(particle_.size())], looked_at);
@@ -222,7 +221,7 @@ float Particles::importance_below(double share, const std::array<float, 3>& look
 void Particles::give_up(std::size_t count, const Vec3& looked_at, Instant deadline,
                         ParticleStep& step) noexcept {
     const auto centre = floats(looked_at);
-    // As many as four times what is wanted are good enough, so that they are found soon.
+    // Any of the lowest 4 * count will do, so that they are found soon.
     const double share =
         std::min(4.0 * static_cast<double>(count) / static_cast<double>(particle_.size()), 1.0);
     const float limit = importance_below(share, centre);
@@ -253,7 +252,7 @@ ParticleStep Particles::step(double dt_s, double budget_s, const Vec3& looked_at
     now_s_ += std::max(dt_s, 0.0);
     pass_by(suction, stir, after(kPassByShare * budget_s), step);
     const auto moves_left = [&](Instant now) { return std::max(to_s(deadline - now), 0.0) / move_s_; };
-    // Room for what comes in the next step.
+    // Space for the particles of the next step.
     const std::size_t most = std::min<std::size_t>(
         static_cast<std::size_t>(moves_left(settings_.now()) / kFewest), most_ - most_ / kRoomShare);
     if (particle_.size() > most && looked_at_m.allFinite())
@@ -264,7 +263,7 @@ ParticleStep Particles::step(double dt_s, double budget_s, const Vec3& looked_at
     GroupCounts moves = step.moves;
     const auto between_looks = static_cast<std::size_t>(std::clamp(
         kBetweenLooksShare * moves_left(prepared), double{kBetweenLooksLeast}, double{kBetweenLooks}));
-    // Again with what is left, as some slowed down into groups whose turn they took.
+    // Plans again with the remaining budget, because particles that slowed down used moves of their new group.
     for (int round = 0; round < kRounds; ++round) {
         const std::uint32_t before = step.moved;
         for (std::size_t j = 0; j < kSpeedGroups; ++j) move_group(j, moves[j], between_looks, deadline, step);

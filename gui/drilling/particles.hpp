@@ -1,13 +1,14 @@
-// Bone dust, water, blood and paste about the burr: particles that fly freely in empty space and follow the rules of a
-// sandpile where they touch, one a cell, moved as far as a time budget goes.
+// Bone dust, water, blood and paste around the burr: particles that fly freely in empty space and follow the rules of
+// a sandpile where they touch, one per cell, moved within a time budget.
 //
-// Step     What is left of the budget when the suction has worked, over the measured cost of a move is the number of moves; it
-//          is shared among groups of speed (speed_groups.hpp), each particle over the time since its own last move.
-//          Where less than a tenth could be moved, the least important are removed: far from where one looks, and slow.
-// Rules    particle_rules.cpp: flight with drag, rest, toppling, spreading of liquids, dust and water to paste, suction.
-// Mass     in levels of bone density (255 a solid voxel). What was drilled away is pooled until it makes a
-//          grain; Ledger says where all of it is, and its sum never changes by itself.
-// Frame    model, metres; inside, cells
+// Step     the number of moves is the budget left after suction over the measured cost of a move. It is divided
+//          among groups of speed (speed_groups.hpp); each particle moves for the time since its own last move. If
+//          less than a tenth could move, the least important are discarded: slow ones, far from the point looked at.
+// Rules    particle_rules.cpp: flight with drag, rest, toppling, spreading of liquids, dust and water to paste,
+//          suction.
+// Mass     in levels of bone density (255 per solid voxel). Removed bone is pooled until it makes a grain; Ledger
+//          accounts for all of it, and its sum is constant.
+// Frame    model, metres; cells internally
 // Thread   one; no allocation after construction
 #pragma once
 
@@ -26,18 +27,18 @@ namespace tact {
 enum class Matter : std::uint8_t { dust, water, blood, paste };
 
 struct Particle {
-    std::array<float, 3> at, velocity;  // cells, cells a second
-    double moved_s;                     // when, on the clock of the steps
-    std::uint16_t mass;                 // levels of bone; 0: none of it is
+    std::array<float, 3> at, velocity;  // cells, cells per second
+    double moved_s;                     // time of the last move, on the clock of the steps
+    std::uint16_t mass;                 // levels of bone; 0: none
     Matter matter;
 };
 
 struct ParticleSettings {
     std::uint32_t most = 200000;
-    std::uint32_t margin = 16;                  // cells about the volume that belong to the site
-    Vec3 gravity_m_s2 = Vec3(0.0, -9.81, 0.0);  // its largest component is down for what rests
-    double fastest_m_s = 1.0;                   // v_max; nothing is faster
-    double drag_per_s = 4.0;                    // of what flies
+    std::uint32_t margin = 16;                  // cells around the volume that belong to the site
+    Vec3 gravity_m_s2 = Vec3(0.0, -9.81, 0.0);  // its largest component is down for resting particles
+    double fastest_m_s = 1.0;                   // v_max
+    double drag_per_s = 4.0;                    // in flight
     std::uint16_t grain_levels = 255;           // of dust
     std::uint64_t seed = 1;
     Instant (*now)() = [] { return Monotonic::now(); };
@@ -45,11 +46,10 @@ struct ParticleSettings {
 
 struct Suction {
     Vec3 tip_m = Vec3::Zero();
-    double radius_m =
-        0.0;  // within which particles are taken; they are drawn from three times as far. 0: off
+    double radius_m = 0.0;  // removes particles within it, attracts them from three times as far. 0: off
 };
 
-// A head that turns among the particles: what is inside is carried out along its turn.
+// A rotating head among the particles: those inside are carried out along its rotation.
 struct Stir {
     Vec3 centre_m = Vec3::Zero();
     double radius_m = 0.0;  // 0: none
@@ -66,10 +66,10 @@ struct Ledger {  // levels of bone
 struct ParticleStep {
     std::uint32_t alive = 0, moved = 0;
     std::uint32_t sucked = 0, left = 0,
-                  given_up = 0;         // in this step: by suction, out of the site, least important
+                  given_up = 0;         // in this step: by suction, out of the site, as least important
     GroupCounts held{}, moves{};        // by group, as planned
-    bool suction_blocked = false;       // its tip is in bone
-    double cost_s = 0.0, move_s = 0.0;  // of all; of one move, as believed for the next step
+    bool suction_blocked = false;       // the tip is in bone
+    double cost_s = 0.0, move_s = 0.0;  // total; per move, as estimated for the next step
 };
 
 class Particles {
@@ -77,15 +77,15 @@ public:
     Particles(const BoneBricks& bricks, std::span<const std::uint8_t> density,
               const ParticleSettings& settings);
 
-    // `levels` of bone were drilled away at a voxel; dust flies off with the velocity, and some scatter.
+    // `levels` of bone were removed at a voxel; the dust flies off with this velocity and some scatter.
     void drilled(std::uint32_t x, std::uint32_t y, std::uint32_t z, std::uint32_t levels,
                  const Vec3& velocity_m_s) noexcept;
-    // One particle. False: there is no room near, or no more are possible.
+    // Adds one particle. Returns false if there is no space nearby, or the maximum is reached.
     bool emit(Matter matter, const Vec3& at_m, const Vec3& velocity_m_s) noexcept;
     ParticleStep step(double dt_s, double budget_s, const Vec3& looked_at_m, const Suction& suction,
                       const Stir& stir = {}) noexcept;
-    // From now on no more than so many are shown, nor than the settings allow. The least important of what is too much go
-    // with the next steps, within their budgets; until then shown() leaves as many out.
+    // Limits the number shown, within the limit of the settings. The next steps discard the least important excess
+    // within their budgets; until then shown() omits as many.
     void keep_at_most(std::uint32_t most) noexcept { most_ = std::min(most, settings_.most); }
 
     [[nodiscard]] std::span<const Particle> all() const noexcept { return particle_; }
@@ -134,8 +134,8 @@ private:
     float fastest_ = 1.0F;  // cells / s
     std::uint32_t most_;
     double now_s_ = 0.0;
-    double move_s_ = 100e-9;                 // measured: of one move
-    std::size_t passed_ = 0, given_up_ = 0;  // where the passes over all go on
+    double move_s_ = 100e-9;                 // measured, per move
+    std::size_t passed_ = 0, given_up_ = 0;  // where the passes over all continue
 };
 
 }  // namespace tact

@@ -1,7 +1,7 @@
-// How many rays a picture may have, where the processor draws: as many as fit a frame by the clock.
+// Limits the rays of a frame on a software renderer to what fits by the clock.
 //
-// The governor's level is a share of the pixels, and knows neither their number nor the machine. Here frames with rays
-// are compared with frames without: what is dearer than believed is believed at once, what is cheaper slowly.
+// The governor's level is a fraction of the pixels, whatever their number and the machine. This class compares frames
+// with and without rays: the estimate follows a higher cost at once, a lower one slowly.
 #pragma once
 
 #include <algorithm>
@@ -11,7 +11,7 @@ namespace tact {
 
 class RayPace {
 public:
-    // Of all that is drawn: within the governor's goal for a picture.
+    // For the whole frame, within the governor's goal for the display.
     static constexpr double kFrame_s = 0.03;
     static constexpr std::uint32_t kFewest = 6000;
 
@@ -19,7 +19,7 @@ public:
         const double left_s = std::max(kFrame_s - without_s_, 0.2 * kFrame_s);
         return std::max(kFewest, static_cast<std::uint32_t>(std::min(left_s / ray_s_, 1e8)));
     }
-    // Of a frame that is over: without waiting for the display.
+    // For a finished frame, without waiting for the display.
     void took(std::uint32_t rays, double work_s) noexcept {
         if (!(work_s > 0.0 && work_s < 10.0)) return;
         if (rays < kFewest / 2) {

@@ -9,19 +9,19 @@ namespace tact {
 namespace {
 
 constexpr double kLongestFrame_s = 0.1;
-constexpr double kStep_s = 0.012;  // of a step about; the rules rest and topple once a step
+constexpr double kStep_s = 0.012;  // target; the rules rest and topple particles once per step
 constexpr int kStepsMost = 4;
-// Dust leaves the burr along its turn, and out of the hole.
+// Dust leaves the burr along its rotation, and out of the hole.
 constexpr double kAlong_m_s = 0.3, kOut_m_s = 0.2;
-// No more water in a second than this share of the particles there may be: dust and blood need room too.
+// Water per second, as a fraction of the maximum number of particles: dust and blood need space too.
 constexpr double kWaterShare_per_s = 0.15;
 constexpr double kBloodShare_per_s = 0.04;
 constexpr double kJet_m_s = 0.5;
-constexpr double kNozzle = 3.0;        // radii of the head up the shaft
-constexpr double kStirred = 0.9;       // of the head's radius: at its rim it is the rules' turn
+constexpr double kNozzle = 3.0;        // radii of the head, up the shaft
+constexpr double kStirred = 0.9;       // of the head's radius: the rules act at its rim
 constexpr double kSuctionReach = 1.6;  // radii of the tube
 constexpr double kLookEvery_s = 0.05;
-constexpr double kSeenFrom = 0.5;  // share of the head
+constexpr double kSeenFrom = 0.5;  // fraction of the head
 
 Vec3 vec(const double (&v)[3]) { return {v[0], v[1], v[2]}; }
 Quat quat(const double (&q)[4]) { return Quat(q[3], q[0], q[1], q[2]); }
@@ -62,7 +62,7 @@ void SiteEffects::step(const Frame& frame) noexcept {
     take_changes(frame, burr);
     if (burr != nullptr) spray(dt_s, *frame.drill, *burr);
     bleeding_.step(dt_s, static_cast<std::size_t>(std::ceil(kBloodShare_per_s * kept_ * dt_s)), particles_);
-    scatter();  // after what drilling makes, for which there is to be room
+    scatter();  // after the particles of drilling, which take precedence
 
     Vec3 looked_at_m = bricks_.to_model(0.5 * Vec3(bricks_.size[0], bricks_.size[1], bricks_.size[2]));
     Stir stir;
@@ -132,7 +132,7 @@ void SiteEffects::take_changes(const Frame& frame, const DrillHand* burr) noexce
     }
 }
 
-// A jet along the shaft onto the head, a drop a voxel.
+// A jet along the shaft onto the head; a drop is a voxel.
 void SiteEffects::spray(double dt_s, const DrillTopic& drill, const DrillHand& burr) noexcept {
     const double flow_m3_s = static_cast<double>(burr.irrigation * drill.irrigation_m3_s_most);
     const double drop_m3 = std::pow(bricks_.voxel_m * world_per_model_, 3);

@@ -1,10 +1,11 @@
-// What flies and flows where bone is drilled: dust from the burr, water on it, blood from what was cut, and suction.
+// Particle effects where bone is drilled: dust from the burr, irrigation, bleeding, and suction.
 //
-// In        what changed in the bone (BoneFollower), what the tools do (DrillTopic), the level of "gui.particles"
-// Out       the particles as they are now, what they cost, how long the burr was seen while it drilled
-// Level     share of kMost particles, and of kBudgetMost_s for their steps of one frame; a lower one is kept from its first
-//           frame on: what is too much is shown no more (Particles::shown()) and goes within the budgets of the next ones
-// Mass      ledger().drilled is the sum of all that the bone lost while this was shown
+// In        changes of the bone (BoneFollower), state of the tools (DrillTopic), the level of "gui.particles"
+// Out       the current particles, their cost, and how long the burr was visible while it drilled
+// Level     fraction of kMost particles, and of kBudgetMost_s for their steps in a frame. A lower level applies from
+//           its first frame: excess particles are no longer shown (Particles::shown()) and are discarded in later
+//           budgets
+// Mass      ledger().drilled is the total loss of bone while this was shown
 // Down      into the bone as it faces the surgeon, -z of the model: the patient lies on the side
 // Thread    frame thread
 #pragma once
@@ -21,9 +22,9 @@
 namespace tact {
 
 struct SiteEffectsMetrics {
-    std::uint32_t alive = 0, shown = 0, moves = 0, most = 0;  // of the last frame; at level 1
-    double cost_s = 0.0;                                      // of moving them, this frame
-    double drilling_s = 0.0, seen_s = 0.0;  // the burr turned in bone; and of that it was seen
+    std::uint32_t alive = 0, shown = 0, moves = 0, most = 0;  // of the last frame; most: at level 1
+    double cost_s = 0.0;                                      // to move them, this frame
+    double drilling_s = 0.0, seen_s = 0.0;                    // the burr turned in bone; and was visible
     bool suction_blocked = false;
 };
 
@@ -32,19 +33,19 @@ public:
     static constexpr std::uint32_t kMost = 100000;
     static constexpr double kBudgetMost_s = 8e-3;
 
-    // bone: the copy that is drilled (BoneFollower::volume()); it and the labels must outlive the site.
+    // bone: the copy being drilled (BoneFollower::volume()); it and the labels must outlive the site.
     SiteEffects(const BoneVolumeView& bone, const BoneLabelsView& labels, double world_per_model);
 
     struct Frame {
-        double dt_s = 0.0;                  // since the frame before
+        double dt_s = 0.0;                  // since the last frame
         const DrillTopic* drill = nullptr;  // null: no controller
         std::span<const BrickChange> changes;
         float level = 1.0F;
         Vec3 eye_model_m = Vec3::Zero();
     };
     void step(const Frame& frame) noexcept;
-    // From now on there are always so many particles: what is missing of all kinds is scattered over the bone at each
-    // step, so that what many cost can be measured. What the level does not allow is not there; 0 ends it.
+    // Keeps this many particles: each step scatters the missing ones, of all kinds, over the bone, to measure the
+    // cost of many. The level still limits them; 0 ends it.
     void keep(std::uint32_t count) noexcept { scattered_ = count; }
 
     [[nodiscard]] const Particles& particles() const noexcept { return particles_; }

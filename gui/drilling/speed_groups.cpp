@@ -14,7 +14,7 @@ std::size_t speed_group(float share) noexcept {
 }
 
 GroupCounts moves_by_group(const GroupCounts& held, double moves) noexcept {
-    // Groups that are moved whole, and the share r 2^-j of each other one.
+    // Groups that move completely, and the fraction r 2^-j of each other group.
     std::size_t whole = 0;
     double left = std::max(moves, 0.0), rate = 0.0;
     for (; whole < kSpeedGroups; ++whole) {
@@ -26,7 +26,7 @@ GroupCounts moves_by_group(const GroupCounts& held, double moves) noexcept {
         left -= static_cast<double>(held[whole]);
     }
     GroupCounts counts = held;
-    double carried = 0.0;  // what rounding down left of the groups before
+    double carried = 0.0;  // remainder of rounding down in earlier groups
     for (std::size_t j = whole; j < kSpeedGroups; ++j) {
         carried += std::ldexp(rate, -static_cast<int>(j)) * static_cast<double>(held[j]);
         counts[j] = std::min(held[j], static_cast<std::size_t>(carried + 1e-9));

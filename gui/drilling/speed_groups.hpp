@@ -1,11 +1,11 @@
-// Particles by their speed, and how many of each group are moved in a step of given work.
+// Particles grouped by speed, and how many of each group move in a step of given work.
 //
-// Groups   G_j: 2^-(j+1) < |v| / v_max <= 2^-j, ten of them; whatever is slower is in the last.
+// Groups   G_j: 2^-(j+1) < |v| / v_max <= 2^-j, ten of them; slower particles are in the last.
 // Law      the mean time between two moves of a particle doubles from group to group: a_j / n_j =
-//          a_(j-1) / 2 n_(j-1) (SPEC section 3, equations 15 and 16), where no group has more to move than it holds.
-// Turns    a group is a ring without order, and its particles are moved in turn instead of at random: the same mean,
-//          and hardly one waits longer than n_j / a_j steps.
-// Thread   one; memory for as many as announced is taken by the constructor
+//          a_(j-1) / 2 n_(j-1) (drilling paper, equations 15 and 16), and no group moves more than it holds.
+// Turns    a group is an unordered ring, and its particles move in turn instead of at random: the same mean, and
+//          hardly any waits longer than n_j / a_j steps.
+// Thread   one; the constructor allocates memory for the announced maximum
 #pragma once
 
 #include <array>
@@ -18,10 +18,10 @@ namespace tact {
 inline constexpr std::size_t kSpeedGroups = 10;
 using GroupCounts = std::array<std::size_t, kSpeedGroups>;
 
-// Of a speed as a share of the fastest, in [0, 1].
+// Group of a speed, given as a fraction of the fastest, in [0, 1].
 [[nodiscard]] std::size_t speed_group(float share) noexcept;
 
-// How many of each group are moved, `moves` in all or as many as there are.
+// Moves of each group: `moves` in total, or as many as there are particles.
 [[nodiscard]] GroupCounts moves_by_group(const GroupCounts& held, double moves) noexcept;
 
 class SpeedGroups {
@@ -38,9 +38,9 @@ public:
         remove(particle);
         add(particle, group);
     }
-    // The particle `from` is called `to` from now on; `to` is in no group.
+    // Renames particle `from` to `to`, which must be in no group.
     void rename(std::uint32_t from, std::uint32_t to) noexcept;
-    // Whose turn it is in a group that is not empty; `ahead` of it, to fetch its memory.
+    // Particle whose turn it is in a non-empty group; `ahead`: a later one, to fetch its memory.
     [[nodiscard]] std::uint32_t next(std::size_t group, std::size_t ahead = 0) const noexcept;
     void advance(std::size_t group) noexcept;
 
@@ -51,7 +51,7 @@ private:
     };
     std::array<std::vector<std::uint32_t>, kSpeedGroups> member_;
     std::array<std::size_t, kSpeedGroups> turn_{};
-    std::vector<Place> at_;  // of each particle
+    std::vector<Place> at_;  // per particle
 };
 
 }  // namespace tact

@@ -1,7 +1,7 @@
-// The strokes of a burr that cuts: a way from one turning point to the next, or until it cuts nothing for a while.
+// Strokes of a cutting burr: the path from one turning point to the next, or until it cuts nothing for a while.
 //
-// Method   a turning point is where the burr was farthest from the stroke's beginning when it has come kBackM nearer to it
-//          again. Strokes shorter than kLeastM are none.
+// Method   a turning point is the point farthest from the stroke's beginning, once the burr has come kBackM closer
+//          again. Strokes shorter than kLeastM do not count.
 // Unit     metres of the hand's space, seconds
 // Thread   one; no allocation
 #pragma once
@@ -14,7 +14,7 @@ namespace tact {
 
 struct StrokeMetrics {
     std::uint64_t count = 0;
-    double length_m = 0.0, time_s = 0.0;  // of all together; straight from turning point to turning point
+    double length_m = 0.0, time_s = 0.0;  // totals; straight from turning point to turning point
     [[nodiscard]] double mean_length_m() const {
         return count > 0 ? length_m / static_cast<double>(count) : 0.0;
     }
@@ -25,9 +25,9 @@ class Strokes {
 public:
     static constexpr double kBackM = 5e-4, kLeastM = 1e-3, kPauseS = 0.15;
 
-    // Where the burr is, every cycle; cuts: bone went.
+    // Position of the burr in every cycle; cuts: bone was removed.
     void step(double t_s, const Vec3& at_m, bool cuts);
-    // The stroke under way counts as well.
+    // Includes the stroke in progress.
     [[nodiscard]] StrokeMetrics metrics() const;
 
 private:

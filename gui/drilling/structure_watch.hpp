@@ -1,8 +1,8 @@
-// How far a tool's surface is from each labelled structure, and how soon it would be there.
+// Distance of a tool's surface from each labelled structure, and its closing speed.
 //
-// Distance   from the head of the tool (of a suction tube: its tip) to the structure's surface; below zero the head is in it.
-//            Right within the field's error (ipc/scene/bone/distance_field.hpp). Metres of the hand's space.
-// Closing    how fast it becomes less, over the last 0.2 s
+// Distance   from the head of the tool (of a suction tube: its tip) to the structure's surface; negative inside.
+//            Accurate to the field's error (ipc/scene/bone/distance_field.hpp). Metres of the hand's space.
+// Closing    rate of decrease over the last 0.2 s
 // Thread     one
 #pragma once
 
@@ -17,7 +17,7 @@
 
 namespace tact {
 
-// Balls along a tool's axis that its head's surface is told by. Model metres.
+// Balls along a tool's axis that represent its head's surface. Model metres.
 struct HeadBalls {
     static constexpr std::size_t kMax = 5;
     std::array<Vec3, kMax> centre_m;
@@ -25,7 +25,7 @@ struct HeadBalls {
     std::size_t count = 0;
 };
 [[nodiscard]] HeadBalls head_balls(const DrillHand& hand, double world_per_model);
-// The same head elsewhere, turned as it is.
+// The same head, translated.
 [[nodiscard]] HeadBalls moved(const HeadBalls& head, const Vec3& way_m);
 [[nodiscard]] double distance_m(const DistanceField& field, const HeadBalls& head, double world_per_model);
 
@@ -38,11 +38,12 @@ public:
         double distance_m = 0.0, closing_m_s = 0.0;
     };
 
-    // The fields must outlive it.
+    // The fields must outlive this object.
     StructureWatch(std::span<const DistanceField> fields, double world_per_model)
         : fields_(fields), world_per_model_(world_per_model) {}
 
-    // One hand's, in the order of the fields; none where the hand holds no tool. Valid until the next call for it.
+    // Readings of one hand, in the order of the fields; empty if the hand holds no tool. Valid until the next call
+    // for it.
     std::span<const Reading> look(const DrillTopic& drill, std::size_t hand);
 
 private:

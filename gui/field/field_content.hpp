@@ -1,4 +1,4 @@
-// What a field scene has beside its equipotential surfaces: the field's description, and its potential at any place.
+// Content of a field scene besides its equipotential surfaces: the field's description and its potential anywhere.
 #pragma once
 
 #include <memory>

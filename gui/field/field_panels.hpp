@@ -1,4 +1,4 @@
-// The panels of a field scene: potential, its slope and the force at the tool, and what is drawn.
+// Panels of a field scene: potential, gradient and force at the tool, and the display options.
 //
 // Thread   frame thread, inside an ImGui frame.
 #pragma once
@@ -10,13 +10,13 @@
 namespace tact {
 
 struct FieldState {
-    bool known = false;  // the controller runs and the tool is known
+    bool known = false;  // a controller is attached and the tool's position known
     bool inside = false;
     std::string unit;
     double potential = 0.0, slope = 0.0;  // unit; unit per model metre
     double low = 0.0, high = 0.0;         // of the field
     double force_n = 0.0, force_n_max = 0.0, stiffness_n_m = 0.0;
-    double probe_mm = 0.0;  // radius of the ball, of the hand's world
+    double probe_mm = 0.0;  // radius of the probe, hand's world
 };
 
 class FieldPanels : public SystemPanels {

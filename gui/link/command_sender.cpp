@@ -29,8 +29,12 @@ bool CommandSender::send(const Command& wanted, std::int64_t now_ns) {
 
 void CommandSender::update(const HealthTopic& health, std::int64_t now_ns) {
     if (stage_ != Stage::sent && stage_ != Stage::unanswered) return;
-    if (health.command_sequence == sequence_) {
-        const auto result = static_cast<CommandResult>(health.command_result & 0xFFFFU);
+    // Arm and disarm overtake others, whose answers follow theirs.
+    const bool of_state =
+        health.state_sequence == sequence_ && (kind_ == CommandKind::arm || kind_ == CommandKind::disarm);
+    if (of_state || health.command_sequence == sequence_) {
+        const auto result =
+            static_cast<CommandResult>(of_state ? health.state_result : health.command_result & 0xFFFFU);
         stage_ = result == CommandResult::done ? Stage::done : Stage::refused;
         text_ = std::string(command_kind_text(kind_)) + ": " + command_result_text(result);
     } else if (now_ns - sent_at_ns_ > kPatience_ns) {
@@ -42,7 +46,7 @@ void CommandSender::update(const HealthTopic& health, std::int64_t now_ns) {
 void CommandSender::forget() {
     if (stage_ == Stage::sent || stage_ == Stage::unanswered) {
         stage_ = Stage::unanswered;
-        text_ = std::string(command_kind_text(kind_)) + ": the controller went before it answered";
+        text_ = std::string(command_kind_text(kind_)) + ": the controller ended before it answered";
     }
     if (stage_ != Stage::unanswered) stage_ = Stage::none;
 }

@@ -1,4 +1,4 @@
-// Commands to the controller, numbered, and what became of them.
+// Sends numbered commands to the controller and tracks their results.
 //
 // Thread   frame thread.
 #pragma once
@@ -28,11 +28,11 @@ public:
 
     explicit CommandSender(Ring<CommandTopic, 64>& ring) : ring_(ring) {}
 
-    // A text longer than the topic holds is refused: false, and nothing is sent.
+    // Returns false and sends nothing if the text is longer than the topic allows.
     bool send(const Command& wanted, std::int64_t now_ns);
-    // What the controller said last.
+    // Takes the newest result that the controller published.
     void update(const HealthTopic& health, std::int64_t now_ns);
-    // A new controller knows nothing of what the old one was sent.
+    // Drops the pending command: a new controller never received it.
     void forget();
 
     [[nodiscard]] Stage stage() const { return stage_; }

@@ -87,7 +87,7 @@ const PathLevel* Controller::level(const char* path) const {
 std::string Controller::scene_path() const {
     if (region_.empty()) return {};
     char path[sizeof region_->scene_path];
-    std::memcpy(path, region_->scene_path, sizeof path);  // written once, before the ready mark
+    std::memcpy(path, region_->scene_path, sizeof path);  // written once, before the ready flag
     path[sizeof path - 1] = '\0';
     return path;
 }

@@ -1,8 +1,8 @@
-// The controller as this process sees it: attached or awaited, and its newest records that make sense.
+// The window's connection to the controller: attached or waiting, with the newest valid records.
 //
-// Survives  the controller's end and restart: the last records stay, attached() says that they are old.
-// Hostile   every record is checked (region_checks.hpp); refused() counts what was not used.
-// Thread    frame thread; nothing blocks.
+// Survives  the controller's end and restart: the last records stay, and attached() is false
+// Hostile   every record is checked (region_checks.hpp); refused() counts those rejected
+// Thread    frame thread; nothing blocks
 #pragma once
 
 #include <cstdint>
@@ -22,7 +22,7 @@ public:
         bool arrived = false, left = false;
     };
     News poll();
-    // Reads every topic; true in the flags for what is new.
+    // Reads every topic; a flag is true if the topic has a new record.
     struct Fresh {
         bool tool = false, second = false, bodies = false, touch = false, drill = false, head = false,
              tracker = false, devices = false, health = false, lateness = false, levels = false,
@@ -31,7 +31,7 @@ public:
     Fresh read();
     [[nodiscard]] bool next_event(EventTopic& event);
     [[nodiscard]] bool next_cycle(TraceTopic& cycle);
-    // For another reader, with a place of its own.
+    // For a second reader with its own cursor.
     [[nodiscard]] bool next_cycle(RingCursor& place, TraceTopic& cycle) const;
     [[nodiscard]] std::uint64_t cycles_missed() const { return trace_cursor_.missed; }
 
@@ -39,17 +39,17 @@ public:
     [[nodiscard]] const std::string& status_text() const {
         return refusal_.empty() ? link_.status_text() : refusal_;
     }
-    // Of the bone that it drills; empty(): it has none, or bone_refusal() says why it cannot be used. Stays where it is until
-    // poll() tells that the controller left or another arrived.
+    // The bone of a drilling scene; empty() if there is none or bone_refusal() names an error. The mapping is stable
+    // until poll() reports that the controller left or another one arrived.
     [[nodiscard]] const MappedBoneRegion& bone() const { return bone_; }
     [[nodiscard]] const std::string& bone_refusal() const { return bone_refusal_; }
     [[nodiscard]] std::uint64_t refused() const { return refused_; }
     [[nodiscard]] std::uint64_t events_missed() const { return cursor_.missed; }
 
-    // Of one path, as the controller has it now; null while there is none, or no such path.
+    // The current level of one path; null if it is unknown.
     [[nodiscard]] const PathLevel* level(const char* path) const;
 
-    // The scene that the controller runs; empty while it is not known.
+    // Path of the controller's scene; empty while unknown.
     [[nodiscard]] std::string scene_path() const;
     [[nodiscard]] std::uint64_t scene_checksum() const {
         return region_.empty() ? 0 : region_->scene_checksum;
@@ -58,7 +58,7 @@ public:
     bool have_tool = false, have_second = false, have_bodies = false, have_touch = false, have_drill = false,
          have_head = false, have_tracker = false, have_devices = false, have_health = false,
          have_lateness = false, have_levels = false, have_recorders = false;
-    ToolTopic tool{}, second{};  // of the first hand, and of another where there is one
+    ToolTopic tool{}, second{};  // the first hand, and the second one if present
     BodiesTopic bodies{};
     TouchTopic touch{};
     DrillTopic drill{};

@@ -1,6 +1,6 @@
-// Where a body is when the picture is seen: the newest pose, moved on at its filtered speed.
+// Predicts a body's pose at display time: the newest pose, extrapolated at its filtered velocity.
 //
-// Predicts  at most kHorizon past the newest pose; an old pose (the controller is silent) is shown as it is.
+// Predicts  at most kHorizon_ns past the newest pose; one older than kGap_ns (silent controller) stays unchanged.
 // Thread    one; no allocation.
 #pragma once
 
@@ -13,8 +13,8 @@ namespace tact {
 class PosePredictor {
 public:
     static constexpr std::int64_t kHorizon_ns = 30'000'000;
-    static constexpr std::int64_t kGap_ns = 200'000'000;  // longer: the speed is not known any more
-    static constexpr double kSmooth_s = 0.04;             // of the speed
+    static constexpr std::int64_t kGap_ns = 200'000'000;  // a longer gap invalidates the velocity
+    static constexpr double kSmooth_s = 0.04;             // time constant of the velocity filter
 
     void add(std::int64_t taken_at_ns, const Pose& pose);
     void clear() { known_ = false; }

@@ -62,7 +62,7 @@ bool sensible(const TouchTopic& t) noexcept {
 }
 
 bool sensible(const DrillTopic& t) noexcept {
-    // NaN is in no range.
+    // NaN fails every comparison.
     const auto within = [](float v, float most) { return v >= 0.0F && v <= most; };
     if (!(t.level_m3 >= 0.0 && t.level_m3 < 1.0) || !within(t.burr_rad_s_most, 1e6F) ||
         !within(t.irrigation_m3_s_most, 1.0F) || !within(t.suction_m3_s_most, 1.0F))
@@ -96,7 +96,7 @@ bool sensible(const DevicesTopic& t) noexcept {
     });
 }
 
-// Whole, and less than a cycle a nanosecond for thirty years: sums cannot overflow.
+// The counts sum to the total, and each is bounded: sums cannot overflow.
 bool sensible(const LatenessTopic& l) noexcept {
     constexpr std::uint64_t kMost = 1'000'000'000'000'000;
     std::uint64_t sum = 0;
@@ -113,7 +113,9 @@ bool sensible(const HealthTopic& h) noexcept {
            duration(h.lateness_p99_ns) && duration(h.lateness_max_ns) && duration(h.cycle_cost_p50_ns) &&
            duration(h.cycle_cost_max_ns) && fraction(h.recomputed_fraction_mean) &&
            fraction(h.recomputed_fraction_least) && fraction(h.rested) && duration(h.delay_p50_ns) &&
-           duration(h.delay_p99_ns) && std::isfinite(h.stiffness_n_m_max) &&
+           duration(h.delay_p99_ns) && std::isfinite(h.stiffness_n_m_max) && duration(h.model_ns_max) &&
+           fraction(h.deadline_miss_share) && std::isfinite(h.force_error_n_p50) &&
+           std::isfinite(h.force_step_n_max) && std::isfinite(h.level_settled_s) &&
            h.state <= static_cast<std::uint8_t>(RunState::fault);
 }
 

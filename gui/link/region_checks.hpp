@@ -1,6 +1,6 @@
-// What the controller's region holds is not trusted: a record is used when it makes sense, else counted.
+// Checks records from the controller's region, which is not trusted: invalid ones are counted and not used.
 //
-// Pure functions; a record that is refused leaves the caller's old one in use.
+// Pure functions; if a record is refused, the caller keeps its last valid one.
 #pragma once
 
 #include "ipc/topics/bodies.hpp"

@@ -1,4 +1,4 @@
-// An arrow of triangles from a point along a vector, for forces.
+// Triangle mesh of an arrow along a vector, for forces.
 #pragma once
 
 #include <Eigen/Core>
@@ -7,9 +7,9 @@
 
 namespace tact {
 
-inline constexpr Rgb8 kForceColour{255, 92, 92};  // as the legend has it
+inline constexpr Rgb8 kForceColour{255, 92, 92};  // same as in the legend
 
-// Unit ångström, frame of from_a. An arrow shorter than its own thickness is not drawn: the mesh is empty.
+// Unit ångström, frame of from_a. The mesh is empty if the arrow is shorter than it is thick.
 [[nodiscard]] TubeMesh build_arrow(const Eigen::Vector3f& from_a, const Eigen::Vector3f& along_a,
                                    float thickness_a, const Rgb8& colour);
 

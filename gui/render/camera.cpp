@@ -6,7 +6,7 @@
 namespace tact {
 namespace {
 
-constexpr float kNearest = 0.05F, kFarthest = 30.0F;  // of the target, in radii of what is shown
+constexpr float kNearest = 0.05F, kFarthest = 30.0F;  // distance to the target, in radii of the home view
 
 }  // namespace
 
@@ -18,7 +18,7 @@ void Camera::frame(float radius_a) {
 void Camera::home() {
     target_a_.setZero();
     distance_a_ = 1.06F * radius_a_ / std::sin(0.5F * kFieldOfViewRad);
-    // A little from above and from the right, so that depth is seen at once.
+    // Slightly from above and from the right, to show depth.
     q_eye_scene_ = Eigen::Quaternionf(Eigen::AngleAxisf(0.42F, Eigen::Vector3f::UnitX()) *
                                       Eigen::AngleAxisf(-0.45F, Eigen::Vector3f::UnitY()));
 }

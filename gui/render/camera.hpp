@@ -1,6 +1,6 @@
-// Where a person looks from: an orbit about a target, moved by the mouse as in other map viewers.
+// Orbit camera about a target, moved by the mouse as in other map viewers.
 //
-// Unit     ångström, float: the scene frame is (model - centre of the scene) * 1e10, so that numbers are
+// Unit     ångström, float: the scene frame is (model - centre of the scene) * 1e10, which keeps the numbers
 //          small enough for graphics. Axes are those of the model: x right, y up, z to the user.
 // Thread   any; plain arithmetic.
 #pragma once
@@ -16,19 +16,20 @@ class Camera {
 public:
     static constexpr float kFieldOfViewRad = 0.6F;  // vertical
 
-    // What the home view shows: a ball of this radius about the origin. Goes there at once.
+    // Sets the home view, a ball of this radius about the origin, and goes there at once.
     void frame(float radius_a);
     void home();
-    // Turns to a place without turning round: a ball of `shown_a` about it fills the view. Not finite: stays.
+    // Moves to a target and keeps the orientation: a ball of radius `shown_a` fills the view. Ignores non-finite
+    // values.
     void approach(const Eigen::Vector3f& target_a, float shown_a);
 
-    // As it was before, by target_a(), orientation() and distance_a(). Not finite, or too far: stays.
+    // Restores target_a(), orientation() and distance_a(). Ignores non-finite values and targets too far away.
     void place(const Eigen::Vector3f& target_a, const Eigen::Quaternionf& q_eye_scene, float distance_a);
 
-    // Pixels of the mouse in a view of this height; y down, as windows count.
+    // Mouse motion in pixels in a view of this height; y points down.
     void rotate(float dx_px, float dy_px, float view_height_px);
     void pan(float dx_px, float dy_px, float view_height_px);
-    void zoom(float steps);  // positive: nearer, ten per cent a step
+    void zoom(float steps);  // positive: closer, ten per cent a step
 
     [[nodiscard]] Eigen::Matrix4f view() const;  // scene -> eye, the eye looks along -z
     [[nodiscard]] Eigen::Matrix4f projection(float aspect) const;
@@ -52,7 +53,7 @@ private:
     Eigen::Quaternionf q_eye_scene_ = Eigen::Quaternionf::Identity();
 };
 
-// 1, 2 or 5 times a power of ten, the largest not above `most`; 0 for what is not a positive number.
+// 1, 2 or 5 times a power of ten, the largest not above `most`; 0 unless `most` is positive and finite.
 [[nodiscard]] double round_length(double most);
 
 }  // namespace tact

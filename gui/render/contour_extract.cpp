@@ -30,7 +30,7 @@ PlainMesh extract_contour(const DensityGrid& grid, double level, const Progress&
     const auto at = [&](std::uint32_t v) {
         return Eigen::Map<const Eigen::Vector3f>(&surface.position_m[std::size_t{3} * v]);
     };
-    // In voxels: square metres of a map would be lost in single precision.
+    // In voxels: squared metres of a map underflow in single precision.
     const auto scale = static_cast<float>(1.0 / grid.spacing_m.maxCoeff());
     for (std::size_t t = 0; t < surface.triangles(); ++t) {
         const std::uint32_t* v = &surface.triangle[3 * t];
@@ -71,7 +71,7 @@ std::uint32_t next_stride(const DensityGrid& grid, std::uint32_t now, double ext
     if (now < kStrideMax && (extract_s > limits.extract_s_max || vertices > limits.vertices_max))
         return now + 1;
     if (now <= first_stride(grid, limits)) return now;
-    // A finer grid has cells as the cube, vertices as the square of the strides.
+    // From stride to stride, cells grow with the cube and vertices with the square of the ratio.
     const double ratio = static_cast<double>(now) / static_cast<double>(now - 1);
     const bool fits = extract_s * ratio * ratio * ratio < 0.6 * limits.extract_s_max &&
                       static_cast<double>(vertices) * ratio * ratio < 0.8 * limits.vertices_max;

@@ -1,5 +1,5 @@
-// A surface to look at while its level is being moved: from every stride-th voxel, as it is, without levels
-// of detail. What replaces it once the level rests is a progressive mesh.
+// A plain surface for display while its level is being moved: every stride-th voxel, without levels of detail. A
+// progressive mesh replaces it once the level rests.
 //
 // Frame    model, metres.  Thread   any.
 #pragma once
@@ -19,14 +19,13 @@ struct PlainMesh {
     [[nodiscard]] bool empty() const { return index.empty(); }
 };
 
-// Every stride-th voxel along each axis, from the first on; at least two where there are two.
+// Every stride-th voxel along each axis from the first; at least two if the axis has two.
 [[nodiscard]] DensityGrid thinned(const DensityGrid& grid, std::uint32_t stride);
-// With normals as means of the triangles about a vertex, by area.
+// Normals are area-weighted means of the triangles at a vertex.
 [[nodiscard]] PlainMesh extract_contour(const DensityGrid& grid, double level, const Progress& progress = {});
 
-// How coarse the next extraction has to be. The extraction before this one took so long and gave so many
-// vertices at stride `now`; the answer keeps it below extract_s_max and vertices_max where that can be, and
-// goes back to finer only where that surely fits.
+// Stride of the next extraction. The last one, at stride `now`, took `extract_s` and gave `vertices`. The result
+// keeps within extract_s_max and vertices_max where possible, and becomes finer only if that surely fits.
 struct StrideLimits {
     std::size_t cells_max = 4'000'000;  // of the thinned grid
     double extract_s_max = 0.07;

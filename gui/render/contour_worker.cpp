@@ -49,7 +49,7 @@ std::optional<ContourOutcome> ContourWorker::take(std::size_t contour) {
 }
 
 void ContourWorker::work() {
-    // Nice values belong to threads on Linux. That it may fail (it never does upwards) changes nothing.
+    // Linux applies nice values per thread. A failure is harmless; raising the value never fails.
     (void)setpriority(PRIO_PROCESS, static_cast<id_t>(gettid()), 10);
     std::unique_lock lock(mutex_);
     while (!stop_) {
@@ -111,7 +111,7 @@ void ContourWorker::extract(std::size_t contour, std::unique_lock<std::mutex>& l
     } else {
         const std::size_t vertices = outcome.plain->vertex.size();
         c.stride = next_stride(content_->grid, stride, outcome.extract_s, vertices, limits);
-        // One that is too large is not even shown where a coarser one can be had at once.
+        // A mesh far too large is not even shown if a coarser one can be extracted at once.
         if (vertices > 2 * std::size_t{limits.vertices_max} && c.stride > stride) c.shown = request - 1;
         if (outcome.plain->empty()) c.refined = request;
     }
@@ -148,7 +148,7 @@ void ContourWorker::refine(std::size_t contour, std::unique_lock<std::mutex>& lo
     if (cancelled || c.request != request) return;
     c.refined = request;
     if (c.news && !outcome.mesh)
-        c.news->error = std::move(outcome.error);  // the plain one has not been taken yet, and is needed
+        c.news->error = std::move(outcome.error);  // the plain mesh was not taken yet and is still needed
     else
         c.news = std::move(outcome);
 }

@@ -1,13 +1,12 @@
-// Extracts contours beside the frame loop, and has the final ones refined.
+// Extracts contours in the background and has the final ones refined.
 //
-// A contour that is being moved is extracted again and again, the newest request always, on a grid as coarse as
-// it must be (contour_extract.hpp). When nothing has been requested for kRest and a surface is still a plain
-// one, it is given to `refine`, which may take seconds; a request in between stops it.
+// A contour in motion is extracted repeatedly, always at the newest request, on a grid as coarse as necessary
+// (contour_extract.hpp). After kRest without a request, a plain surface goes to `refine`, which may take seconds; a
+// new request stops it.
 //
-// Thread   one of its own, at low priority. The callers never wait for it, except that the destructor waits
-//          for the slice under way.
+// Thread   its own, at low priority. Callers never wait for it; the destructor alone waits for the current slice.
 // Memory   one thinned copy of the map, one plain mesh of at most kPlainVerticesMax vertices at a time.
-// Fails by outcome.error; the surface before stays.
+// Fails by outcome.error; the previous surface stays.
 #pragma once
 
 #include <array>
@@ -30,17 +29,17 @@ inline constexpr std::size_t kContoursMax = 4;
 struct ContourOutcome {
     double level = 0.0;
     std::uint32_t stride = 1;  // of a plain mesh
-    // One of these, or none where it failed.
+    // One of these, or none on failure.
     std::shared_ptr<const PlainMesh> plain;
     std::shared_ptr<const ProgressiveMesh> mesh;  // refined
-    std::string error;                            // why there is no (better) one
-    double extract_s = 0.0;                       // how long it took
-    // What the surface has at full detail; of a coarse one an estimate.
+    std::string error;                            // why there is no (better) mesh
+    double extract_s = 0.0;                       // duration of the extraction
+    // Vertices at full detail; an estimate for a coarse mesh.
     std::uint32_t vertices_full = 0;
 };
 
-// Returns the surface at this level, or throws StartupError with the reason; Cancelled once stop() is true.
-// Called on the worker's thread.
+// Returns the surface at this level. Throws StartupError with the reason, or Cancelled once stop() is true. Runs on
+// the worker's thread.
 using RefineContour =
     std::function<std::shared_ptr<const ProgressiveMesh>(double level, const std::function<bool()>& stop)>;
 
@@ -49,23 +48,23 @@ public:
     static constexpr Duration kRest = std::chrono::milliseconds(300);
     static constexpr std::uint32_t kPlainVerticesMax = 300'000;
 
-    // Without `refine` surfaces stay plain. The content needs a map.
+    // Without `refine`, surfaces stay plain. The content needs a map.
     ContourWorker(std::shared_ptr<const SceneContent> content, RefineContour refine, Duration rest = kRest);
     ~ContourWorker();
     ContourWorker(const ContourWorker&) = delete;
     ContourWorker& operator=(const ContourWorker&) = delete;
 
-    // A level that is not finite is no request. Of an unchanged level nothing is done.
+    // Ignores a non-finite or unchanged level.
     void request(std::size_t contour, std::optional<double> level);
-    // Most vertices of the next plain meshes: the level of the governor while a contour is moved.
+    // Limits the next plain meshes: the governor's level while a contour is moved.
     void set_vertices_max(std::uint32_t vertices);
-    // What has come since the last call for this contour.
+    // Returns the newest outcome for this contour, if there is one since the last call.
     [[nodiscard]] std::optional<ContourOutcome> take(std::size_t contour);
 
 private:
     struct Contour {
         std::optional<double> requested;
-        std::uint64_t request = 0, shown = 0, refined = 0;  // numbers of requests: asked, extracted, refined
+        std::uint64_t request = 0, shown = 0, refined = 0;  // request numbers: newest, extracted, refined
         std::optional<ContourOutcome> news;
         std::uint32_t stride = 0;
         Instant requested_at{};
@@ -78,7 +77,7 @@ private:
     const std::shared_ptr<const SceneContent> content_;
     const RefineContour refine_;
     const Duration rest_;
-    DensityGrid thin_;  // of thin_stride_; of the worker's thread
+    DensityGrid thin_;  // at thin_stride_; used by the worker's thread only
     std::uint32_t thin_stride_ = 1;
     std::mutex mutex_;
     std::condition_variable changed_;

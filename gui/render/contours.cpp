@@ -6,13 +6,13 @@
 namespace tact {
 namespace {
 
-// A level is applied in the next picture, at the cost of this picture being later by no more than another one.
+// A level is applied at once if that takes no longer than one frame at 30 Hz.
 constexpr double kAtOnceS = 0.033;
 
 }  // namespace
 
 Eigen::Vector3f contour_colour(std::size_t contour) {
-    // Cold and pale first, as what is looked through; the inner ones warm.
+    // The outermost is cold and pale, because others are seen through it; the inner ones are warm.
     static const std::array<Eigen::Vector3f, kContoursMax> kColours{
         {{0.66F, 0.80F, 0.95F}, {0.98F, 0.76F, 0.35F}, {0.55F, 0.86F, 0.62F}, {0.93F, 0.60F, 0.78F}}};
     return kColours[contour % kContoursMax];
@@ -51,7 +51,7 @@ void Contours::show_mesh(Slot& slot, std::shared_ptr<const ProgressiveMesh> mesh
     slot.surface.reset();
     slot.mesh = std::move(mesh);
     slot.surface = std::make_unique<Surface>(*slot.mesh);
-    // At once: its base would be seen for a moment otherwise.
+    // At once: otherwise its base mesh would show for a moment.
     slot.surface->approach(static_cast<std::uint32_t>(std::round(share_ * slot.mesh->vertices())), 1e9);
     slot.plain = PlainSurface();
     slot.plain_full = 0;
@@ -112,7 +112,7 @@ void Contours::apply_share(double budget_s) noexcept {
         else
             plain = std::max(plain, part);
     }
-    // A surface of fewer vertices than this tells nothing of the shape.
+    // Fewer vertices than this do not show the shape.
     constexpr double kLeast = 3000.0;
     if (worker_)
         worker_->set_vertices_max(share_ >= 1.0 ? ContourWorker::kPlainVerticesMax
@@ -204,7 +204,7 @@ void Contours::draw(std::size_t i, const Eigen::Matrix4f& eye, const Eigen::Matr
         triangles();
         glDepthMask(GL_TRUE);
     } else if (contour.opacity < 1.0F) {
-        // Its nearest layer alone, as a person expects of one thing: first the depth, then the colour on it.
+        // Only the nearest layer, so that it looks like one object: first the depth, then the colour.
         glColorMask(GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);
         triangles();
         glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);

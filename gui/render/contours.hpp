@@ -1,13 +1,12 @@
-// The isosurfaces of the map, up to four, each with its level, colour, opacity and style.
+// Up to four isosurfaces of the map, each with its level, colour, opacity and style.
 //
-// Level     the scene's own contour is there at once, baked. Another is extracted by ContourWorker while
-//           it is being moved, and replaced by a progressive mesh when it rests; what was shown stays
-//           until then.
-// Knob      approach_vertices() is that of "gui.mesh": a share of what all shown surfaces have at full
-//           detail, the same for each. While a surface is a plain one its next extraction keeps to the
-//           share instead.
-// Drawn     opaque ones first. Then what is seen through, from the inside (highest level) to the outside;
-//           within one surface glass is not sorted: it has one colour, so the order hardly shows.
+// Level     the scene's own contour is baked and available at once. ContourWorker extracts any other one while it is
+//           being moved, and replaces it by a progressive mesh when it rests; the previous surface stays until
+//           then.
+// Detail    approach_vertices() applies the level of "gui.mesh": the same fraction of the full vertices for each
+//           shown surface. A plain surface applies it at its next extraction.
+// Drawn     opaque surfaces first, then transparent ones from the inside (highest level) to the outside. Triangles
+//           of one glass surface are not sorted: they have one colour, so the order hardly shows.
 // Thread    frame thread, context current.
 #pragma once
 
@@ -27,41 +26,41 @@ namespace tact {
 struct Contour {
     double level = 0.0;  // in the map's unit
     Eigen::Vector3f colour{0.66F, 0.80F, 0.95F};
-    float opacity = 1.0F;               // of glass: times its own
-    std::optional<SurfaceStyle> style;  // none: as ViewOptions says
+    float opacity = 1.0F;               // of glass: multiplies its own
+    std::optional<SurfaceStyle> style;  // none: as in ViewOptions
     bool shown = true;
 };
-// What the i-th contour is given where nobody chose.
+// Default colour of the i-th contour.
 [[nodiscard]] Eigen::Vector3f contour_colour(std::size_t contour);
 
 struct ContourState {
-    double level = 0.0;        // of what is drawn now
-    bool final = false;        // it is the surface that was asked for, in all its detail
-    std::uint32_t stride = 1;  // of a plain one: every so many voxels
-    std::string error;         // why there is no better one
-    double extract_s = 0.0;    // what the newest took, beside the frame
+    double level = 0.0;        // of the surface now drawn
+    bool final = false;        // the requested surface at full detail
+    std::uint32_t stride = 1;  // of a plain surface, in voxels
+    std::string error;         // why there is no better surface
+    double extract_s = 0.0;    // of the newest extraction, in the background
 };
 
 class Contours {
 public:
     Contours(std::shared_ptr<const SceneContent> content, Programs& programs, RefineContour refine);
 
-    // At most kContoursMax; more are left out. Cheap where nothing changed: may be called every frame.
+    // At most kContoursMax; more are ignored. Cheap if nothing changed: may be called every frame.
     void set(std::span<const Contour> contours);
     [[nodiscard]] std::span<const Contour> contours() const { return wanted_; }
     [[nodiscard]] ContourState state(std::size_t contour) const;
 
-    // All the way where that takes less than a picture of 30 a second; else as far as `budget_s` of this frame allows, shared by the
-    // surfaces; see Surface. Call it every frame.
+    // Goes to `wanted` at once if that takes less than 33 ms; else as far as `budget_s` of this frame allows, divided
+    // among the surfaces (see Surface). Call it every frame.
     void approach_vertices(std::uint32_t wanted, double budget_s) noexcept;
-    // Takes what the worker has, and sends what changed. Bytes.
+    // Takes the worker's results and uploads changes. Returns bytes.
     std::size_t upload();
     void draw_opaque(const Eigen::Matrix4f& eye_from_model, const Eigen::Matrix4f& projection,
                      const Haze& haze, SurfaceStyle otherwise);
     void draw_clear(const Eigen::Matrix4f& eye_from_model, const Eigen::Matrix4f& projection,
                     const Haze& haze, SurfaceStyle otherwise);
 
-    // Of all surfaces shown.
+    // Totals of all shown surfaces.
     [[nodiscard]] std::uint32_t vertices() const;
     [[nodiscard]] std::uint32_t triangles() const;
     [[nodiscard]] std::uint32_t vertices_min() const;
@@ -71,7 +70,7 @@ public:
 private:
     struct Slot {
         std::optional<double> asked;                  // of the worker
-        std::shared_ptr<const ProgressiveMesh> mesh;  // of `surface`, which goes first
+        std::shared_ptr<const ProgressiveMesh> mesh;  // of `surface`, which is destroyed first
         std::unique_ptr<Surface> surface;
         PlainSurface plain;
         std::uint32_t plain_full = 0;
@@ -91,7 +90,7 @@ private:
     std::vector<Contour> wanted_;
     std::array<Slot, kContoursMax> slot_;
     double share_ = 1.0;
-    std::unique_ptr<ContourWorker> worker_;  // where the scene has a map
+    std::unique_ptr<ContourWorker> worker_;  // only if the scene has a map
 };
 
 }  // namespace tact

@@ -8,7 +8,7 @@
 namespace tact {
 namespace {
 
-// From the tip to the hand, in the tool's axes: from the right, from below, and towards the person.
+// From the tip to the hand, in tool axes: to the right, downwards, and towards the user.
 const Vec3 kPenAxis = Vec3(0.52, -0.42, 0.74).normalized();
 
 void append(TubeMesh& to, const TubeMesh& more) {

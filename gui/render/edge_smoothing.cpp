@@ -8,8 +8,8 @@ void main() {
     gl_Position = vec4(gl_VertexID == 1 ? 3.0 : -1.0, gl_VertexID == 2 ? 3.0 : -1.0, 0.0, 1.0);
 }
 )";
-// Contrast below the larger of both is no edge: noise of shading, and what nobody sees beside something bright. An end
-// farther away than the steps reach changes nothing any more: less than a twentieth of the pixel lies beyond.
+// Contrast below the larger limit is no edge: shading noise, or invisible beside something bright. An end beyond the
+// last step has no effect: less than a twentieth of the pixel lies beyond the edge.
 constexpr char kFragment[] = R"(#version 330 core
 const float kContrastLeast = 0.04, kContrastShare = 0.12, kFineMost = 0.5;
 const int kSteps = 8;
@@ -36,7 +36,7 @@ void main() {
     float nw = lightness(texelFetch(u_picture, ivec2(below.x, above.y), 0));
     float se = lightness(texelFetch(u_picture, ivec2(above.x, below.y), 0));
 
-    // Across the edge: where lightness bends most.
+    // Across the edge: the larger second difference.
     float upright = abs(nw + sw - 2.0 * w) + 2.0 * abs(n + s - 2.0 * m) + abs(ne + se - 2.0 * e);
     float level = abs(nw + ne - 2.0 * n) + 2.0 * abs(w + e - 2.0 * m) + abs(sw + se - 2.0 * s);
     bool lies = upright >= level;
@@ -46,7 +46,7 @@ void main() {
         across = -across;
         beyond = other;
     }
-    // Followed on the line between both rows of pixels, where a read gives their mean.
+    // Follow the line between both pixel rows, where a read returns their mean.
     vec2 pixel = 1.0 / vec2(last + 1);
     vec2 from = (vec2(at) + 0.5 + 0.5 * across) * pixel;
     float mean = 0.5 * (m + beyond), ended = 0.25 * abs(beyond - m);
@@ -62,11 +62,11 @@ void main() {
         change[side] = changed;
     }
     int nearer = run[0] < run[1] ? 0 : 1;
-    // At the nearer end the edge leaves this pixel's row, or its neighbour's: only then does it cut this pixel.
+    // The edge cuts this pixel only if, at the nearer end, it leaves this row and not the adjacent one.
     float share = 0.0;
     if (abs(change[nearer]) >= ended && (change[nearer] < 0.0) != (m < mean))
         share = 0.5 - run[nearer] / (run[0] + run[1]);
-    // Single bright or dark pixels and thin lines, which have no edge to follow.
+    // Single bright or dark pixels and thin lines have no edge to follow.
     float around = (2.0 * (n + s + e + w) + ne + nw + se + sw) / 12.0;
     float fine = smoothstep(0.0, 1.0, clamp(abs(around - m) / contrast, 0.0, 1.0));
     share = max(share, kFineMost * fine * fine);

@@ -1,10 +1,11 @@
-// Stairs along edges made smooth in a finished picture, whatever drew it: triangles, rays or balls.
+// Anti-aliases edges in a finished frame, whatever drew it: triangles, rays or balls.
 //
-// How      where a pixel's lightness differs from its neighbours', the edge is followed both ways to its ends; its distance
-//          from the nearer one says how much of the pixel lies beyond it, and that much of the neighbour is mixed in.
-//          (T. Lottes, FXAA, NVIDIA 2009.) What is no edge stays the same to the bit.
-// Cost     one pass over the pixels, mostly six reads of a texture each
-// Thread   frame thread, context current.  Fails by StartupError: the driver refuses the program.
+// How      FXAA (T. Lottes, NVIDIA 2009): where a pixel's lightness differs from that of adjacent pixels, the edge
+//          is followed both ways to its ends. The distance to the nearer end gives the fraction of the pixel beyond
+//          the edge, and that fraction of the adjacent pixel is blended in. Pixels without an edge stay identical to
+//          the bit.
+// Cost     one pass over the pixels, mostly six texture reads each
+// Thread   frame thread, context current.  Fails by StartupError: the driver rejects the program.
 #pragma once
 
 #include "gui/render/gl.hpp"
@@ -14,7 +15,7 @@ namespace tact {
 class EdgeSmoothing {
 public:
     EdgeSmoothing();
-    // Of the bound frame buffer: the area of its viewport; y from below.
+    // Processes this rectangle of the bound framebuffer; y from below.
     void smooth(int x_px, int y_px, int width_px, int height_px);
 
 private:

@@ -18,7 +18,7 @@ GLuint compile(const std::string& what, GLenum kind, const char* source) {
     glGetShaderInfoLog(shader, static_cast<GLsizei>(log.size() - 1), nullptr, log.data());
     glDeleteShader(shader);
     throw StartupError("compiling the " + what + " shader", log.data(),
-                       "update the graphics driver, or set LIBGL_ALWAYS_SOFTWARE=1 to draw on the processor");
+                       "update the graphics driver, or set LIBGL_ALWAYS_SOFTWARE=1 for software rendering");
 }
 
 }  // namespace
@@ -38,7 +38,7 @@ GlProgram::GlProgram(const std::string& what, const char* vertex_source, const c
     std::vector<char> log(4096, '\0');
     glGetProgramInfoLog(name_, static_cast<GLsizei>(log.size() - 1), nullptr, log.data());
     throw StartupError("linking the " + what + " shader", log.data(),
-                       "update the graphics driver, or set LIBGL_ALWAYS_SOFTWARE=1 to draw on the processor");
+                       "update the graphics driver, or set LIBGL_ALWAYS_SOFTWARE=1 for software rendering");
 }
 
 }  // namespace tact

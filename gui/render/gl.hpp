@@ -1,7 +1,7 @@
-// Owners of OpenGL names, and shader programs that say what is wrong with them.
+// Owners of OpenGL names, and shader programs that report their errors.
 //
 // Thread   frame thread, with the context current, destruction included.
-// Fails by StartupError with the driver's own words.
+// Fails by StartupError with the driver's message.
 #pragma once
 
 #include <epoxy/gl.h>
@@ -14,7 +14,7 @@
 
 namespace tact {
 
-// Names that their owners here hold now, all together: what grows with time is not given back.
+// Names held by all owners in this file; a count that grows with time is a leak.
 [[nodiscard]] inline std::uint32_t& gl_names_held() noexcept {
     static std::uint32_t held = 0;
     return held;
@@ -33,7 +33,7 @@ public:
         glDeleteBuffers(1, &name_);
         --gl_names_held();
     }
-    // Made at the first call, so that an owner may be constructed without a context.
+    // Created by the first call, so that an owner may be constructed without a context.
     GLuint get() {
         if (name_ != 0) return name_;
         glGenBuffers(1, &name_);
@@ -132,7 +132,7 @@ inline void set_uniform(GLint place, const Eigen::Matrix4f& m) {
 // An attribute of interleaved data; offset in bytes.
 inline void attribute(GLuint place, GLint size, GLenum type, GLboolean normalized, GLsizei stride,
                       std::size_t offset) {
-    // OpenGL takes the offset in the guise of a pointer.
+    // OpenGL passes the offset as a pointer.
     const void* const at = reinterpret_cast<const void*>(offset);  // NOLINT(performance-no-int-to-ptr)
     glVertexAttribPointer(place, size, type, normalized, stride, at);
     glEnableVertexAttribArray(place);

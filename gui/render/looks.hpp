@@ -1,4 +1,4 @@
-// How things may look: the words that a person chooses among.
+// Styles and colourings that the user can choose.
 #pragma once
 
 namespace tact {

@@ -1,7 +1,7 @@
-// Keeps what it takes to adapt the surface within a budget of each frame, on whatever machine this is.
+// Keeps the time to adapt the surface within a budget per frame on any machine.
 //
-// The cost model of MeshCut knows one machine. Here it is compared with the clock: a move that took longer
-// than predicted makes the next ones smaller at once; quicker ones are believed slowly.
+// MeshCut's cost model was measured on one machine. This class compares it with the clock: a move slower than
+// predicted reduces the next ones at once; faster moves increase them slowly.
 #pragma once
 
 #include <algorithm>
@@ -10,14 +10,14 @@ namespace tact {
 
 class MeshPace {
 public:
-    // Of the model's nanoseconds, where `budget_s` may pass on the clock.
+    // In the model's nanoseconds, for `budget_s` on the clock.
     [[nodiscard]] double budget_ns(double budget_s) const noexcept { return 1e9 * budget_s / slower_; }
     void took(double predicted_ns, double measured_s) noexcept {
-        if (!(predicted_ns >= kWorthNs)) return;  // the clock and one interrupt would be all that is measured
+        if (!(predicted_ns >= kWorthNs)) return;  // clock resolution and interrupts would dominate
         const double slower = std::clamp(1e9 * measured_s / predicted_ns, 0.25, 16.0);
         slower_ = std::max(slower, slower_ + 0.1 * (slower - slower_));
     }
-    [[nodiscard]] double slower() const noexcept { return slower_; }  // than the model
+    [[nodiscard]] double slower() const noexcept { return slower_; }  // measured / predicted
 
 private:
     static constexpr double kWorthNs = 50e3;

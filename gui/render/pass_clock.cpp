@@ -5,7 +5,7 @@
 namespace tact {
 namespace {
 
-constexpr std::uint64_t kFirstFinished = 16;  // soon after the start, so that there is something to show
+constexpr std::uint64_t kFirstFinished = 16;  // soon after the start, so that values exist
 
 // The passes of each visual path, in the order of visual_path_text().
 constexpr std::array<std::array<Pass, 2>, kVisualPaths> kPassesOf{
@@ -64,7 +64,7 @@ void PassClock::begin_frame() {
 }
 
 void PassClock::begin(Pass pass) {
-    if (finishing_) glFinish();  // what is left of others is not this one's
+    if (finishing_) glFinish();  // excludes remaining work of other passes
     Stamps& s = in_flight_[frame_ % kFramesInFlight];
     if (how_ == Drawn::stamped && stamps(pass) && s.count < kScopesMost) {
         s.pass[s.count] = pass;
@@ -96,7 +96,7 @@ void PassClock::collect(Stamps& s) {
     glGetQueryObjectuiv(s.query[2 * s.count - 1], GL_QUERY_RESULT_AVAILABLE, &there);
     if (there == GL_FALSE) {
         ++lost_;
-    } else {  // they end in the order in which they were asked for: all are there
+    } else {  // queries complete in order: if the last is available, all are
         Times drawn_s{};
         for (std::size_t i = 0; i < s.count; ++i) {
             GLuint64 from_ns = 0, to_ns = 0;

@@ -1,9 +1,9 @@
-// What each pass of a frame costs: time of the frame thread, and of the renderer where that can be known.
+// Time of each pass of a frame: on the frame thread and, where measurable, in the renderer.
 //
-// Stamped    a graphics card writes down when it begins and ends a pass. That is read kFramesInFlight frames later, and only
-//            where it is there by then: reading never waits. What was not there is counted as lost.
-// Finished   where the processor draws, one frame in kFinishEvery is finished pass by pass (ipc/topics/frames.hpp).
-// Unknown    the driver has no stamps, or its counter has no bits.
+// Stamped    the GPU records the start and end of each pass. Results are read kFramesInFlight frames later, and only
+//            if available: reading never waits. Unavailable ones are counted as lost.
+// Finished   on a software renderer one frame in kFinishEvery is finished pass by pass (ipc/topics/frames.hpp).
+// Unknown    the driver has no timestamps, or its counter has no bits.
 // Thread     frame thread, context current.
 #pragma once
 
@@ -23,14 +23,14 @@ class PassClock {
 public:
     enum class Drawn : std::uint8_t { unknown, stamped, finished };
     static constexpr std::size_t kFramesInFlight = 4, kScopesMost = 48;
-    static constexpr std::size_t kFrames = 600;   // that percentiles are of
-    static constexpr std::size_t kFinished = 64;  // and of frames that were finished
+    static constexpr std::size_t kFrames = 600;   // window of the percentiles
+    static constexpr std::size_t kFinished = 64;  // the same for finished frames
 
     explicit PassClock(Drawn drawn);
     ~PassClock();
     PassClock(const PassClock&) = delete;
     PassClock& operator=(const PassClock&) = delete;
-    // What this driver can do.
+    // The method that this driver supports.
     [[nodiscard]] static Drawn possible(bool software);
 
     void begin_frame();
@@ -39,7 +39,7 @@ public:
     [[nodiscard]] Drawn drawn() const { return how_; }
     [[nodiscard]] std::uint64_t lost() const { return lost_; }
 
-    // From its construction to its end. One after the other, not one in another. No clock: does nothing.
+    // Times a pass from construction to destruction. Scopes do not nest. A null clock does nothing.
     class Scope {
     public:
         Scope(PassClock* clock, Pass pass) : clock_(clock), pass_(pass) {
@@ -74,8 +74,8 @@ private:
     bool finishing_ = false;
     Instant began_{};
     Times work_s_{}, drawn_s_{};
-    std::vector<RecentTimes> work_, drawn_;            // of each pass
-    std::vector<RecentTimes> path_work_, path_drawn_;  // of each visual path
+    std::vector<RecentTimes> work_, drawn_;            // per pass
+    std::vector<RecentTimes> path_work_, path_drawn_;  // per visual path
     std::array<Stamps, kFramesInFlight> in_flight_{};
 };
 

@@ -1,7 +1,7 @@
 // The shader programs of triangles, lines, points and the background. Atoms: gui/docking/impostors.hpp.
 //
-// Light is computed per vertex, so that the cost of a frame follows the vertices drawn (the governor's knob)
-// and drawing on the processor alone stays usable. Attributes: 0 position, 1 normal, 2 colour.
+// Lighting is per vertex, so the cost of a frame follows the number of vertices (set by the governor), and software
+// rendering stays usable. Attributes: 0 position, 1 normal, 2 colour.
 #pragma once
 
 #include "gui/render/gl.hpp"
@@ -9,11 +9,11 @@
 
 namespace tact {
 
-// How triangles with normals are coloured.
+// Colouring of triangles with normals.
 struct Paint {
-    bool glass = false;                              // seen through where it faces the eye, dense at the rim
-    float opacity = 1.0F;                            // times the colour's own
-    Eigen::Vector4f tint = Eigen::Vector4f::Zero();  // rgb in place of the vertices' colour where a is 1
+    bool glass = false;                              // transparent where it faces the eye, dense at the rim
+    float opacity = 1.0F;                            // multiplies the colour's own
+    Eigen::Vector4f tint = Eigen::Vector4f::Zero();  // rgb replaces the vertex colour where a is 1
 };
 
 class Programs {
@@ -21,7 +21,7 @@ public:
     Programs();
     void use_lit(const Eigen::Matrix4f& eye_from_local, const Eigen::Matrix4f& projection, const Haze& haze,
                  const Paint& paint);
-    // Lines and box, one colour.
+    // Lines and boxes in one colour.
     void use_flat(const Eigen::Matrix4f& eye_from_local, const Eigen::Matrix4f& projection, const Haze& haze,
                   const float rgba[4]);
     // Points drawn as balls of radius_a, flat in depth.

@@ -1,5 +1,4 @@
-// A baked scene as it is drawn and measured, read at once: what every system has, and what one system alone
-// has.
+// A baked scene, loaded for rendering and measuring: the part common to all systems, and one system's own part.
 //
 // Thread   made by load_scene() on the loader thread; immutable afterwards.
 #pragma once
@@ -16,11 +15,11 @@
 
 namespace tact {
 
-// What one system alone has in a scene; each derives its own.
+// A system's own part of a scene; each system derives one.
 class SystemContent {
 public:
     virtual ~SystemContent() = default;
-    // Points that the home view holds, model.
+    // Passes the points that the home view must contain, model frame, to `take`.
     virtual void each_point(const std::function<void(const Vec3&)>& take) const { static_cast<void>(take); }
 
 protected:
@@ -38,14 +37,14 @@ struct SceneContent {
     std::string note;
     std::unique_ptr<ProgressiveMesh> mesh;  // null: the scene has none
     DensityGrid grid;                       // empty: none
-    ContourScale scale;                     // what a level of it means
-    Vec3 centre_model_m = Vec3::Zero();     // of what is drawn: origin of the scene frame
-    double radius_m = 0.0;                  // of a ball about it that holds everything at home
+    ContourScale scale;                     // conversion of its levels
+    Vec3 centre_model_m = Vec3::Zero();     // of the drawn content: origin of the scene frame
+    double radius_m = 0.0;                  // of a ball about it that contains the home view
     Vec3 box_min_model_m = Vec3::Zero(),
          box_max_model_m = Vec3::Zero();  // of the map
     std::unique_ptr<SystemContent> system;
 
-    // Null: the scene is of another system.
+    // Null: the scene belongs to another system.
     template <class Content>
     [[nodiscard]] const Content* of() const {
         return dynamic_cast<const Content*>(system.get());

@@ -1,4 +1,4 @@
-// Transformations into the scene frame (gui/render/camera.hpp): ångström about the centre of what is drawn.
+// Transformations into the scene frame (gui/render/camera.hpp): ångström about the centre of the drawn content.
 //
 // Thread   any; plain arithmetic.
 #pragma once

@@ -1,4 +1,4 @@
-// What one system draws of its scene; SceneView calls it at its places in the order of a picture.
+// Drawing by one system; SceneView calls it at the right points of a frame.
 //
 // Frame    scene, ångström (gui/render/camera.hpp)
 //
@@ -13,16 +13,16 @@
 
 namespace tact {
 
-// Of one draw().
+// Arguments of one draw.
 struct LayerPass {
     Programs& programs;
     Eigen::Matrix4f eye_from_scene, projection;
     Haze haze;
     int x_px = 0, y_px = 0, width_px = 1, height_px = 1;  // of the viewport
-    std::size_t eye = 0, eyes = 1;                        // which, of how many
+    std::size_t eye = 0, eyes = 1;                        // index and number of eyes
     float size_a = 1.0F,
           arrow_a_per_n = 1.0F;   // as SceneView::radius_a(), arrow_a_per_n()
-    PassClock* passes = nullptr;  // null: nobody measures
+    PassClock* passes = nullptr;  // null: no timing
 };
 
 class SceneLayer {
@@ -34,15 +34,15 @@ public:
 
     // Opaque; depth test and depth writing on.
     virtual void draw_structures(const LayerPass& pass) { static_cast<void>(pass); }
-    // Likewise, after the structures.
+    // Opaque, after the structures.
     virtual void draw_volume(const LayerPass& pass) { static_cast<void>(pass); }
-    // Opaque, in place of the surface where it says so.
+    // Opaque; takes the surface's place if replaces_surface().
     [[nodiscard]] virtual bool replaces_surface() const { return false; }
     virtual void draw_surface(const LayerPass& pass) { static_cast<void>(pass); }
     // Blended.
     [[nodiscard]] virtual bool has_marks() const { return false; }
     virtual void draw_marks(const LayerPass& pass) { static_cast<void>(pass); }
-    // Over all that is solid, which hides it by its depth.
+    // Over everything solid, which hides it by depth.
     virtual void draw_fluids(const LayerPass& pass) { static_cast<void>(pass); }
     // Over everything.
     virtual void draw_in_front(const LayerPass& pass) { static_cast<void>(pass); }

@@ -15,7 +15,7 @@ namespace tact {
 namespace {
 
 constexpr float kBoxRgba[4] = {0.55F, 0.62F, 0.72F, 0.55F};
-// Depth cue: from somewhat before the target to well behind it, in radii of the scene.
+// Range of the depth cue, from slightly before the target to well behind it, in radii of the scene.
 constexpr float kHazeBegin = 0.6F, kHazeEnd = 1.6F, kHazeStrength = 0.8F;
 
 }  // namespace
@@ -98,7 +98,7 @@ void SceneView::draw(const EyeView& eye, const ViewOptions& options, const ViewF
     edges_->smooth(frame.x_px, frame.y_px, frame.width_px, frame.height_px);
 }
 
-// Always seen, also inside the structures: everything else is drawn, so its depth may go.
+// Always visible, even inside structures: everything else is drawn, so its depth can be cleared.
 void SceneView::draw_in_front(const LayerPass& pass, const ViewOptions& options, const ViewFrame& frame) {
     const PassClock::Scope scope(frame.passes, Pass::marks);
     glClear(GL_DEPTH_BUFFER_BIT);

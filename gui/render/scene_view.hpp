@@ -1,8 +1,8 @@
-// The three-dimensional view of a scene: its surfaces, the force, and what the scene's system draws.
+// The 3D view of a scene: its surfaces, the force, and the drawing by the scene's system.
 //
-// Frame    poses and forces come in model and world axes (which are parallel) in SI; drawing is in ångström.
-// Thread   frame thread, context current. Draws into the bound frame buffer, inside the given viewport.
-// Cost     follows the vertices of the surface and what the layer draws.
+// Frame    poses and forces are in model and world axes (which are parallel), SI; drawing is in ångström.
+// Thread   frame thread, context current. Draws into the bound framebuffer, inside the given viewport.
+// Cost     grows with the vertices of the surface and the layer's content.
 #pragma once
 
 #include <memory>
@@ -23,40 +23,38 @@ namespace tact {
 struct ViewOptions {
     bool surface = true, force = true, box = false;
     SurfaceStyle style = SurfaceStyle::glass;
-    bool depth_cue = true;  // what lies far behind fades into the background
+    bool depth_cue = true;  // far content fades into the background
     bool smooth_edges = true;
-    bool gradient = true;  // background; off: plain_ground, cheaper
-    Eigen::Vector3f plain_ground =
-        Eigen::Vector3f::Zero();  // the colour cleared to where there is no gradient
+    bool gradient = true;                                    // background; off: plain_ground, cheaper
+    Eigen::Vector3f plain_ground = Eigen::Vector3f::Zero();  // clear colour without a gradient
 };
 
 struct ViewFrame {
     int x_px = 0, y_px = 0, width_px = 1,
         height_px = 1;  // of the viewport, y from below as OpenGL counts
     Vec3 force_world_n = Vec3::Zero();
-    std::optional<Vec3> force_at_model_m;  // where the force is felt; none: it is not drawn
-    float force_thickness = 0.02F;         // of its arrow, in radii of the scene
+    std::optional<Vec3> force_at_model_m;  // point of application; none: not drawn
+    float force_thickness = 0.02F;         // of the arrow, in radii of the scene
     std::optional<DrawnHand> hand;
-    std::size_t eye = 0, eyes = 1;  // which, of how many
-    PassClock* passes = nullptr;    // told what each takes
+    std::size_t eye = 0, eyes = 1;  // index and number of eyes
+    PassClock* passes = nullptr;    // times each pass; null: none
 };
 
 class SceneView {
 public:
-    // `refine` makes the final surface of a contour that was moved (ContourWorker); without it they stay
-    // plain.
+    // `refine` makes the final surface of a moved contour (ContourWorker); without it such surfaces stay plain.
     SceneView(std::shared_ptr<const SceneContent> content, Programs& programs, RefineContour refine = {});
 
     [[nodiscard]] const SceneContent& content() const { return *content_; }
-    // Of the scene's system; null: none. It must outlive this, or be replaced before it goes.
+    // Layer of the scene's system; null: none. It must outlive this view, or be replaced before it is destroyed.
     void set_layer(SceneLayer* layer) { layer_ = layer; }
-    // Of all surfaces together; as far as `budget_s` of this frame allows, see Surface.
+    // Total of all surfaces, reached as far as `budget_s` of this frame allows; see Surface.
     void approach_vertices(std::uint32_t wanted, double budget_s) noexcept {
         contours_.approach_vertices(wanted, budget_s);
     }
     std::size_t upload() { return contours_.upload(); }
     void draw(const EyeView& eye, const ViewOptions& options, const ViewFrame& frame);
-    // What a person chose of surfaces.
+    // The user's choice of surfaces.
     [[nodiscard]] Contours& contours() { return contours_; }
     [[nodiscard]] Programs& programs() { return programs_; }
 
@@ -66,7 +64,7 @@ public:
     [[nodiscard]] std::uint32_t vertices_max() const { return contours_.vertices_max(); }
     [[nodiscard]] double error_m() const { return contours_.error_m(); }
     [[nodiscard]] float radius_a() const;
-    // What the arrow stands for: its length in ångström for one newton.
+    // Scale of the force arrow: ångström per newton.
     [[nodiscard]] float arrow_a_per_n() const;
 
 private:
@@ -86,7 +84,7 @@ private:
     GlVertexArray box_array_;
     GlBuffer box_vertices_, box_edges_;
     GLsizei box_indices_ = 0;
-    std::unique_ptr<EdgeSmoothing> edges_;  // from the first smooth picture on
+    std::unique_ptr<EdgeSmoothing> edges_;  // created for the first smoothed frame
 };
 
 }  // namespace tact

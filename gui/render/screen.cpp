@@ -8,7 +8,7 @@ namespace {
 
 constexpr double kNearestEyeM = 0.05;
 constexpr double kShortestEdgeM = 0.01, kLongestEdgeM = 100.0, kUpright = 0.035;
-// As Camera: what lies behind and before the scene's ball, in its radii, and the least share of the far plane.
+// As in Camera: depth range about the scene's ball, in its radii, and the least near / far ratio.
 constexpr double kBalls = 2.5, kNearShare = 0.002;
 
 }  // namespace
@@ -60,7 +60,7 @@ EyeView through_screen(const ScreenPlace& screen, const ScenePlace& scene, const
                                   : Vec3(screen.centre_m() + kNearestEyeM * towards);
         distance_m = kNearestEyeM;
     }
-    // The eye's frame in ångström: the same picture, and what is drawn there stays in one unit.
+    // The eye frame in ångström: same image, and drawing keeps one unit.
     Eigen::Matrix3d eye_from_screen;
     eye_from_screen << right.transpose(), up.transpose(), towards.transpose();
     Eigen::Matrix4d eye = Eigen::Matrix4d::Identity();

@@ -3,7 +3,7 @@
 namespace tact {
 namespace {
 
-// The shine is to the 32nd power, without a logarithm: the processor may have to draw this.
+// The specular exponent is 32, by squaring and without a logarithm, because a CPU may have to render this.
 constexpr char kHead[] = R"(#version 330 core
 uniform mat4 u_eye;
 uniform mat4 u_projection;

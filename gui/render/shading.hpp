@@ -1,4 +1,4 @@
-// What all shaders share: the light, and the haze in which far things fade into the background (depth cue).
+// Shared by all shaders: the lighting, and the haze that fades distant content into the background (depth cue).
 #pragma once
 
 #include <Eigen/Core>
@@ -13,22 +13,22 @@ inline constexpr float kBackgroundBottom[3] = {0.035F, 0.045F, 0.065F};
 
 struct Haze {
     float begin_a = 0.0F, end_a = 1.0F;  // distance from the eye
-    float strength = 0.0F;               // at the end; 0: none, 1: nothing else is seen there
-    // Of the ground that is drawn on: what far things fade into.
+    float strength = 0.0F;               // at the end; 0: none, 1: opaque
+    // Background that distant content fades into.
     Eigen::Vector3f top{kBackgroundTop}, bottom{kBackgroundBottom};
 };
 
 struct ViewUniforms {
     GLint eye = -1, projection = -1, haze = -1, ground_top = -1, ground_bottom = -1;
     explicit ViewUniforms(const GlProgram& program);
-    // Of the program in use.
+    // For the program in use.
     void set(const Eigen::Matrix4f& eye_from_local, const Eigen::Matrix4f& projection,
              const Haze& haze) const;
 };
 
-// "#version", the uniforms above and two functions, then the text:
-//   vec4 lit(vec3 colour, vec3 n, vec3 v)   n, v unit vectors in eye space, n towards the eye; a: the shine
-//   vec4 hazed(vec4 colour, float depth_a, float y)   y of the place in clip space, -1 to 1
+// Prepends "#version", the uniforms above and two functions to the text:
+//   vec4 lit(vec3 colour, vec3 n, vec3 v)   n, v unit vectors in eye space, n towards the eye; a: the highlight
+//   vec4 hazed(vec4 colour, float depth_a, float y)   y: position in clip space, -1 to 1
 [[nodiscard]] std::string shader(const char* text);
 
 }  // namespace tact

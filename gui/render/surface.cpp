@@ -30,7 +30,7 @@ std::size_t Surface::upload() {
     const MeshChanges changes = cut_.changes();
     if (changes.vertex.empty() && changes.index.empty()) return 0;
     std::size_t sent = 0;
-    glBindVertexArray(0);  // the index buffer would otherwise be bound into whatever is drawn last
+    glBindVertexArray(0);  // otherwise the vertex array drawn last would take this index buffer
     const auto send = [&sent](GLuint buffer, std::span<const MeshRange> ranges, const void* data,
                               std::size_t size) {
         glBindBuffer(GL_COPY_WRITE_BUFFER, buffer);

@@ -1,6 +1,6 @@
-// The isosurface, with the number of its vertices as the knob "gui.mesh".
+// The isosurface; its number of vertices is the level "gui.mesh".
 //
-// Only what the cut changed is sent to the graphics card. Frame model, metres.
+// Only the changes of the cut are uploaded. Frame model, metres.
 // Thread   frame thread, context current.
 #pragma once
 
@@ -19,10 +19,10 @@ class Surface {
 public:
     explicit Surface(const ProgressiveMesh& mesh);  // mesh must outlive this
 
-    // Towards it as far as `budget_s` allows for this and the next upload(), and all the way where that takes no longer than
-    // `at_once_s`. Call it every frame.
+    // Moves towards `wanted` as far as `budget_s` allows for this and the next upload(); all the way if that takes no
+    // longer than `at_once_s`. Call it every frame.
     void approach(std::uint32_t wanted, double budget_s, double at_once_s = 0.0) noexcept;
-    // Bytes sent.
+    // Returns bytes sent.
     std::size_t upload();
     void draw(const Eigen::Vector3f& colour);  // with a program in use
     [[nodiscard]] const MeshCut& cut() const { return cut_; }
@@ -30,15 +30,15 @@ public:
 private:
     MeshCut cut_;
     MeshPace pace_;
-    bool drawn_ = false;  // the first upload is all of it and no measure
-    Duration moving_{};   // of the last approach(), until its changes are sent
+    bool drawn_ = false;  // the first upload sends everything and is not timed
+    Duration moving_{};   // time of the last approach(), until its changes are uploaded
     std::vector<GLsizei> draw_count_;
     std::vector<const void*> draw_first_;
     GlVertexArray array_;
     GlBuffer vertices_, indices_;
 };
 
-// A surface without levels of detail, sent as a whole.
+// A surface without levels of detail, uploaded as a whole.
 class PlainSurface {
 public:
     std::size_t fill(const PlainMesh& mesh);  // bytes sent

@@ -22,9 +22,9 @@ OffscreenTarget::OffscreenTarget(int width_px, int height_px) : width_px_(width_
     glFramebufferRenderbuffer(GL_FRAMEBUFFER, GL_DEPTH_STENCIL_ATTACHMENT, GL_RENDERBUFFER, depth_);
     const GLenum status = glCheckFramebufferStatus(GL_FRAMEBUFFER);
     if (status != GL_FRAMEBUFFER_COMPLETE)
-        throw StartupError("making an image of " + std::to_string(width_px) + "x" +
-                               std::to_string(height_px) + " pixels to draw into",
-                           "the graphics driver refuses it, status " + std::to_string(status),
+        throw StartupError("creating an offscreen image of " + std::to_string(width_px) + "x" +
+                               std::to_string(height_px) + " pixels",
+                           "the graphics driver rejects it with status " + std::to_string(status),
                            "use a smaller --size");
 }
 

@@ -1,4 +1,4 @@
-// An image to draw into that belongs to no window, and reading back what was drawn.
+// An offscreen image to draw into, and reading back of pixels.
 #pragma once
 
 #include <cstdint>
@@ -8,7 +8,7 @@
 
 namespace tact {
 
-// Colour and depth of a fixed size, for windows that are not shown: what a hidden window holds is undefined.
+// Colour and depth of a fixed size, for hidden windows: the contents of a hidden window are undefined.
 class OffscreenTarget {
 public:
     OffscreenTarget(int width_px, int height_px);
@@ -29,7 +29,7 @@ struct Image {
     std::uint32_t width_px = 0, height_px = 0;
     std::vector<std::uint8_t> rgb;  // rows from the top
 };
-// Of the bound frame buffer.
+// Reads the bound framebuffer.
 Image read_pixels(int width_px, int height_px);
 
 }  // namespace tact

@@ -1,8 +1,8 @@
-// The backbone of a structure as smooth tubes, coloured by chain. Built once, on the processor.
+// The backbone of a structure as smooth tubes, coloured by chain. Built once, on the CPU.
 //
-// Curve    Catmull-Rom through the trace atoms; broken where the chain changes or two neighbours are further
-//          apart than a bond can be. Frame body, unit ångström.
-// Size     sides and steps are chosen so that the whole stays below vertices_max where that can be.
+// Curve    Catmull-Rom spline through the trace atoms; interrupted where the chain changes or two successive atoms
+//          are farther apart than a bond. Frame body, unit ångström.
+// Size     sides and steps are chosen to keep the total below vertices_max if possible.
 #pragma once
 
 #include <cstddef>
@@ -29,7 +29,7 @@ struct TubeMesh {
 
 inline constexpr double kTraceGapM = 8e-10;  // above the C-alpha (3.8 A) and phosphate (about 7 A) distances
 
-// The trace atoms in order, parted as the curve is; strands of one atom are left out.
+// The trace atoms in order, one strand per curve; strands of one atom are omitted.
 [[nodiscard]] std::vector<std::vector<std::uint32_t>> strands_of(const Structure& structure);
 
 [[nodiscard]] TubeMesh build_tubes(const Structure& structure, std::size_t vertices_max);

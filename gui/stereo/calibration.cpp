@@ -77,11 +77,11 @@ void Calibration::take() {
     }
     switch (lacking()) {
         case Lacking::size:
-            return say("The picture's size comes first: go back and type it.");
+            return say("The display size is missing: type it in step 1.");
         case Lacking::tracker:
-            return say("Nothing is heard of the tracker: is one configured, and is the sensor in reach?");
+            return say("No data from the tracker. Check its configuration and the sensor's range.");
         case Lacking::hand:
-            return say("Nothing is heard of the hand's device: is the controller running?");
+            return say("No data from the haptic device. Check that the controller runs.");
         case Lacking::nothing:
             break;
     }
@@ -94,7 +94,7 @@ void Calibration::take() {
     if (step_ != CalibrationStep::screen && step_ != CalibrationStep::workspace) return;
     Marks& marks = own_marks();
     if (marks.current >= kMarks)
-        return say("All marks are taken: Enter goes on; click one to take it again.");
+        return say("All marks are measured: Enter continues; click one to repeat it.");
     const bool hand = step_ == CalibrationStep::workspace;
     const bool sensor = !hand || by_wand_;
     if (sensor) wand_.start(input_.now_s);
@@ -134,7 +134,7 @@ void Calibration::keep_mark() {
     wand_.stop();
     stylus_.stop();
     char text[120];
-    std::snprintf(text, sizeof text, "Point %zu is taken: %zu samples, spread %.1f mm.", marks.current + 1,
+    std::snprintf(text, sizeof text, "Point %zu measured: %zu samples, spread %.1f mm.", marks.current + 1,
                   mark.samples, 1e3 * mark.spread_m);
     say(text);
     last_taken_ = marks.current;
@@ -162,7 +162,7 @@ void Calibration::redo(std::size_t mark) {
     marks.mark[mark] = {};
     marks.current = mark;
     fit();
-    say("Point " + std::to_string(mark + 1) + " is to be taken again.");
+    say("Point " + std::to_string(mark + 1) + " will be measured again.");
 }
 
 void Calibration::redo_last() {
@@ -177,7 +177,7 @@ void Calibration::clear() {
     own_marks() = {};
     if (step_ == CalibrationStep::screen) measured_size_m_.setZero();
     last_taken_ = kMarks;
-    say("All points of this step are forgotten.");
+    say("All points of this step are cleared.");
 }
 
 void Calibration::set_workspace_by_wand(bool by_wand) {

@@ -1,8 +1,8 @@
-// The calibration of a stage, step by step: how large the picture is, where its screen stands, where the hand's world is, and
-// the eyes. What a person does comes in as calls, what the topics say as follow(); what comes out is a draft of the stage's
-// settings, which changes only where a measurement is good.
+// Calibration of a stage, step by step: size of the display, pose of its screen, pose of the hand's world, and the
+// eyes. User actions come in as calls, topics through follow(); the result is a draft of the stage's settings, which
+// changes only after a good measurement.
 //
-// Frames   screen: that of the topic `head`. Glass: metres in the picture's plane, x right, y up, from its middle.
+// Frames   screen: that of the topic `head`. Glass: metres in the display's plane, x right, y up, from its centre.
 // Thread   frame thread; plain arithmetic, no window and no file
 // Fails by message() and the status text of a step
 #pragma once
@@ -22,22 +22,22 @@ namespace tact {
 enum class CalibrationStep : std::uint8_t { picture, wand, screen, workspace, eyes, check };
 inline constexpr std::size_t kCalibrationSteps = 6;
 
-// Marks of the picture, as shares of its width and height from the lower left: four near its corners, the middle, and one more,
-// so that an order that was turned over shows in the residuals.
+// Marks on the display, as fractions of its width and height from the lower left: four near its corners, the centre,
+// and one more, so that a reversed order shows in the residuals.
 inline constexpr std::size_t kMarks = 6, kMarksMin = 4;
 inline constexpr std::array<std::array<double, 2>, kMarks> kMarkPlaces{
     {{0.08, 0.1}, {0.92, 0.1}, {0.92, 0.9}, {0.08, 0.9}, {0.5, 0.5}, {0.7, 0.3}}};
 
-// What the controller says now.
+// Current data from the controller.
 struct CalibrationInput {
     double now_s = 0.0;
-    bool sensor_good = false;  // fresh, of the tracked sensor
+    bool sensor_good = false;  // fresh, from the tracked sensor
     std::int64_t sensor_at_ns = 0;
     Pose T_screen_sensor;
     bool hand_good = false;
     std::int64_t hand_at_ns = 0;
     Vec3 stylus_world_m = Vec3::Zero();
-    bool button = false;  // any of the hand's
+    bool button = false;  // any button of the hand
 };
 
 class Calibration {
@@ -45,16 +45,16 @@ public:
     struct Mark {
         bool taken = false;
         Vec3 from_m = Vec3::Zero(), to_m = Vec3::Zero();  // glass or world; screen
-        double spread_m = 0.0;                            // while it was measured, the worse of the two
+        double spread_m = 0.0;                            // during the measurement, the larger of the two
         std::size_t samples = 0;
     };
     struct Marks {
         std::array<Mark, kMarks> mark;
-        std::size_t current = 0;  // kMarks: all are taken
+        std::size_t current = 0;  // kMarks: all are measured
         Registration fit;
-        std::vector<std::size_t> of_fit;  // which mark each pair of the fit is of
+        std::vector<std::size_t> of_fit;  // mark of each pair of the fit
         [[nodiscard]] std::size_t taken() const;
-        // Of a mark; none where it is not part of a fit.
+        // Of a mark; none if it is not part of a fit.
         [[nodiscard]] std::optional<double> residual_m(std::size_t of_mark) const;
         [[nodiscard]] std::optional<std::size_t> outlier() const;
     };
@@ -74,17 +74,17 @@ public:
     }
     void back() { go(static_cast<CalibrationStep>(std::max(static_cast<int>(step_) - 1, 0))); }
 
-    // What has to be there before a mark can be measured, or the wand turned about its tip.
+    // Missing prerequisite for measuring a mark, or the wand's tip.
     enum class Lacking : std::uint8_t { nothing, size, tracker, hand };
     [[nodiscard]] Lacking lacking() const;
-    // Measures the current mark, or stops doing so; in the step of the wand: turns about its tip.
+    // Starts or stops measuring the current mark; in the wand step: the tilting about its tip.
     void take();
-    void skip();                  // to the next mark that is not taken
-    void redo(std::size_t mark);  // forgets it, and it is the current one
+    void skip();                  // to the next mark not yet measured
+    void redo(std::size_t mark);  // clears it and makes it current
     void redo_last();
     void clear();  // all marks of this step
 
-    // Typed. Impossible ones change nothing and are told.
+    // Typed values. Invalid ones change nothing and set message().
     void set_picture_size(double width_m, double height_m);
     void use_measured_size();
     void set_screen(const ScreenPlace& place);
@@ -92,7 +92,7 @@ public:
     void set_eyes(const EyesOfHead& eyes);
     void set_mode(StereoMode mode) { draft_.mode = mode; }
     void set_in_workspace(bool in_workspace) { draft_.in_workspace = in_workspace; }
-    // The stylus is held to the wand, anywhere; or to the marks of the picture.
+    // The stylus touches the wand, anywhere; or the marks on the display.
     void set_workspace_by_wand(bool by_wand);
 
     [[nodiscard]] const StageSettings& draft() const { return draft_; }
@@ -101,20 +101,20 @@ public:
     }
     [[nodiscard]] bool workspace_by_wand() const { return by_wand_; }
     [[nodiscard]] bool measuring() const;
-    [[nodiscard]] double progress() const;  // of the mark that is measured
-    // As the marks that were touched say; zero where four are not taken.
+    [[nodiscard]] double progress() const;  // of the current mark
+    // Size computed from the touched marks; zero with fewer than four.
     [[nodiscard]] Eigen::Vector2d measured_size_m() const { return measured_size_m_; }
-    // Where they are now, screen; none while not seen.
+    // Current positions, screen frame; none while not tracked.
     [[nodiscard]] std::optional<Vec3> wand_tip_screen_m() const;
     [[nodiscard]] std::optional<Vec3> stylus_screen_m() const;
 
     [[nodiscard]] std::string instruction() const;
-    [[nodiscard]] std::string glass_text() const;  // the same in capitals, for who stands before the picture
-    [[nodiscard]] std::string live() const;        // what is measured now
+    [[nodiscard]] std::string glass_text() const;  // the same in capitals, to be read on the glass
+    [[nodiscard]] std::string live() const;        // values being measured
     [[nodiscard]] StatusText status() const;       // of this step
     [[nodiscard]] StatusText status(CalibrationStep step) const;
-    [[nodiscard]] const std::string& message() const { return message_; }  // what became of the last action
-    [[nodiscard]] std::vector<std::string> remarks() const;  // of what was measured, for the file
+    [[nodiscard]] const std::string& message() const { return message_; }  // result of the last action
+    [[nodiscard]] std::vector<std::string> remarks() const;                // measured values, for the file
 
 private:
     [[nodiscard]] Marks& own_marks() { return step_ == CalibrationStep::workspace ? workspace_ : screen_; }
@@ -126,10 +126,11 @@ private:
     void fit();
     void say(std::string words) { message_ = std::move(words); }
 
-    // Of a magnetic tracker half a metre off and of an arm's encoders in a hand that holds still.
+    // For a magnetic tracker half a metre away, and for an arm's encoders in a still hand.
     static constexpr double kWandSpreadM = 4e-3, kStylusSpreadM = 2e-3;
     static constexpr double kTurningS = 8.0;
-    // A source that paused for a moment may be measured, as measuring waits for it; one that is not there is told at once.
+    // A source that paused for a moment may be measured, because measuring waits for it; a missing one is reported at
+    // once.
     static constexpr double kAwayS = 1.0;
 
     StageSettings draft_;

@@ -1,4 +1,4 @@
-// What the card of the calibration shows, and what is typed there.
+// Contents of the calibration card, and the values typed there.
 #include <algorithm>
 #include <cmath>
 #include <iterator>
@@ -100,8 +100,8 @@ void CalibrationController::tell(CalibrationCardState& f) const {
                   : *left <= kAmberWorstM    ? Grade::watch
                                              : Grade::bad;
         p.text = !mark.taken ? std::string(p.current ? "now" : "-")
-                 : left      ? format("%.1f mm left, spread %.1f mm", 1e3 * *left, 1e3 * mark.spread_m)
-                             : format("taken, spread %.1f mm", 1e3 * mark.spread_m);
+                 : left      ? format("error %.1f mm, spread %.1f mm", 1e3 * *left, 1e3 * mark.spread_m)
+                             : format("done, spread %.1f mm", 1e3 * mark.spread_m);
     }
     f.file = file_.filename().string();
     f.saved = saved_;

@@ -11,7 +11,7 @@ namespace tact {
 namespace {
 
 constexpr std::int64_t kOldNs = 100'000'000;
-constexpr std::uint8_t kFresh = 2;  // TrackerState of the hardware layer, which is out of sight here
+constexpr std::uint8_t kFresh = 2;  // TrackerState of the hardware layer, which this process does not include
 constexpr std::uint8_t kReady = 1, kFault = 4;  // DeviceState, likewise
 constexpr double kToolShownMm = 3000.0;
 
@@ -44,13 +44,13 @@ void CalibrationController::begin(const StageSettings& now, bool check_alone) {
     leave_ = false;
     saved_.clear();
     logged_.clear();
-    spdlog::info("calibration: begins; its file is {}", file_.string());
+    spdlog::info("calibration: started, file {}", file_.string());
 }
 
 void CalibrationController::end(CalibrationCardState& state) {
     calibration_.reset();
     state = {};
-    spdlog::info("calibration: left");
+    spdlog::info("calibration: closed");
 }
 
 void CalibrationController::swap_eyes() {
@@ -113,10 +113,11 @@ void CalibrationController::save() {
         const StageSettings again = read_stage_file(file_);
         if (stage_text(again) != stage_text(calibration_->draft()))
             throw StartupError("reading the stage file '" + file_.string() + "' again",
-                               "it is not what was written", "save it again, elsewhere (--stage FILE)");
+                               "the content differs from what was written",
+                               "save to another file (--stage FILE)");
         kept_ = again;
         saved_ = "Written to " + file_.string() + " and read back." +
-                 (old.empty() ? std::string() : " The old one is kept as " + old.filename().string() + ".");
+                 (old.empty() ? std::string() : " The old file is kept as " + old.filename().string() + ".");
         saved_grade_ = Grade::good;
     } catch (const StartupError& e) {
         saved_ = e.what();

@@ -1,8 +1,8 @@
-// The calibration of the stage in the window: keys, clicks and typed numbers go to it, its words and pictures come from it, and
-// its result goes into the stage file.
+// Calibration of the stage in the window: takes keys, clicks and typed numbers, provides texts and pictures, and
+// writes the result to the stage file.
 //
 // Thread   frame thread
-// Fails by words on the card; nothing that is measured is lost by a file that cannot be written
+// Fails by a message on the card; a file that cannot be written loses no measurement
 #pragma once
 
 #include <filesystem>
@@ -21,20 +21,20 @@ public:
     explicit CalibrationController(std::filesystem::path file) : file_(std::move(file)) {}
 
     [[nodiscard]] bool open() const { return calibration_.has_value(); }
-    // From what the stage is now; from the step of the test picture where that alone is wanted.
+    // Starts from the current stage; check_alone: at the step of the test picture.
     void begin(const StageSettings& now, bool check_alone);
     void perform(CalibrationAction what, std::size_t number = 0);
     void swap_eyes();
-    // True: a person wants to leave.
+    // Returns true if the user wants to leave.
     bool follow(const Controller& controller, std::int64_t now_ns, CalibrationCardState& state);
     void end(CalibrationCardState& state);
-    // What the stage has to be when the calibration is left: as it was, or as it was saved last.
+    // The stage after the calibration: as it was, or as last saved.
     [[nodiscard]] const StageSettings& kept() const { return kept_; }
     [[nodiscard]] const StageSettings& draft() const { return calibration_->draft(); }
     void set_mode(StereoMode mode) { calibration_->set_mode(mode); }
-    // The chosen way to show it does not work here.
+    // The chosen mode does not work here.
     void refuse_mode(StereoMode back_to, const std::string& why);
-    // For the eye that the picture is meant for; reach_mm(): how far from the glass's middle anything of it lies.
+    // For this eye; reach_mm(): greatest distance of its content from the centre of the glass.
     [[nodiscard]] std::vector<PictureVertex> picture(const GlassSize& glass, std::size_t eye) const;
     [[nodiscard]] double reach_mm(const GlassSize& glass) const;
 

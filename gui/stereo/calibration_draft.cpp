@@ -1,4 +1,4 @@
-// What becomes part of the draft: the fit of what was measured, and what is typed, within what a stage file takes.
+// Updates the draft with fits of measurements and with typed values, within the ranges of a stage file.
 #include <Eigen/QR>
 #include <algorithm>
 #include <utility>
@@ -10,7 +10,7 @@ namespace {
 
 constexpr double kEyesApartMostM = 0.2, kMiddleMostM = 0.5, kTipMostM = 1.0;
 
-// What a stage file takes.
+// The ranges of a stage file.
 bool within(const Vec3& v, double most) { return v.allFinite() && v.cwiseAbs().maxCoeff() <= most; }
 
 ScreenPlace of_frame(const Pose& T_screen_glass, double width_m, double height_m) {
@@ -19,7 +19,7 @@ ScreenPlace of_frame(const Pose& T_screen_glass, double width_m, double height_m
             T_screen_glass * flat.upper_left_m};
 }
 
-// Lengths of the picture by the marks alone: the plane that best holds them, stretched along both axes as it likes.
+// Size of the display from the marks alone: the plane that fits them best, with free scale along both axes.
 Eigen::Vector2d size_by_marks(const Calibration::Marks& marks) {
     std::vector<std::size_t> taken;
     for (std::size_t i = 0; i < kMarks; ++i)
@@ -65,10 +65,10 @@ void Calibration::follow_turning() {
     turning_ = false;
     pivot_ = fit_pivot(turned_);
     if (!pivot_->good) {
-        say("Not taken: " + pivot_->refusal + ".");
+        say("Not accepted: " + pivot_->refusal + ".");
     } else if (!within(pivot_->tip_sensor_m, kTipMostM)) {
         pivot_->good = false;
-        say("Not taken: the tip came out more than a metre from the sensor; turn farther, about one place.");
+        say("Not accepted: the tip would be over a metre from the sensor. Tilt farther, about one point.");
     } else {
         draft_.wand_tip_sensor_m = pivot_->tip_sensor_m;
         say("The tip is measured.");
@@ -82,7 +82,7 @@ void Calibration::fit() {
     for (std::size_t i = 0; i < kMarks; ++i) {
         const Mark& m = marks.mark[i];
         if (!m.taken) continue;
-        // On the glass, by the size that it has now.
+        // On the glass, in its current size.
         pairs.push_back({step_ == CalibrationStep::workspace ? m.from_m : glass_m(i), m.to_m});
         marks.of_fit.push_back(i);
     }
@@ -105,7 +105,7 @@ void Calibration::fit() {
 
 void Calibration::set_picture_size(double width_m, double height_m) {
     if (!(width_m >= 0.01 && width_m <= 100.0 && height_m >= 0.01 && height_m <= 100.0))
-        return say("The picture is between 10 mm and 100 m wide and high.");
+        return say("Width and height must be 10 mm to 100 m.");
     draft_.screen = of_frame(T_screen_glass(), width_m, height_m);
     draft_.screen_measured = true;
     if (screen_.taken() == 0) return;
@@ -120,30 +120,31 @@ void Calibration::use_measured_size() {
 
 void Calibration::set_screen(const ScreenPlace& place) {
     for (const Vec3& corner : {place.lower_left_m, place.lower_right_m, place.upper_left_m})
-        if (!within(corner, 100.0)) return say("A corner is not a number, or farther than 100 m.");
+        if (!within(corner, 100.0)) return say("Corners must be numbers, at most 100 m.");
     if (!place.possible())
         return say(
-            "These corners are no rectangle of 1 cm to 100 m an edge: its edges at the lower left have to be "
-            "upright on "
-            "each other within two degrees.");
+            "These corners do not form a rectangle of 1 cm to 100 m: the edges at the lower left must be "
+            "perpendicular "
+            "within two degrees.");
     draft_.screen = place;
     draft_.screen_measured = true;
     screen_ = {};
     measured_size_m_.setZero();
     typed_screen_ = true;
-    say("The corners are taken as typed.");
+    say("Corners set as typed.");
 }
 
 void Calibration::set_wand_tip(const Vec3& tip_sensor_m) {
-    if (!within(tip_sensor_m, kTipMostM)) return say("The tip is within a metre of the sensor.");
+    if (!within(tip_sensor_m, kTipMostM)) return say("The tip must be within a metre of the sensor.");
     draft_.wand_tip_sensor_m = tip_sensor_m;
     pivot_.reset();
 }
 
 void Calibration::set_eyes(const EyesOfHead& eyes) {
-    if (!(eyes.apart_m >= 0.0 && eyes.apart_m <= kEyesApartMostM)) return say("Eyes are 0 to 200 mm apart.");
+    if (!(eyes.apart_m >= 0.0 && eyes.apart_m <= kEyesApartMostM))
+        return say("The eye distance must be 0 to 200 mm.");
     if (!within(eyes.middle_head_m, kMiddleMostM))
-        return say("The eyes are within half a metre of the sensor on the glasses.");
+        return say("The eyes must be within half a metre of the sensor on the glasses.");
     draft_.eyes = eyes;
 }
 

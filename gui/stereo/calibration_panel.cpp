@@ -1,4 +1,4 @@
-// Calibration: the steps with what each came to, what is to be done now, points with their residuals, what can be typed.
+// Calibration card: the steps with their status, the next action, points with their residuals, typed values.
 #include <algorithm>
 #include <array>
 
@@ -22,7 +22,7 @@ struct Form {
         if (ImGui::Button(name, {width, 0.0F})) request(action);
         ImGui::EndDisabled();
     }
-    // Numbers in a row, behind a word.
+    // A label and numbers in a row.
     template <std::size_t n>
     void numbers(const char* what, std::array<double, n>& values, Typed typed) const {
         ImGui::PushID(what);
@@ -66,7 +66,7 @@ void dot(const Theme& theme, Grade grade) {
     ImGui::SameLine(0.0F, theme.px(6.0F));
 }
 
-// Cut where the card ends; the whole of it stands below, or where the mouse rests.
+// Clipped at the card's edge; the full text stands below, or in the tooltip.
 void one_line(const std::string& text, ImU32 ink) {
     const float room = ImGui::GetContentRegionAvail().x;
     std::string shown = text.substr(0, text.find(". "));
@@ -113,36 +113,36 @@ void points(const Form& form) {
         ImGui::PushStyleColor(ImGuiCol_Text, ink);
         if (ImGui::Selectable(format("%zu   %s", i + 1, p.text.c_str()).c_str()))
             form.request(CalibrationAction::redo, i);
-        if (ImGui::IsItemHovered()) ImGui::SetTooltip(p.taken ? "take it again" : "take this one next");
+        if (ImGui::IsItemHovered()) ImGui::SetTooltip(p.taken ? "measure it again" : "measure this one next");
         ImGui::PopStyleColor();
         ImGui::PopID();
     }
     const float gap = form.theme.px(6.0F), width = (ImGui::GetContentRegionAvail().x - 2.0F * gap) / 3.0F;
-    form.button(f.measuring ? "Stop" : "Take  T", width, CalibrationAction::take, f.can_take);
+    form.button(f.measuring ? "Stop" : "Measure  T", width, CalibrationAction::take, f.can_take);
     ImGui::SameLine(0.0F, gap);
     form.button("Skip  N", width, CalibrationAction::skip);
     ImGui::SameLine(0.0F, gap);
-    form.button("Forget all", width, CalibrationAction::clear);
+    form.button("Clear all", width, CalibrationAction::clear);
     ImGui::ProgressBar(f.progress, {-1.0F, form.theme.px(6.0F)}, "");
 }
 
 void screen_step(const Form& form) {
     CalibrationCardState& f = form.state;
     points(form);
-    if (f.size_offered) form.button("Take the size by the marks", -1.0F, CalibrationAction::measured_size);
+    if (f.size_offered) form.button("Use the measured size", -1.0F, CalibrationAction::measured_size);
     ImGui::Separator();
-    text_small(form.theme, colour::kDim, "Or typed, mm: x right, y up, z to the person");
+    text_small(form.theme, colour::kDim, "Or type, mm: x right, y up, z to the viewer");
     static constexpr std::array<const char*, 3> kCorners{"Lower left", "Lower right", "Upper left"};
     for (std::size_t i = 0; i < 3; ++i) form.numbers(kCorners[i], f.corners_mm[i], Typed::corners);
 }
 
 void eyes_step(const Form& form) {
     CalibrationCardState& f = form.state;
-    form.numbers("Apart, mm", f.apart_mm, Typed::eyes);
+    form.numbers("Distance, mm", f.apart_mm, Typed::eyes);
     form.numbers("From sensor", f.middle_mm, Typed::eyes);
     text_small(form.theme, colour::kDim,
-               "From the sensor to between the eyes, mm: x to the right eye, y up, z back");
-    if (ImGui::Checkbox("Eyes swapped  X", &f.swapped)) f.edited = Typed::eyes;
+               "Sensor to the midpoint of the eyes, mm: x to the right eye, y up, z back");
+    if (ImGui::Checkbox("Swap eyes  X", &f.swapped)) f.edited = Typed::eyes;
     const std::size_t half = (f.modes.size() + 1) / 2;
     int upper = f.mode, lower = f.mode - static_cast<int>(half);
     const std::span<const char* const> modes(f.modes);
@@ -171,7 +171,7 @@ void of_step(const Form& form) {
             break;
         case 1:
             form.numbers("Tip, mm", f.tip_mm, Typed::tip);
-            form.button(f.measuring ? "Stop" : "Turn about the tip  T", -1.0F, CalibrationAction::take);
+            form.button(f.measuring ? "Stop" : "Tilt about the tip  T", -1.0F, CalibrationAction::take);
             ImGui::ProgressBar(f.progress, {-1.0F, form.theme.px(6.0F)}, "");
             break;
         case 2:

@@ -1,4 +1,4 @@
-// What the card of the calibration shows and what a person does there: plain data that the application fills and takes.
+// Contents of the calibration card and the user's actions there: plain data that the application fills and reads.
 #pragma once
 
 #include <array>
@@ -13,12 +13,12 @@
 namespace tact {
 
 enum class CalibrationAction : std::uint8_t {
-    go,  // to the step of the number
+    go,  // to step `number`
     next,
     back,
     take,
     skip,
-    redo,  // the point of the number
+    redo,  // point `number`
     redo_last,
     clear,
     measured_size,
@@ -44,25 +44,26 @@ struct CalibrationCardState {
     std::vector<Point> points;
     bool measuring = false, can_take = true, size_offered = false;
     float progress = 0.0F;
-    std::string file;   // that is written
-    std::string saved;  // what became of it
+    std::string file;   // to be written
+    std::string saved;  // result of saving
     Grade saved_grade = Grade::unknown;
-    bool changed = false;  // since it was saved
-    // Typed, millimetres; the application takes them where `edited` says so and leaves them alone while `editing`.
+    bool changed = false;  // since the last save
+    // Typed, millimetres; the application takes the values named by `edited`, and does not change them while
+    // `editing`.
     std::array<double, 1> width_mm{}, height_mm{}, apart_mm{};
     std::array<double, 3> tip_mm{}, middle_mm{};
     std::array<std::array<double, 3>, 3> corners_mm{};
     bool swapped = false;
-    int mode = 0, place = 0, touched_with = 0;  // stereo mode less one; orbit, workspace; marks, wand
+    int mode = 0, place = 0, touched_with = 0;  // stereo mode minus one; orbit, workspace; marks, wand
     enum class Typed : std::uint8_t { none, size, tip, corners, eyes, mode, place, touched_with };
     Typed edited = Typed::none;
     bool editing = false;
-    std::vector<const char*> modes;  // of a stereo picture, without "off"
+    std::vector<const char*> modes;  // stereo modes, without "off"
     // Emptied by the application.
     std::vector<std::pair<CalibrationAction, std::size_t>> requests;
 };
 
-// In place of the column's cards while a screen is calibrated.
+// Replaces the column's cards during a calibration.
 void draw_calibration(const Theme& theme, CalibrationCardState& state, const PixelRect& card);
 
 }  // namespace tact

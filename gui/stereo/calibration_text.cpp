@@ -1,4 +1,4 @@
-// What the calibration says to a person.
+// Texts of the calibration for the user.
 #include <cmath>
 #include <cstdio>
 
@@ -23,72 +23,73 @@ std::string fit_text(const Registration& fit) {
 Calibration::StatusText status_of(const Calibration::Marks& marks, bool taken_before, const char* what) {
     if (marks.taken() == 0)
         return {FitGrade::none,
-                taken_before ? std::string("as the file says") : std::string("not measured yet")};
+                taken_before ? std::string("from the file") : std::string("not measured yet")};
     if (marks.taken() < kMarksMin)
-        return {FitGrade::none, text_of("%zu of %zu points, %zu at least", marks.taken(), kMarks, kMarksMin)};
+        return {FitGrade::none,
+                text_of("%zu of %zu points (at least %zu)", marks.taken(), kMarks, kMarksMin)};
     const Registration& fit = marks.fit;
     if (fit.residual_m.empty()) return {FitGrade::red, fit.refusal};
     std::string words = fit_text(fit);
     if (const auto out = marks.outlier())
-        words += text_of(". Point %zu does not fit the others: take it again", *out + 1);
+        words += text_of(". Point %zu does not fit the others: measure it again", *out + 1);
     else if (!fit.good)
         words += text_of(
-            ". The worst is point %zu. Were the points touched in their order? Is metal near? Is the size "
-            "right?",
+            ". Worst: point %zu. Check the order of the points, metal nearby, and the "
+            "size.",
             marks.of_fit[fit.worst_pair] + 1);
-    if (!fit.good) words += text_of(". %s stays as it was", what);
+    if (!fit.good) words += text_of(". %s is unchanged", what);
     return {fit.good ? fit.grade() : FitGrade::red, words};
 }
 
 }  // namespace
 
 const char* calibration_step_title(CalibrationStep step) {
-    static constexpr const char* kTitles[] = {"Picture", "Wand", "Screen", "Workspace", "Eyes", "Check"};
+    static constexpr const char* kTitles[] = {"Display", "Wand", "Screen", "Workspace", "Eyes", "Check"};
     return kTitles[static_cast<std::size_t>(step)];
 }
 
 std::string Calibration::instruction() const {
     const bool marks_step = step_ == CalibrationStep::screen || step_ == CalibrationStep::workspace;
     if (marks_step && marks().current >= kMarks)
-        return "All points are taken: Enter goes on. Click a point to take it again.";
+        return "All points are measured: Enter continues. Click a point to repeat it.";
     switch (step_) {
         case CalibrationStep::picture:
-            return "How large is the lit picture? Measure its width and height between the outer edges of "
-                   "the frame that is "
-                   "shown, and type them.";
+            return "Measure the width and height of the lit display between the outer edges of the frame "
+                   "shown, "
+                   "and type them.";
         case CalibrationStep::wand:
             return "The tracked sensor is the wand: the one on the glasses, or head_sensor of tact.toml. "
-                   "Where is the tip that "
-                   "touches? Type it, or press T, put the tip into a hollow and tilt the wand to all "
+                   "Type the position "
+                   "of its tip, or press T, put the tip into a hollow and tilt the wand to all "
                    "sides for eight "
                    "seconds. 0, 0, 0: the sensor itself touches.";
         case CalibrationStep::screen:
-            return draft_.screen_measured ? "Touch the lit mark of the picture with the wand's tip, press "
+            return draft_.screen_measured ? "Touch the lit mark on the glass with the wand's tip, press "
                                             "T (or the stylus's button) and "
                                             "hold still for a second. Or type the corners below."
-                                          : "The picture's size comes first: go back and type it, or type "
+                                          : "The display size is missing: type it in step 1, or type "
                                             "the corners below.";
         case CalibrationStep::workspace:
             if (!by_wand_ && !draft_.screen_measured)
-                return "The picture's size comes first: go back and type it. Or touch the wand, which needs "
+                return "The display size is missing: type it in step 1. Or touch the wand, which needs "
                        "no "
-                       "picture.";
-            return by_wand_ ? "Hold the stylus's tip to the wand's tip, both still, and press T. Take "
-                              "places at least "
+                       "size.";
+            return by_wand_ ? "Hold the stylus's tip to the wand's tip, both still, and press T. Choose "
+                              "points at least "
                               "10 cm apart, not all in one plane, where the hand will work."
-                            : "Touch the lit mark of the picture with the stylus's tip, press T or its "
+                            : "Touch the lit mark on the glass with the stylus's tip, press T or its "
                               "button, and hold "
-                              "still for a second. Out of reach: N skips a mark, four are enough.";
+                              "still for a second. N skips a mark out of reach; four are enough.";
         case CalibrationStep::eyes:
-            return "With the left eye alone only LEFT is to be seen, with the right one only RIGHT; else "
+            return "The left eye must see only LEFT, the right eye only RIGHT; otherwise "
                    "swap them. The "
-                   "distance of the pupils is on the prescription of glasses. Move the head: what lies on "
-                   "the glass stands "
+                   "distance of the pupils is on an eyeglass prescription. Move the head: content on "
+                   "the glass must stand "
                    "still.";
         case CalibrationStep::check:
-            return "The circle is round, the grid has its spacing on a ruler, the stairs rise towards you "
+            return "The circle must be round, the grid match a ruler, the stairs rise towards you "
                    "from left to right, "
-                   "and the cross sits on the stylus's tip, wherever you stand. Then save.";
+                   "and the cross sit on the stylus's tip, wherever you stand. Then save.";
     }
     return {};
 }
@@ -99,15 +100,15 @@ std::string Calibration::glass_text() const {
         return step_ == CalibrationStep::wand ? "TILT THE WAND TO ALL SIDES" : "HOLD STILL: POINT " + point;
     if (marks().current >= kMarks && step_ != CalibrationStep::wand) {
         const auto out = marks().outlier();
-        return out ? "POINT " + std::to_string(*out + 1) + " DOES NOT FIT" : "ALL POINTS ARE TAKEN";
+        return out ? "POINT " + std::to_string(*out + 1) + " DOES NOT FIT" : "ALL POINTS DONE";
     }
     switch (lacking()) {
         case Lacking::size:
-            return "FIRST TYPE THE SIZE OF THE PICTURE";
+            return "FIRST TYPE THE DISPLAY SIZE";
         case Lacking::tracker:
-            return "THE TRACKER SEES NO SENSOR";
+            return "NO SENSOR TRACKED";
         case Lacking::hand:
-            return "NOTHING IS HEARD OF THE STYLUS";
+            return "NO DATA FROM THE STYLUS";
         case Lacking::nothing:
             break;
     }
@@ -119,7 +120,7 @@ std::string Calibration::glass_text() const {
 std::string Calibration::live() const {
     if (turning_)
         return text_of("tilt the wand to all sides: %.0f %%, %zu poses%s", 100.0 * progress(), turned_.size(),
-                       input_.sensor_good ? "" : "; the tracker does not see it");
+                       input_.sensor_good ? "" : "; sensor not tracked");
     std::string words = wand_.measuring() ? wand_.text("the wand") : std::string();
     if (stylus_.measuring()) words += (words.empty() ? "" : "; ") + stylus_.text("the stylus");
     if (!words.empty()) return words;
@@ -131,12 +132,12 @@ std::string Calibration::live() const {
                         (step_ == CalibrationStep::workspace && by_wand_);
     if (sensor) {
         const auto tip = wand_tip_screen_m();
-        words = tip ? place("wand's tip", *tip) : "The tracker sees no sensor.";
+        words = tip ? place("wand's tip", *tip) : "No sensor tracked.";
     }
     if (hand) {
         const auto tip = stylus_screen_m();
         words += (words.empty() ? "" : "\n") +
-                 (tip ? place("stylus's tip", *tip) : std::string("Nothing is heard of the hand's device."));
+                 (tip ? place("stylus's tip", *tip) : std::string("No data from the haptic device."));
     }
     return words;
 }
@@ -154,7 +155,7 @@ Calibration::StatusText Calibration::status(CalibrationStep step) const {
             std::string words = text_of("tip at %.1f, %.1f, %.1f mm", t_mm.x(), t_mm.y(), t_mm.z());
             if (!pivot_ || !pivot_->good) return {FitGrade::none, words};
             return {fit_grade(pivot_->residual_m_rms, pivot_->residual_m_rms),
-                    words + text_of(", turned about within %.1f mm rms", 1e3 * pivot_->residual_m_rms)};
+                    words + text_of(", pivot error %.1f mm rms", 1e3 * pivot_->residual_m_rms)};
         }
         case CalibrationStep::screen: {
             if (typed_screen_) return {FitGrade::none, "as typed"};
@@ -163,11 +164,10 @@ Calibration::StatusText Calibration::status(CalibrationStep step) const {
             if (by.x() > 0.0 && !screen_.outlier()) {
                 const double w = by.x() / draft_.screen.width_m() - 1.0,
                              h = by.y() / draft_.screen.height_m() - 1.0;
-                v.text += text_of(". By the marks the picture is %.1f x %.1f mm", 1e3 * by.x(), 1e3 * by.y());
+                v.text += text_of(". Size by the marks: %.1f x %.1f mm", 1e3 * by.x(), 1e3 * by.y());
                 if (std::max(std::abs(w), std::abs(h)) > kStretchTold) {
-                    v.text +=
-                        text_of(", %+.1f %% and %+.1f %% off what was typed: measure it again, or take it",
-                                100.0 * w, 100.0 * h);
+                    v.text += text_of(", %+.1f %% and %+.1f %% off the typed size: measure again, or use it",
+                                      100.0 * w, 100.0 * h);
                     if (v.grade == FitGrade::green) v.grade = FitGrade::amber;
                 }
             }
@@ -176,9 +176,8 @@ Calibration::StatusText Calibration::status(CalibrationStep step) const {
         case CalibrationStep::workspace: {
             StatusText v = status_of(workspace_, true, "The workspace");
             if (workspace_.fit.good && std::abs(workspace_.fit.stretch - 1.0) > 2.0 * kStretchTold) {
-                v.text +=
-                    text_of(". The hand's lengths are %+.1f %% off the tracker's: is the arm calibrated?",
-                            100.0 / workspace_.fit.stretch - 100.0);
+                v.text += text_of(". The arm's lengths are %+.1f %% off the tracker's: check its calibration",
+                                  100.0 / workspace_.fit.stretch - 100.0);
                 if (v.grade == FitGrade::green) v.grade = FitGrade::amber;
             }
             return v;
@@ -201,7 +200,7 @@ std::vector<std::string> Calibration::remarks() const {
     const auto add = [&](const char* what, const Marks& marks) {
         for (std::size_t i = 0; i < kMarks; ++i)
             if (const auto left = marks.residual_m(i))
-                lines.push_back(text_of("%s point %zu: %.2f mm left, spread %.2f mm", what, i + 1,
+                lines.push_back(text_of("%s point %zu: error %.2f mm, spread %.2f mm", what, i + 1,
                                         1e3 * *left, 1e3 * marks.mark[i].spread_m));
     };
     add("screen", screen_);

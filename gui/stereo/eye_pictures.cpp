@@ -13,7 +13,7 @@ void main() {
     gl_Position = vec4(gl_VertexID == 1 ? 3.0 : -1.0, gl_VertexID == 2 ? 3.0 : -1.0, 0.0, 1.0);
 }
 )";
-// Half-colour: a pure red would fight between the eyes, so the left one sees lightness.
+// Half-colour: pure red would cause rivalry between the eyes, so the left eye gets lightness.
 constexpr char kAnaglyphFragment[] = R"(#version 330 core
 uniform sampler2D u_left;
 uniform sampler2D u_right;
@@ -58,7 +58,7 @@ void EyePictures::resize(StereoMode mode, int width_px, int height_px) {
             glTexImage2D(GL_TEXTURE_2D, 0, inner, area.width_px, area.height_px, 0, format, type, nullptr);
         };
         image(eye.colour.get(), GL_RGBA8, GL_RGBA, GL_UNSIGNED_BYTE);
-        // As the window's: parts of the scene are copied between them.
+        // Formats of the window: parts of the scene are copied between both.
         image(eye.depth.get(), GL_DEPTH24_STENCIL8, GL_DEPTH_STENCIL, GL_UNSIGNED_INT_24_8);
         glBindTexture(GL_TEXTURE_2D, 0);
         glBindFramebuffer(GL_FRAMEBUFFER, eye.frame.get());
@@ -66,9 +66,9 @@ void EyePictures::resize(StereoMode mode, int width_px, int height_px) {
         glFramebufferTexture2D(GL_FRAMEBUFFER, GL_DEPTH_STENCIL_ATTACHMENT, GL_TEXTURE_2D, eye.depth.get(),
                                0);
         if (glCheckFramebufferStatus(GL_FRAMEBUFFER) != GL_FRAMEBUFFER_COMPLETE)
-            throw StartupError("making the pictures of two eyes of " + std::to_string(area.width_px) + "x" +
+            throw StartupError("creating the images of two eyes of " + std::to_string(area.width_px) + "x" +
                                    std::to_string(area.height_px) + " pixels",
-                               "the graphics driver refuses it", "use a smaller size_px or --size");
+                               "the graphics driver rejects it", "use a smaller size_px or --size");
     }
     mode_ = mode;
     output_width_px_ = width_px;

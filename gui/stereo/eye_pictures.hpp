@@ -1,8 +1,9 @@
-// The pictures of two eyes and how they are put together for one output.
+// Images of two eyes, and their composition into one output.
 //
-// Layout   side by side: left eye on the left; top-bottom: left eye above; each half as wide or high as the output, as 3D
-//          displays want it. Anaglyph: red for the left eye, cyan for the right, half of the colour kept.
-// Thread   frame thread, context current.  Fails by StartupError: the driver refuses images of that size.
+// Layout   side by side: left eye on the left; top-bottom: left eye above; each squeezed into its half of the
+//          output, as 3D displays expect. Anaglyph: red for the left eye, cyan for the right, half of the colour
+//          kept.
+// Thread   frame thread, context current.  Fails by StartupError: the driver rejects images of that size.
 #pragma once
 
 #include <array>
@@ -19,24 +20,24 @@ namespace tact {
 struct PixelArea {
     int x_px = 0, y_px = 0, width_px = 1, height_px = 1;
 };
-// Where an eye's picture goes in an output of this size; anaglyph, two windows, quad buffer: all of it.
+// Area of an eye's image in an output of this size; anaglyph, two windows, quad buffer: all of it.
 [[nodiscard]] PixelArea area_of_eye(StereoMode mode, std::size_t eye, int width_px, int height_px);
 
 class EyePictures {
 public:
     EyePictures();
-    // Of an output of this size; the picture of one eye is then this large.
+    // For an output of this size, which also sets the size of each eye's image.
     void resize(StereoMode mode, int width_px, int height_px);
     [[nodiscard]] int eye_width_px() const { return width_px_; }
     [[nodiscard]] int eye_height_px() const { return height_px_; }
-    // To draw an eye's picture: binds its frame buffer, sets the viewport and clears it.
+    // Starts drawing an eye's image: binds its framebuffer, sets the viewport and clears it.
     void begin(std::size_t eye, const Eigen::Vector3f& ground);
-    // Both together into the frame buffer that is named, at a place of the size of resize().
+    // Composes both into this framebuffer at this position, in the size of resize().
     void compose(GLuint frame_buffer, int x_px, int y_px);
-    // One eye's picture alone, scaled into an area, its aspect kept.
+    // Draws one eye's image, scaled into an area with its aspect kept.
     void show_one(std::size_t eye, GLuint frame_buffer, const PixelArea& area);
     [[nodiscard]] GLuint texture(std::size_t eye) { return eye_[eye].colour.get(); }
-    // Both together, as a texture.
+    // Both composed, as a texture.
     [[nodiscard]] GLuint composed();
     [[nodiscard]] std::vector<Image> read(bool each_eye);
 

@@ -6,7 +6,8 @@
 namespace tact {
 namespace {
 
-constexpr std::uint8_t kHeadFresh = 2;  // TrackerState of the hardware layer, which is out of sight here
+constexpr std::uint8_t kHeadFresh =
+    2;  // TrackerState of the hardware layer, which this process does not include
 
 Pose moved_on(const HeadTopic& h, std::int64_t display_ns) {
     const double ahead_s = 1e-9 * static_cast<double>(std::clamp(display_ns - h.taken_at_ns, std::int64_t{0},
@@ -30,10 +31,10 @@ const Pose& HeadView::follow(const HeadTopic* head, std::int64_t now_ns, std::in
         aim_ = moved_on(*head, display_ns);
         sight_ = HeadSight::seen;
     } else if (sight_ == HeadSight::seen || (head != nullptr && head->sequence > 0)) {
-        sight_ = HeadSight::lost;  // the aim stays: what was shown last, moved on no farther
+        sight_ = HeadSight::lost;  // the aim stays at the last pose shown, without extrapolation
         if (before == HeadSight::seen) aim_ = shown_;
     }
-    if (sight_ != before) {  // what is shown goes on from where it is
+    if (sight_ != before) {  // continue from the pose shown
         off_.p_m = shown_.p_m - aim_.p_m;
         off_.q = shown_.q * aim_.q.conjugate();
     }

@@ -1,9 +1,9 @@
-// Where the head is when the picture is seen: the tracked head moved on at its speed, and held softly when it is lost.
+// Pose of the head at display time: extrapolated at its velocity, and held smoothly when lost.
 //
-// Fresh     moved on to the time of display, at most 50 ms past its measurement.
-// Lost      stands where it was seen last; so does the view. Back again, it glides there within some tenths of a second
-//           instead of leaping.
-// None      without a tracker the head stands where `rest` says.
+// Fresh     extrapolated to the time of display, at most 50 ms past its measurement.
+// Lost      stays at its last position; so does the view. Found again, it glides there within some tenths of a
+//           second instead of jumping.
+// None      without a tracker the head is at `rest`.
 // Frame     screen, see gui/render/screen.hpp.  Thread  one; plain arithmetic.
 #pragma once
 
@@ -19,17 +19,17 @@ enum class HeadSight : std::uint8_t { none, lost, seen };
 class HeadView {
 public:
     static constexpr std::int64_t kHorizonNs = 50'000'000;
-    static constexpr double kSmoothS = 0.12;  // after which a third of the way is left
+    static constexpr double kSmoothS = 0.12;  // time constant
 
     explicit HeadView(const Pose& rest) : shown_(rest), aim_(rest) {}
-    // head: null without a controller; times of the monotonic clock. The picture is seen at display_ns.
+    // head: null without a controller; times on the monotonic clock. The frame is displayed at display_ns.
     const Pose& follow(const HeadTopic* head, std::int64_t now_ns, std::int64_t display_ns);
     [[nodiscard]] const Pose& pose() const { return shown_; }
     [[nodiscard]] HeadSight sight() const { return sight_; }
 
 private:
     Pose shown_, aim_;
-    Pose off_;  // what is left of a leap: shown = off * aim
+    Pose off_;  // remainder of a jump: shown = off * aim
     HeadSight sight_ = HeadSight::none;
     std::int64_t now_ns_ = 0;
 };

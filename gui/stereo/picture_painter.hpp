@@ -1,6 +1,6 @@
-// Draws flat figures of picture_pen.hpp: what comes later lies over what came before, as their order and not their depth says.
+// Draws flat figures of picture_pen.hpp: later ones cover earlier ones, by order and not by depth.
 //
-// Thread   frame thread, context current. Draws into the bound frame buffer and its viewport.
+// Thread   frame thread, context current. Draws into the bound framebuffer and its viewport.
 #pragma once
 
 #include <span>
@@ -14,7 +14,7 @@ namespace tact {
 class PicturePainter {
 public:
     PicturePainter();
-    // eye: of a scene in millimetres on the glass.
+    // eye: for a scene in millimetres on the glass.
     void draw(const EyeView& eye, std::span<const PictureVertex> vertices);
 
 private:

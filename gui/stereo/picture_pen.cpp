@@ -12,7 +12,7 @@ constexpr double kThinnestPx = 1.6;
 constexpr double kGlyphHigh = 6.0, kAdvance = 5.6, kStroke = 0.13;  // of the height
 constexpr int kRingPieces = 96;
 
-// Polylines of pairs of digits: right 0 to 4, up 0 to 6; a comma lifts the pen.
+// Polylines as pairs of digits: right 0 to 4, up 0 to 6; a comma lifts the pen.
 struct Glyph {
     char letter;
     std::string_view strokes;
@@ -79,7 +79,7 @@ void PicturePen::line(const Point& a, const Point& b, double width_mm, Ink ink) 
         const Point across = Point(-along.y(), along.x(), 0.0) * (half / on_glass);
         quad(a - across, b - across, b + across, a + across, ink);
     }
-    if (std::abs(along.z()) > 1e-9 && on_glass < std::abs(along.z()))  // seen from the side as well
+    if (std::abs(along.z()) > 1e-9 && on_glass < std::abs(along.z()))  // visible from the side as well
         for (const Point& across : {Point(half, 0.0, 0.0), Point(0.0, half, 0.0)})
             quad(a - across, b - across, b + across, a + across, ink);
 }

@@ -1,6 +1,6 @@
-// Flat figures as triangles, and words as strokes: for pictures that calibrate a screen.
+// Flat figures as triangles, and text as strokes: for the pictures of a screen calibration.
 //
-// Unit     millimetres on the glass: x right, y up, z towards the person; the middle of the picture is the origin
+// Unit     millimetres on the glass: x right, y up, z towards the viewer; the origin is the display's centre
 // Thread   any; plain geometry
 #pragma once
 
@@ -24,7 +24,7 @@ class PicturePen {
 public:
     using Point = Eigen::Vector3d;
 
-    // px_mm: of a pixel; no line is thinner than 1.6 of them, else it would come and go.
+    // px_mm: size of a pixel; no line is thinner than 1.6 pixels, or it would flicker.
     explicit PicturePen(double px_mm) : px_mm_(px_mm) {}
 
     void line(const Point& a, const Point& b, double width_mm, Ink ink);
@@ -32,7 +32,7 @@ public:
     void frame(const Point& middle, double width_mm, double height_mm, double line_mm, Ink ink);
     // An arc from the top, clockwise; share 1: a ring.
     void ring(const Point& middle, double radius_mm, double line_mm, Ink ink, double share = 1.0);
-    // Capitals, digits and few signs, from the left at half their height; what has no stroke is a gap.
+    // Capitals, digits and a few signs, from the left, vertically centred; other characters leave a gap.
     void text(const Point& at, double height_mm, std::string_view words, Ink ink);
     void text_centred(const Point& at, double height_mm, std::string_view words, Ink ink) {
         text(at - Point(0.5 * text_width_mm(height_mm, words), 0.0, 0.0), height_mm, words, ink);

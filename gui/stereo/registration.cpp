@@ -1,6 +1,6 @@
-// The tip of a pointer: p_i + q_i t = c for every pose i, linear in the tip t and the place c where it stands. The smallest
-// singular value of that system, over the root of its rows' number, is the sine of half the turn about the least turned axis;
-// turned about one axis alone, the tip may be anywhere along it, and the value is zero.
+// Pointer tip: p_i + q_i t = c for every pose i, linear in the tip t and its fixed point c. The smallest singular
+// value of that system, over the square root of its number of rows, is the sine of half the rotation about the least
+// rotated axis. With rotation about one axis alone, the tip may be anywhere along it, and the value is zero.
 #include "gui/stereo/registration.hpp"
 
 #include <Eigen/SVD>
@@ -24,7 +24,7 @@ std::string millimetres(double m) {
     return text;
 }
 
-// Root mean square of the points about their middle, along their longest and second axis.
+// Root mean square of the points about their mean, along their longest and second axis.
 Eigen::Vector2d spreads_m(const Points& points) {
     const Points centred = points.colwise() - points.rowwise().mean();
     const Eigen::Matrix3d covariance = centred * centred.transpose() / static_cast<double>(points.cols());
@@ -36,10 +36,10 @@ std::string refuse_points(const Points& points, const char* frame, const Registr
     const Eigen::Vector2d s = spreads_m(points);
     if (s[0] < limits.spread_m_min)
         return std::string("the points lie within ") + millimetres(s[0]) + " of each other in the " + frame +
-               " frame: take points that are at least " + millimetres(4.0 * limits.spread_m_min) + " apart";
+               " frame: choose points at least " + millimetres(4.0 * limits.spread_m_min) + " apart";
     if (s[1] < limits.flatness_min * s[0])
         return std::string("the points lie on a line in the ") + frame +
-               " frame, about which anything may turn: take one off it";
+               " frame, so rotation about it is unknown: add a point off the line";
     return {};
 }
 
@@ -78,7 +78,7 @@ Points without(const Points& points, Eigen::Index i) {
     return rest;
 }
 
-// Left out one by one: what the others say of it is not bent by it. Three others fit too easily to say anything.
+// Leaves each pair out, so that it does not distort the fit of the others. Three others fit too easily to decide.
 std::optional<std::size_t> outlier_of(const Points& from, const Points& to,
                                       const RegistrationLimits& limits) {
     std::optional<std::size_t> found;
@@ -110,13 +110,13 @@ const char* fit_grade_text(FitGrade grade) {
 Registration register_points(std::span<const PointPair> pairs, const RegistrationLimits& limits) {
     Registration result;
     if (pairs.size() < 3) {
-        result.refusal = std::to_string(pairs.size()) + " pairs of points: three at least are needed";
+        result.refusal = std::to_string(pairs.size()) + " pairs of points: at least three are needed";
         return result;
     }
     Points from(3, pairs.size()), to(3, pairs.size());
     for (std::size_t i = 0; i < pairs.size(); ++i) {
         if (!pairs[i].from_m.allFinite() || !pairs[i].to_m.allFinite()) {
-            result.refusal = "pair " + std::to_string(i + 1) + " is not a number: take it again";
+            result.refusal = "pair " + std::to_string(i + 1) + " is not a number: measure it again";
             result.worst_pair = i;
             return result;
         }
@@ -137,11 +137,11 @@ Registration register_points(std::span<const PointPair> pairs, const Registratio
     result.outlier = outlier_of(from, to, limits);
     if (!(fit.worst_m <= limits.residual_m_max && fit.rms_m <= limits.residual_m_rms)) {
         const std::size_t again = result.outlier.value_or(result.worst_pair);
-        result.refusal =
-            "pair " + std::to_string(again + 1) + " is " + millimetres(result.residual_m[again]) + " off (" +
-            millimetres(fit.rms_m) + " rms): " + millimetres(limits.residual_m_max) + " and " +
-            millimetres(limits.residual_m_rms) +
-            " are allowed: take it again, and look that points are in order and no metal is near";
+        result.refusal = "pair " + std::to_string(again + 1) + " is " +
+                         millimetres(result.residual_m[again]) + " off (" + millimetres(fit.rms_m) +
+                         " rms): " + millimetres(limits.residual_m_max) + " and " +
+                         millimetres(limits.residual_m_rms) +
+                         " are allowed: measure it again; check the order of the points and metal nearby";
         return result;
     }
     result.good = true;
@@ -155,9 +155,9 @@ PivotFit fit_pivot(std::span<const Pose> T_frame_sensor) {
     for (std::size_t i = 0; i < T_frame_sensor.size(); i += every)
         if (T_frame_sensor[i].finite()) poses.push_back(T_frame_sensor[i]);
     if (poses.size() < kPivotPosesMin) {
-        result.refusal = std::to_string(poses.size()) + " poses were seen, " +
+        result.refusal = std::to_string(poses.size()) + " poses were received, " +
                          std::to_string(kPivotPosesMin) +
-                         " are needed: keep the sensor where the tracker sees it";
+                         " are needed: keep the sensor in the tracker's range";
         return result;
     }
     const auto rows = static_cast<Eigen::Index>(3 * poses.size());
@@ -169,13 +169,13 @@ PivotFit fit_pivot(std::span<const Pose> T_frame_sensor) {
         a.block<3, 3>(row, 3) = -Eigen::Matrix3d::Identity();
         b.segment<3>(row) = -poses[i].p_m;
     }
-    // 6 x 6: as good here, and its size does not grow with the poses.
+    // 6 x 6: equally accurate here, and its size does not grow with the poses.
     const Eigen::Matrix<double, 6, 6> normal = a.transpose() * a / static_cast<double>(poses.size());
     const Eigen::JacobiSVD<Eigen::Matrix<double, 6, 6>> svd(normal,
                                                             Eigen::ComputeFullU | Eigen::ComputeFullV);
     if (!(std::sqrt(svd.singularValues()[5]) >= kPivotTurnMin)) {
         result.refusal =
-            "the pointer was turned too little: tilt it by 20 degrees and more, forwards, backwards and to "
+            "the pointer was tilted too little: tilt it by at least 20 degrees forwards, backwards and to "
             "both sides";
         return result;
     }
@@ -185,7 +185,7 @@ PivotFit fit_pivot(std::span<const Pose> T_frame_sensor) {
     result.good = result.residual_m_rms <= kPivotRmsM;
     if (!result.good)
         result.refusal = "the tip moved by " + millimetres(result.residual_m_rms) + " (" +
-                         millimetres(kPivotRmsM) + " are allowed): hold it in a hollow while turning";
+                         millimetres(kPivotRmsM) + " allowed): hold it in a hollow while tilting";
     return result;
 }
 

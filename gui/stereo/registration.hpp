@@ -1,9 +1,9 @@
-// Where one frame lies in another, from points that were touched in both: tracker to screen, the hand's world to tracker.
+// Pose of one frame in another, from points touched in both: tracker to screen, the hand's world to tracker.
 //
 // Method   least squares over rigid motions (Umeyama 1991), no scaling: metres stay metres
-// Needs    three pairs or more that are no line; refused with the reason otherwise, never guessed
-// Residual what is left of each pair, in metres; the worst one is named, and one that spoils the others
-// Errors   as values with words, for a panel to show
+// Needs    three pairs or more, not on a line; otherwise refused with the reason
+// Residual of each pair, in metres; the result names the worst pair, and an outlier
+// Errors   as values with text, for a panel to show
 // Thread   any; it allocates
 #pragma once
 
@@ -19,22 +19,21 @@
 namespace tact {
 
 struct PointPair {
-    Vec3 from_m;  // in the frame that is to be placed, as that of the screen's glass
-    Vec3 to_m;    // the same point in the frame it is placed in, as the tracker's
+    Vec3 from_m;  // in the frame to be located, such as the screen's glass
+    Vec3 to_m;    // the same point in the reference frame, such as the tracker's
 };
 
-// What is left of the pairs is good, to be looked at, or refused. Both the root mean square and the worst have to be within
-// 2 and 4 mm for green: about what a magnetic tracker leaves at arm's length, and less than an eye sees beside a tool. Within 5
-// and 10 mm it can be worked with: amber.
+// Grades of the residuals. Green: root mean square within 2 mm and worst within 4 mm, about what a magnetic tracker
+// leaves at arm's length, and less than an eye notices beside a tool. Amber: within 5 and 10 mm, usable. Red:
+// refused.
 inline constexpr double kGreenRmsM = 2e-3, kGreenWorstM = 4e-3, kAmberRmsM = 5e-3, kAmberWorstM = 10e-3;
 enum class FitGrade : std::uint8_t { none, green, amber, red };
 [[nodiscard]] FitGrade fit_grade(double rms_m, double worst_m);
 [[nodiscard]] const char* fit_grade_text(FitGrade grade);  // "green", ...
 
 struct RegistrationLimits {
-    double spread_m_min =
-        0.02;                   // root mean square of the points about their middle, along their longest axis
-    double flatness_min = 0.1;  // second axis over the longest: below it is a line
+    double spread_m_min = 0.02;  // root mean square of the points about their mean, along their longest axis
+    double flatness_min = 0.1;   // second axis over the longest: below it, a line
     double residual_m_max = kAmberWorstM;  // of the worst pair
     double residual_m_rms = kAmberRmsM;
 };
@@ -43,13 +42,13 @@ struct Registration {
     bool good = false;
     std::string refusal;  // why not, and what to do; empty if good
     Pose T_to_from;
-    std::vector<double> residual_m;  // of each pair; empty where no motion was found
+    std::vector<double> residual_m;  // of each pair; empty if no motion was found
     double residual_m_rms = 0.0;
     double residual_m_max = 0.0;
     std::size_t worst_pair = 0;
-    // By which the first frame's points had to be stretched to lie best on the second's; 1 where lengths agree.
+    // Scale of the first frame's points that fits the second's best; 1 if lengths agree.
     double stretch = 1.0;
-    // The one without which the others fit: it is off them by at least 3 mm and three times what is left of their worst.
+    // The pair without which the others fit: its residual is at least 3 mm and three times their worst.
     std::optional<std::size_t> outlier;
 
     [[nodiscard]] FitGrade grade() const {
@@ -60,8 +59,8 @@ struct Registration {
 [[nodiscard]] Registration register_points(std::span<const PointPair> pairs,
                                            const RegistrationLimits& limits = {});
 
-// Where the tip of a pointer lies on its sensor, from poses of the sensor while the tip stood in one place and the pointer
-// was turned about it, in two directions at least.
+// Position of a pointer's tip on its sensor, from poses of the sensor while the tip stood in one place and the
+// pointer was tilted about it, in at least two directions.
 struct PivotFit {
     bool good = false;
     std::string refusal;

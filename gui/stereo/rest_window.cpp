@@ -29,16 +29,16 @@ void RestWindow::add(double now_s, std::int64_t taken_at_ns, const Vec3& at_m, b
         if (samples_.size() > kSamplesMax) samples_.pop_front();
     }
     silent_ = now_s - heard_s_ > kSilentS;
-    if (silent_) samples_.clear();  // what came before may be another place
+    if (silent_) samples_.clear();  // earlier samples may be of another place
     if (now_s - started_s_ > kPatienceS) {
         state_ = State::failed;
         return;
     }
-    // One sample that is older than the window says that it is full; where pictures come slowly it lasts longer.
+    // A sample older than the window shows that it is full; at low frame rates the window is longer.
     while (samples_.size() > kSamplesMin && now_s - samples_[1].at_s >= kWindowS) samples_.pop_front();
     state_ = State::moving;
     if (samples_.empty()) return;
-    // Of the earlier half and the later one: where they differ, the hand still arrives, or sinks.
+    // Means of the earlier and the later half: if they differ, the hand still arrives, or sinks.
     Vec3 half_m[2] = {Vec3::Zero(), Vec3::Zero()};
     const std::size_t early = samples_.size() / 2;
     for (std::size_t i = 0; i < samples_.size(); ++i) half_m[i < early ? 0 : 1] += samples_[i].at_m;
@@ -68,17 +68,18 @@ std::string RestWindow::text(const std::string& what) const {
         case State::failed:
             if (silent_)
                 std::snprintf(text, sizeof text,
-                              "Not taken: nothing is heard of %s. Is it in reach and seen?", what.c_str());
+                              "Not measured: no data from %s. Check that it is in range and visible.",
+                              what.c_str());
             else
-                std::snprintf(
-                    text, sizeof text,
-                    "Not taken: %s did not rest for a second within %.0f s (spread %.1f mm, %.1f allowed).",
-                    what.c_str(), kPatienceS, 1e3 * spread_m_, 1e3 * spread_m_max_);
+                std::snprintf(text, sizeof text,
+                              "Not measured: %s did not rest for a second within %.0f s (spread %.1f mm, "
+                              "%.1f allowed).",
+                              what.c_str(), kPatienceS, 1e3 * spread_m_, 1e3 * spread_m_max_);
             return text;
         case State::moving:
-            if (silent_) return what + " is lost: waiting until it is seen again";
-            std::snprintf(text, sizeof text, "hold %s still: it moves by %.1f mm, %.1f are allowed",
-                          what.c_str(), 1e3 * std::max(spread_m_, drift_m_), 1e3 * spread_m_max_);
+            if (silent_) return what + " is lost: waiting for it";
+            std::snprintf(text, sizeof text, "hold %s still: moves by %.1f mm, %.1f allowed", what.c_str(),
+                          1e3 * std::max(spread_m_, drift_m_), 1e3 * spread_m_max_);
             return text;
         case State::resting:
         case State::done:

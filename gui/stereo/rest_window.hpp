@@ -1,9 +1,10 @@
-// A point measured while it rests: the mean of a second during which it stood still.
+// Measures a resting point: the mean of a second during which it stood still.
 //
-// Done     goes on sliding until it is stopped: another point may have to rest at the same time
-// Rest     all of the last second within the spread that is allowed and without a drift, at least 12 samples of their own instants. While the
-//          hand moves the window goes on with it, so that a person only has to hold still.
-// Refuses  what is not a number, and a source that fell silent: measuring begins anew; after kPatienceS it ends in words
+// Done     keeps sliding until stopped: another point may have to rest at the same time
+// Rest     all samples of the last second within the allowed spread and without drift, at least 12 with distinct
+//          timestamps. While the hand moves, the window slides, so that the user only has to hold still.
+// Refuses  samples that are not numbers, and a silent source: measuring restarts; after kPatienceS it fails with a
+//          message
 // Thread   one; plain arithmetic
 #pragma once
 
@@ -19,8 +20,7 @@ class RestWindow {
 public:
     static constexpr double kDriftShare =
         0.4;  // of the spread, from the earlier half of the window to the later one
-    static constexpr double kFarthest =
-        2.5;  // of the spread, that any sample may be off: the hand was still on its way
+    static constexpr double kFarthest = 2.5;  // of the spread, for any sample: the hand was still arriving
     static constexpr double kWindowS = 1.0, kSilentS = 0.25, kPatienceS = 20.0;
     static constexpr std::size_t kSamplesMin = 12, kSamplesMax = 4096;
 
@@ -30,7 +30,7 @@ public:
     explicit RestWindow(double spread_m_max) : spread_m_max_(spread_m_max) {}
     void start(double now_s);
     void stop() { state_ = State::idle; }
-    // taken_at_ns: a sample that was seen before is not counted again. good: the source says so.
+    // taken_at_ns: a repeated sample is not counted again. good: valid according to the source.
     void add(double now_s, std::int64_t taken_at_ns, const Vec3& at_m, bool good);
 
     [[nodiscard]] State state() const { return state_; }
@@ -40,7 +40,7 @@ public:
     [[nodiscard]] double spread_m() const { return spread_m_; }
     [[nodiscard]] std::size_t samples() const { return samples_.size(); }
     [[nodiscard]] bool silent() const { return silent_; }
-    // What is going on, for a person; `what` is measured, as "the wand".
+    // Progress as text for the user; `what` is measured, such as "the wand".
     [[nodiscard]] std::string text(const std::string& what) const;
 
 private:

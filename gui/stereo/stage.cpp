@@ -16,7 +16,7 @@ void Stage::follow(const HeadTopic* head, std::int64_t now_ns, double frame_s, c
     pictures_.resize(settings_.mode, width_px_, height_px_);
 }
 
-// As measured, or as high as a monitor and of the picture's shape.
+// As measured, or with a monitor's height and the output's aspect.
 ScreenPlace Stage::screen() const {
     if (settings_.screen_measured) return settings_.screen;
     const double height_m = settings_.screen.height_m();
@@ -78,7 +78,7 @@ std::string stage_text(const Stage& stage) {
             words += ", head lost: the view stands still";
             break;
         case HeadSight::none:
-            words += ", no head is tracked";
+            words += ", no head tracking";
             break;
     }
     if (stage.settings().eyes.swapped) words += ", eyes swapped";

@@ -10,7 +10,7 @@
 namespace tact {
 namespace {
 
-constexpr const char* kStageFix = "gui/stereo/README.md shows the keys and their form";
+constexpr const char* kStageFix = "gui/stereo/README.md lists the keys and their form";
 
 }  // namespace
 
@@ -60,15 +60,15 @@ StageSettings read_stage_text(std::string_view text, const std::string& name) {
     s.latency_s = 1e-3 * latency_ms;
     const Quat q(quat[3], quat[0], quat[1], quat[2]);
     if (std::abs(q.norm() - 1.0) > 0.01)
-        reader.fail("workspace.quat_screen_world_xyzw: ", "its length is not 1");
+        reader.fail("workspace.quat_screen_world_xyzw: ", "its norm must be 1");
     s.T_screen_world.q = q.normalized();
     s.screen_measured = std::any_of(there.begin(), there.end(),
                                     [](const std::string& key) { return key.starts_with("screen."); });
     if (!s.screen.possible())
         reader.fail(
             "screen: ",
-            "its corners are no rectangle of 1 cm to 100 m an edge: the two edges at lower_left_m have "
-            "to be upright on each other");
+            "its corners do not form a rectangle of 1 cm to 100 m: the two edges at lower_left_m must "
+            "be perpendicular");
     return s;
 }
 

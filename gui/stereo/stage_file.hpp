@@ -1,7 +1,7 @@
-// How a stereo picture is shown: the way, the screen's place, the eyes, and where the scene stands, from a TOML file that a
-// person types. README.md has its keys; every one may be left out.
+// Settings of the stereo display: mode, screen pose, eyes, and placement of the scene, from a TOML file edited by
+// hand. README.md lists the keys; all are optional.
 //
-// Fails by StartupError that names the key, its range and the file.
+// Fails by StartupError with the key, its range and the file.
 #pragma once
 
 #include <cstdint>
@@ -20,12 +20,12 @@ inline constexpr const char* kStereoModes[] = {"off",        "anaglyph",    "sid
 [[nodiscard]] inline const char* stereo_mode_text(StereoMode mode) {
     return kStereoModes[static_cast<std::size_t>(mode)];
 }
-// False: there is no such mode.
+// Returns false for an unknown mode.
 [[nodiscard]] bool read_stereo_mode(const std::string& text, StereoMode& mode);
 
 struct StageSettings {
     StereoMode mode = StereoMode::off;
-    std::vector<int> monitors;  // empty: inside the dashboard's window where the mode can
+    std::vector<int> monitors;  // empty: inside the dashboard window if the mode allows
     int width_px = 1280, height_px = 720;
     bool in_workspace = false;
     double latency_s = 0.02;
@@ -34,9 +34,9 @@ struct StageSettings {
     EyesOfHead eyes;
     Vec3 rest_screen_m = Vec3(0.0, 0.0, 0.6);
     Pose T_screen_world{Vec3(0.0, 0.0, 0.1), Quat::Identity()};
-    Vec3 wand_tip_sensor_m = Vec3::Zero();  // of the pointer that calibration touches with
+    Vec3 wand_tip_sensor_m = Vec3::Zero();  // of the pointer used in calibration
 
-    // In windows of its own.
+    // Uses separate windows.
     [[nodiscard]] bool own_windows() const {
         return mode == StereoMode::two_windows || mode == StereoMode::quad_buffer ||
                (mode != StereoMode::off && !monitors.empty());
@@ -46,11 +46,11 @@ struct StageSettings {
 [[nodiscard]] StageSettings read_stage_text(std::string_view text, const std::string& name);
 [[nodiscard]] StageSettings read_stage_file(const std::filesystem::path& path);
 
-// All keys, and the remarks as comments in front; read again it is the same stage, to the nanometre.
+// All keys, with the remarks as comments in front; reading it gives the same stage, to the nanometre.
 [[nodiscard]] std::string stage_text(const StageSettings& settings,
                                      std::span<const std::string> remarks = {});
-// Whole or not at all; a file that was there is kept beside it under the returned name (empty: there was none). What is
-// written is read again before it takes the place of the old one. Throws StartupError.
+// Written completely or not at all; an existing file is kept beside it under the returned name (empty: none existed).
+// The new file is read back before it replaces the old one. Throws StartupError.
 std::filesystem::path write_stage_file(const std::filesystem::path& path, const StageSettings& settings,
                                        std::span<const std::string> remarks = {});
 

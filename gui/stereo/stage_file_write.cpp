@@ -15,7 +15,7 @@ namespace {
 
 constexpr std::size_t kRemarksMost = 64, kRemarkMost = 200;
 
-// Nine digits behind the point: nanometres, and less than a pixel of any quaternion.
+// Nine decimals: nanometres, and less than a pixel for any quaternion.
 std::string number(double value) {
     char text[48];
     std::snprintf(text, sizeof text, "%.9f", value);
@@ -31,7 +31,7 @@ std::string list(const auto& values) {
     return "[" + out + "]";
 }
 
-// One line of a comment: a remark may hold what came from elsewhere.
+// One comment line: a remark may contain foreign text.
 std::string remark(const std::string& text) {
     std::string out = "# ";
     for (const char c : text.substr(0, kRemarkMost)) out += c >= ' ' && c <= '~' ? c : ' ';
@@ -46,7 +46,7 @@ std::string moment_text() {
     return {text, std::strftime(text, sizeof text, "%Y%m%dT%H%M%SZ", &utc)};
 }
 
-// The old file under another name as well, so that there is no moment without a stage file.
+// Keeps the old file under a second name as well, so that a stage file exists at any time.
 std::filesystem::path keep_old(const std::filesystem::path& path, const auto& fail) {
     const std::string stem = path.string() + "." + moment_text();
     for (int i = 0; i < 100; ++i) {
@@ -54,12 +54,12 @@ std::filesystem::path keep_old(const std::filesystem::path& path, const auto& fa
         if (::link(path.c_str(), kept.c_str()) == 0) return kept;
         if (errno == ENOENT) return {};
         if (errno == EEXIST) continue;
-        // A file system without second names.
+        // A file system without hard links.
         std::error_code error;
         if (std::filesystem::copy_file(path, kept, error)) return kept;
         fail("the old file cannot be kept: " + error.message());
     }
-    fail("there are a hundred old files of this second");
+    fail("a hundred old files of this second exist already");
     return {};
 }
 
@@ -101,20 +101,20 @@ std::string stage_text(const StageSettings& s, std::span<const std::string> rema
 std::filesystem::path write_stage_file(const std::filesystem::path& path, const StageSettings& settings,
                                        std::span<const std::string> remarks) {
     const std::string text = stage_text(settings, remarks);
-    // What cannot be read again is no stage: said before anything is written.
+    // A text that cannot be read back is no stage: rejected before anything is written.
     static_cast<void>(read_stage_text(text, path.string()));
     const auto fail = [&](const std::string& why) {
         throw StartupError("writing the stage file '" + path.string() + "'", why,
-                           "choose a folder that exists and can be written, with space left (--stage FILE)");
+                           "choose an existing, writable folder with free space (--stage FILE)");
     };
     std::error_code error;
     if (path.has_parent_path() && !std::filesystem::is_directory(path.parent_path(), error))
-        fail("there is no folder " + path.parent_path().string());
+        fail("the folder " + path.parent_path().string() + " does not exist");
     std::filesystem::path old = keep_old(path, fail);
     try {
         write_whole_file(path, text);
     } catch (const StartupError&) {
-        if (!old.empty()) std::filesystem::remove(old, error);  // the stage file itself is as it was
+        if (!old.empty()) std::filesystem::remove(old, error);  // the stage file itself is unchanged
         throw;
     }
     return old;

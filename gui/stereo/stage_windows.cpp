@@ -23,10 +23,10 @@ StageWindows::StageWindows(GLFWwindow* dashboard, const StageSettings& settings,
             if (i < settings.monitors.size() && !hidden) {
                 const int wanted = settings.monitors[i];
                 if (wanted >= monitors)
-                    throw StartupError("opening a window for the stereo picture",
-                                       "there is no monitor " + std::to_string(wanted) + ", only 0 to " +
+                    throw StartupError("opening a window for the stereo display",
+                                       "no monitor " + std::to_string(wanted) + "; the range is 0 to " +
                                            std::to_string(monitors - 1),
-                                       "name another in 'monitors' of the stage file");
+                                       "choose another one in 'monitors' of the stage file");
                 on = monitor[wanted];
                 const GLFWvidmode* const video = glfwGetVideoMode(on);
                 width = video->width;
@@ -37,13 +37,13 @@ StageWindows::StageWindows(GLFWwindow* dashboard, const StageSettings& settings,
             glfwWindowHint(GLFW_STEREO, mode_ == StereoMode::quad_buffer ? GLFW_TRUE : GLFW_FALSE);
             glfwWindowHint(GLFW_FOCUS_ON_SHOW, GLFW_FALSE);
             GLFWwindow* const window =
-                glfwCreateWindow(width, height, i == 0 ? "Tact: picture" : "Tact: right eye", on, dashboard);
+                glfwCreateWindow(width, height, i == 0 ? "Tact: stereo" : "Tact: right eye", on, dashboard);
             glfwWindowHint(GLFW_STEREO, GLFW_FALSE);
             if (window == nullptr)
-                throw StartupError("opening a window for the stereo picture",
+                throw StartupError("opening a window for the stereo display",
                                    mode_ == StereoMode::quad_buffer
                                        ? "the driver offers no quad-buffered stereo"
-                                       : "the driver refuses it",
+                                       : "the driver rejects it",
                                    "use another mode: side-by-side, top-bottom, two-windows or anaglyph");
             outputs_.push_back({window, 0});
             glfwMakeContextCurrent(window);

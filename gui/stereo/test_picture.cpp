@@ -10,7 +10,7 @@ namespace {
 
 using Point = PicturePen::Point;
 
-// Left warm, right cold; both have light enough in an anaglyph's half of the colours.
+// Left warm, right cold; both are bright enough in an anaglyph's half of the colours.
 constexpr Ink kLeft{255, 196, 120, 255}, kRight{110, 220, 255, 255};
 constexpr Ink kGrid{70, 84, 104, 255}, kAxis{120, 138, 164, 255}, kLine{225, 232, 242, 255},
     kDim{150, 160, 176, 255};
@@ -19,12 +19,12 @@ constexpr Ink kNow{255, 190, 60, 255}, kTaken{80, 214, 140, 255}, kOpen{120, 132
 constexpr Ink kStep{46, 62, 86, 255};
 constexpr double kCellsAcross = 14.0;
 
-// Legible from where the whole picture is seen, and on a small one.
+// Legible from where the whole display is visible, and on a small one.
 double letters_mm(const GlassSize& glass, double share) {
     return std::max(share * std::min(glass.height_mm, 0.56 * glass.width_mm), 13.0 * glass.px_mm);
 }
 
-// Smaller where they would not fit across the picture.
+// Smaller if the text would not fit across the display.
 double fitted_mm(const GlassSize& glass, double letters, const std::string& words) {
     return letters *
            std::min(1.0, 0.9 * glass.width_mm / std::max(1.0, PicturePen::text_width_mm(letters, words)));
@@ -59,7 +59,7 @@ void stairs(PicturePen& pen, const GlassSize& glass) {
     const auto depths = stair_depths_mm(glass);
     const double step = 0.13 * glass.width_mm, edge = 0.62 * step, y = -0.27 * glass.height_mm;
     const double letters = std::min(letters_mm(glass, 0.035), 0.3 * edge);
-    for (std::size_t i = 0; i < depths.size(); ++i) {  // the farthest first: what is near lies over it
+    for (std::size_t i = 0; i < depths.size(); ++i) {  // the farthest first: nearer ones cover it
         const Point middle((static_cast<double>(i) - 2.0) * step, y, depths[i]);
         if (i > 0)
             pen.line({middle.x() - step + 0.5 * edge, y, depths[i - 1]}, middle - Point(0.5 * edge, 0.0, 0.0),
@@ -137,7 +137,7 @@ std::vector<PictureVertex> marks_picture(const GlassSize& glass, const MarksPict
             pen.ring(at, radius, 0.0, ink);
             pen.ring(at, 1.2 * radius, 0.3 * radius, ink, marks.progress);
         }
-        // Towards the middle, where there is room.
+        // Towards the centre, where there is space.
         const double side = at.x() > 0.2 * glass.width_mm ? -1.0 : 1.0;
         pen.text_centred(at + Point(side * 2.1 * radius, 1.2 * radius, 0.0), letters, std::to_string(i + 1),
                          ink);
@@ -154,7 +154,7 @@ std::vector<PictureVertex> test_picture(const GlassSize& glass, const TestPictur
     corners(pen, glass, kNow);
     const double radius = 0.39 * glass.height_mm, letters = letters_mm(glass, 0.04);
     pen.ring(Point::Zero(), radius, 0.006 * glass.height_mm, kLine);
-    // Beside each other where both eyes look at once, within the circle.
+    // Side by side if both eyes look at once, within the circle.
     const bool left = what.eye == 0;
     const std::string eye = left ? "LEFT" : "RIGHT";
     const double high = std::min(letters_mm(glass, 0.07), 0.07 * glass.height_mm),

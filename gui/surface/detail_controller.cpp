@@ -8,9 +8,9 @@
 namespace tact {
 namespace {
 
-// Where the controller keeps none: so much of the hand's world about the tool, as tact-rt's knob would at its top.
+// Radius without a cut of the controller, in the hand's world: that of tact-rt at its highest level.
 constexpr double kAloneWorldM = 4e-3;
-// A tool that moves by less changes no cut that a person could tell.
+// Smaller motion of the tool does not change the cut visibly.
 constexpr double kStillRadii = 0.02;
 constexpr int kPatienceFrames = 60;
 
@@ -65,7 +65,7 @@ std::optional<DetailMesh> DetailController::follow(const TouchTopic* touch, bool
         request.radius_m = static_cast<double>(touch->detail_radius_model_m);
         request.form = {static_cast<FilterForm::Shape>(touch->detail_shape), touch->detail_width,
                         touch->detail_error_far};
-        // What a person chose stays until the controller has it, or has not for a second or so.
+        // The user's choice stays until the controller applies it, or for about a second.
         if (asked_ && (request.form == *asked_ || ++frames_asked_ > kPatienceFrames)) asked_.reset();
         if (!state.editing && !asked_) {
             state.shape = static_cast<int>(touch->detail_shape);

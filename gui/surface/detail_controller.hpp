@@ -1,8 +1,9 @@
-// The surface kept fine around the tool, between controller, panel and view.
+// Keeps the surface fine around the tool; connects controller, panel and view.
 //
-// In mode chr the cut that is drawn follows the controller's: its probe, its radius, its filter. A person's change is a
-// command, and is seen once the controller has it. In other modes the window keeps one of its own, with the same form.
-// Thread   frame thread; the cut is moved on a thread of its own.
+// In mode chr the drawn cut follows the controller's probe, radius and filter. A change by the user is sent as a
+// command and is visible once the controller applies it. In other modes the window keeps its own cut with the same
+// form.
+// Thread   frame thread; the cut is updated on its own thread.
 #pragma once
 
 #include <memory>
@@ -18,19 +19,19 @@ namespace tact {
 
 class DetailController {
 public:
-    // Another scene.
+    // For another scene.
     void use(std::shared_ptr<const SceneContent> content, DetailState& state);
-    // shown: a person's choice; on by itself where the controller begins to keep one.
-    // touch: of the controller, null without one. Requests are for the controller. What is to be drawn, where it is new.
+    // shown: the user's choice; switched on when the controller begins to refine. touch: from the controller, or
+    // null. `requests` are for the controller. Returns the mesh to draw, if it is new.
     std::optional<DetailMesh> follow(const TouchTopic* touch, bool& shown, DetailState& state,
                                      std::vector<Request>& requests);
 
 private:
     std::shared_ptr<const SceneContent> content_;
-    std::unique_ptr<DetailWorker> worker_;  // from when it was first shown
+    std::unique_ptr<DetailWorker> worker_;  // created when first shown
     std::optional<DetailRequest> requested_;
     bool of_controller_before_ = false;
-    std::optional<FilterForm> asked_;  // of the controller, until it has it
+    std::optional<FilterForm> asked_;  // sent to the controller, not yet applied
     int frames_asked_ = 0;
 };
 

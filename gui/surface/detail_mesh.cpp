@@ -17,12 +17,12 @@ RefinementSettings settings_of(const SceneContent& content) {
     RefinementSettings s;
     s.look_ahead_s = 0.0;
     s.splits_max = s.merges_max = 20'000;
-    // The coarsest mesh has to fit, whatever it is.
+    // The coarsest mesh must fit, whatever its size.
     s.nodes_max = std::max(kVerticesMost, content.of<SurfaceContent>()->detail->forest.roots());
     return s;
 }
 
-// At these shares of the lengths the scale ends, at the next power of two outwards.
+// Quantiles of the lengths at which the scale ends, rounded outwards to a power of two.
 constexpr double kFinestShare = 0.05, kCoarsestShare = 0.95;
 
 }  // namespace
@@ -53,7 +53,7 @@ TubeMesh DetailCut::build(double& finest_m, double& coarsest_m) {
     TubeMesh mesh;
     length_m_.clear();
     edges_.clear();
-    std::vector<std::uint32_t> places;  // to be forgotten
+    std::vector<std::uint32_t> places;  // to be reset
     const auto vertex = [&](std::uint32_t place) {
         std::uint32_t& index = index_of_[place];
         if (index != kNoVertex) return index;

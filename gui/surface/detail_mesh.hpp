@@ -1,10 +1,10 @@
-// The surface as a controller keeps it around the tool: full detail there, coarse elsewhere, the length of edges as colour.
+// The surface as a controller refines it around the tool: full detail there, coarse elsewhere, edge length as colour.
 //
-// Cut       ipc/scene/mesh/refinement.hpp, the code that tact-rt runs, with the same form of filter about the same place:
-//           where both have settled the cut is the same. tact-rt looks ahead along the tool's way, this does not.
-// Colour    viridis by the logarithm of the mean length of the edges at a vertex, from `coarsest_m` (violet) to
-//           `finest_m` (yellow), which are taken from the mesh itself: powers of two that hold nine tenths.
-// Thread    one calls step(); what it returns is nobody else's. It allocates.
+// Cut       ipc/scene/mesh/refinement.hpp, the code of tact-rt, with the same filter at the same place: once both
+//           have settled, the cuts are equal. tact-rt looks ahead along the tool's motion; this does not.
+// Colour    viridis by the logarithm of the mean edge length at a vertex, from `coarsest_m` (violet) to `finest_m`
+//           (yellow), powers of two that enclose nine tenths of the mesh's lengths.
+// Thread    one calls step() and owns the result. It allocates.
 #pragma once
 
 #include <optional>
@@ -17,7 +17,7 @@ namespace tact {
 
 struct DetailRequest {
     Vec3 probe_m = Vec3::Zero();  // model
-    double radius_m = 0.0;        // of full detail
+    double radius_m = 0.0;        // of the zone of full detail
     FilterForm form;
 
     [[nodiscard]] bool operator==(const DetailRequest&) const = default;
@@ -27,13 +27,13 @@ struct DetailMesh {
     TubeMesh mesh;  // scene frame
     double finest_m = 0.0, coarsest_m = 0.0;
     std::uint32_t vertices = 0, triangles = 0;
-    double deviation_m = 0.0;  // from the full mesh, at the most
-    bool settled = false;      // false: more steps will change it
+    double deviation_m = 0.0;  // from the full mesh, at most
+    bool settled = false;      // false: further steps will change it
 };
 
 class DetailCut {
 public:
-    // The content needs a surface and a forest, and outlives this.
+    // The content needs a surface and a forest, and must outlive this object.
     explicit DetailCut(const SceneContent& content);
     DetailMesh step(const DetailRequest& request);
 

@@ -1,4 +1,4 @@
-// Detail: how far around the tool the surface is kept as fine as its full mesh, what lies beyond, and the filter between.
+// Detail panel: radius of full detail around the tool, coarseness beyond it, and the filter between.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -9,7 +9,7 @@
 namespace tact {
 namespace {
 
-// How much is allowed by the distance from the tool, as the filter's form says; both in radii.
+// Fraction of the far error allowed at a distance from the tool (in radii), by the filter's form.
 double allowed(const DetailState& d, double distance) {
     const double x = (distance - 1.0) / static_cast<double>(d.width);
     if (x <= 0.0) return 0.0;
@@ -28,8 +28,7 @@ void curve(const Theme& theme, const DetailState& d) {
     const ImVec2 size{ImGui::GetContentRegionAvail().x, theme.px(58.0F)};
     ImGui::InvisibleButton("##filter", {std::max(size.x, 1.0F), size.y});
     if (ImGui::IsItemHovered())
-        ImGui::SetTooltip(
-            "error that is allowed, by the distance from the tool: the largest of |dx|, |dy|, |dz|");
+        ImGui::SetTooltip("allowed error by distance from the tool (largest of |dx|, |dy|, |dz|)");
     ImDrawList* const draw = ImGui::GetWindowDrawList();
     const double most = 1.0 + 3.0 * static_cast<double>(d.width);
     const auto point = [&](double distance) {
@@ -72,23 +71,23 @@ void form(const Theme& theme, DetailState& d) {
     ImGui::PopID();
     d.editing = false;
     bool changed = d.shape != before;
-    changed |= number(theme, "Falls off over", "##width", d.width, d);
-    changed |= number(theme, "Error far away", "##far", d.error_far, d);
+    changed |= number(theme, "Falloff width", "##width", d.width, d);
+    changed |= number(theme, "Far error", "##far", d.error_far, d);
     d.changed = d.changed || changed;
     curve(theme, d);
 }
 
 void detail_rows(const Theme& theme, const DetailState& d) {
-    row(theme, "Full detail", length_text(d.radius_m), "about the tool");
+    row(theme, "Full detail", length_text(d.radius_m), "around the tool");
     row(theme, "Active", grouped(d.triangles), format("triangles, %s vertices", grouped(d.vertices).c_str()));
-    row(theme, "Beyond it", "≤ " + length_text(d.deviation_m), "off the full mesh");
+    row(theme, "Elsewhere", "≤ " + length_text(d.deviation_m), "from the full mesh");
     if (d.felt) {
-        row(theme, "A turn", duration_text(d.turn_s),
+        row(theme, "Update", duration_text(d.turn_s),
             d.turn_predicted_s > 0.0 ? "of 4 ms, " + duration_text(d.turn_predicted_s) + " to build"
                                      : std::string("of 4 ms"));
         text_small(theme, d.full ? colour::kGood : colour::kWatch,
                    d.full ? "Full mesh in use (no refinement error)."
-                          : "Not refined here yet: the full mesh is searched by its tree.");
+                          : "Not refined here yet; full mesh in use (tree search).");
     } else {
         text_small(theme, colour::kDim,
                    "Display only: the controller uses the full mesh (--mode chr refines it).");

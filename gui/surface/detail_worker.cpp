@@ -10,7 +10,7 @@
 namespace tact {
 namespace {
 
-constexpr std::chrono::milliseconds kEach{25};  // more often than there are pictures
+constexpr std::chrono::milliseconds kEach{25};  // between updates
 
 }  // namespace
 
@@ -47,7 +47,7 @@ std::string DetailWorker::error() {
 }
 
 void DetailWorker::work() {
-    (void)setpriority(PRIO_PROCESS, static_cast<id_t>(gettid()), 10);  // of this thread, on Linux
+    (void)setpriority(PRIO_PROCESS, static_cast<id_t>(gettid()), 10);  // this thread, on Linux
     try {
         std::unique_ptr<DetailCut> cut;
         std::unique_lock lock(mutex_);
@@ -60,7 +60,7 @@ void DetailWorker::work() {
             if (!cut) cut = std::make_unique<DetailCut>(*content_);
             DetailMesh made = cut->step(request);
             lock.lock();
-            fresh_ = fresh_ || !made.settled;  // on with it
+            fresh_ = fresh_ || !made.settled;  // continue refining
             news_ = std::move(made);
             changed_.wait_for(lock, kEach, [this] { return stop_; });
         }

@@ -1,8 +1,8 @@
-// Keeps a DetailCut beside the frame loop.
+// Updates a DetailCut in the background.
 //
-// Thread   request() and take() on the frame thread, which never waits; the work on one of its own, at low priority,
-//          that sleeps while nothing is requested for. The destructor waits for the step under way.
-// Fails by error(): the forest cannot be used; nothing comes then.
+// Thread   request() and take() on the frame thread, which never waits; the work on its own thread, at low priority,
+//          which sleeps while nothing is requested. The destructor waits for the current step.
+// Fails by error(): the forest cannot be used; no mesh follows.
 #pragma once
 
 #include <condition_variable>
@@ -23,9 +23,9 @@ public:
     DetailWorker(const DetailWorker&) = delete;
     DetailWorker& operator=(const DetailWorker&) = delete;
 
-    // The newest counts; none: rest.
+    // The newest request counts; none: pause.
     void request(const std::optional<DetailRequest>& request);
-    // What has come since the last call.
+    // Returns a mesh made since the last call, if any.
     [[nodiscard]] std::optional<DetailMesh> take();
     [[nodiscard]] std::string error();
 

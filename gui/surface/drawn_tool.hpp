@@ -1,6 +1,6 @@
-// The tool that touches a surface, as a solid body: smooth where its facets are within some 35 degrees.
+// Solid mesh of the tool that touches a surface, shaded smoothly between facets within about 35 degrees.
 //
-// Frame   tool, ångström. Pure; SurfaceLayer draws it where the proxy is.
+// Frame   tool, ångström. Pure; SurfaceLayer draws it at the proxy.
 #pragma once
 
 #include "gui/render/tube.hpp"

@@ -1,4 +1,4 @@
-// What a surface scene has beside its mesh: the tool that touches it, and the surface with its forest.
+// Content of a surface scene besides its mesh: the tool, and the surface with its forest.
 #pragma once
 
 #include <memory>
@@ -10,7 +10,7 @@
 
 namespace tact {
 
-// A surface to touch with its forest, as mapped.
+// A surface with its refinement forest, memory-mapped.
 struct SurfaceDetail {
     SceneFile file;
     SurfaceMesh surface;

@@ -28,7 +28,7 @@ void SurfaceLayer::draw_structures(const LayerPass& pass) {
     tool_.draw();
 }
 
-// Faces, and their edges upon them.
+// Faces with their edges on top.
 void SurfaceLayer::draw_surface(const LayerPass& pass) {
     glEnable(GL_POLYGON_OFFSET_FILL);
     glPolygonOffset(1.0F, 1.0F);

@@ -1,5 +1,4 @@
-// What is drawn of a surface that is touched beside its mesh: the tool, the detail as colour, and what holds
-// the tool off.
+// Draws a surface scene besides its mesh: the tool, the detail as colour, and the contact marks.
 //
 // Thread   frame thread, context current.
 #pragma once
@@ -16,10 +15,10 @@ namespace tact {
 
 class SurfaceLayer : public SceneLayer {
 public:
-    // As it is to be drawn now.
+    // Content of the next frame.
     struct Frame {
-        bool detail = false;               // what show_detail() was given, in place of the surface
-        std::optional<Pose> T_model_tool;  // of a tool that is a mesh
+        bool detail = false;               // draw the mesh of show_detail() instead of the surface
+        std::optional<Pose> T_model_tool;  // of a mesh tool
         std::optional<DrawnTouch> touch;
     };
 

@@ -9,7 +9,7 @@
 namespace tact {
 namespace {
 
-// The next of 1, 2, 5 times a power of ten.
+// Rounds up to 1, 2 or 5 times a power of ten.
 double round_up(double least) {
     const double power = std::pow(10.0, std::floor(std::log10(least) + 1e-9));
     for (const double times : {1.0, 2.0, 5.0})
@@ -44,7 +44,7 @@ std::string SurfacePanels::drawn_text(const DashboardState& state) const {
     return format("%s vertices", grouped(state.load.vertices_drawn).c_str());
 }
 
-// Short edges above.
+// Short edges at the top.
 void SurfacePanels::draw_over_view(const OverlayPen& pen, const DashboardState& state,
                                    const PixelRect& v) const {
     const DetailState& d = detail;
@@ -57,7 +57,7 @@ void SurfacePanels::draw_over_view(const OverlayPen& pen, const DashboardState& 
         const float top = y0 + h * static_cast<float>(i) / steps;
         pen.draw->AddRectFilled({x, top}, {x + w, top + h / steps + 1.0F}, d.colours[i]);
     }
-    // Round lengths between the ends; from one to the next at least as much as a line of text is high.
+    // Round lengths between the ends, at least one text line apart.
     const double octaves = std::log2(d.coarsest_m / d.finest_m);
     float last = y0 - h;
     double length = round_up(d.finest_m);

@@ -1,4 +1,4 @@
-// The panels of a surface scene, which has neither a map nor bodies.
+// Panels of a surface scene, which has neither a map nor bodies.
 //
 // Thread   frame thread, inside an ImGui frame.
 #pragma once
@@ -18,7 +18,7 @@ public:
     void draw_in_scene_card(const Theme& theme, DashboardState& state) override;
     void add_legend(const DashboardState& state, std::vector<LegendLine>& lines) const override;
     [[nodiscard]] std::string drawn_text(const DashboardState& state) const override;
-    // What the colours of the detail stand for.
+    // Colour scale of the detail.
     void draw_over_view(const OverlayPen& pen, const DashboardState& state,
                         const PixelRect& view) const override;
 };

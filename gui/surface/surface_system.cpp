@@ -11,7 +11,7 @@ void SurfaceSystem::use(const std::shared_ptr<const SceneContent>& content, std:
     view_ = &view;
     layer_ = std::make_unique<SurfaceLayer>(content);
     view.set_layer(layer_.get());
-    // What is touched is hard: only a contour lets one see what is inside.
+    // A touched surface is hard; only a contour needs to show its inside.
     context.state.toggles.style = static_cast<int>(SurfaceStyle::solid);
     detail_.use(content, panels_.detail);
 }

@@ -1,4 +1,4 @@
-// A surface that is touched, in the window: the tool, what holds it off, and the detail about it.
+// A touched surface in the window: the tool, its contacts, and the detail around it.
 //
 // Thread   frame thread
 #pragma once

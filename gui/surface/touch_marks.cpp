@@ -11,7 +11,7 @@
 namespace tact {
 namespace {
 
-constexpr float kProbeLeast = 0.014F, kSpring = 0.0035F, kArrow = 0.009F;  // of the scene's size
+constexpr float kProbeLeast = 0.014F, kSpring = 0.0035F, kArrow = 0.009F;  // in sizes of the scene
 constexpr int kRings = 9;
 
 void add_ball(TubeMesh& mesh, const Eigen::Vector3f& centre_a, float radius_a) {

@@ -1,9 +1,9 @@
-// What a hand does to a surface: where the tool would be without it, and what holds it off.
+// Contact marks of a hand on a surface: the unconstrained tool position and the contact forces.
 //
-// Probe    a ball where the hand holds the tool, as large as the tool or as can just be seen, and a thin line from
-//          there to the proxy: the spring that is felt
-// Normals  an arrow for each plane that holds the proxy, from where it is touched, as long as it pushes
-// Frame    scene, ångström. Pure functions; SurfaceLayer draws what they give, over the surface.
+// Probe    a ball where the hand holds the tool, as large as the tool or just visible, and a thin line from there to
+//          the proxy: the spring of the virtual coupling
+// Normals  an arrow for each plane that constrains the proxy, from the contact point, as long as its force
+// Frame    scene, ångström. Pure functions; SurfaceLayer draws the meshes over the surface.
 #pragma once
 
 #include <array>
@@ -24,7 +24,7 @@ struct DrawnTouch {
 inline constexpr Rgb8 kProbeColour{255, 171, 64};
 inline constexpr Rgb8 kNormalColour{120, 220, 255};
 
-// centre_model_m: where the scene's origin is; size_a, arrow_a_per_n: as of second_hand.hpp.
+// centre_model_m: origin of the scene; size_a, arrow_a_per_n: as in gui/render/drawn_hand.hpp.
 [[nodiscard]] TubeMesh build_touch_marks(const DrawnTouch& touch, const Vec3& centre_model_m, float size_a,
                                          float arrow_a_per_n);
 

@@ -1,4 +1,4 @@
-// What is drawn of a hand on a surface, from what the controller says of it; nothing where it says nothing that can be used.
+// What to draw of a hand on a surface, from the controller's records; empty without usable records.
 //
 // Thread   frame thread
 #pragma once
@@ -12,11 +12,11 @@
 
 namespace tact {
 
-// A pen whose tip is the proxy: where the tool would be, were the surface hard.
+// A pen with its tip at the proxy, where the tool would be on a hard surface.
 std::optional<DrawnHand> touching_pen(const Controller& controller, const SceneContent& content);
-// A tool that is a mesh is drawn as it is, where the proxy is.
+// Pose of a mesh tool, at the proxy.
 std::optional<Pose> touching_tool(const Controller& controller, const SceneContent& content);
-// Where the tool would be without the surface, and what holds it off.
+// The unconstrained tool position and the contact forces.
 std::optional<DrawnTouch> touch_marks(const Controller& controller);
 
 }  // namespace tact

@@ -9,7 +9,7 @@ constexpr KeyStroke typed_key(char c) { return {KeyCode::character, c, false, fa
 constexpr KeyStroke control_key(char c) { return {KeyCode::character, c, true, false}; }
 constexpr KeyStroke named_key(KeyCode code) { return {code, '\0', false, false}; }
 
-// Force goes on by two keys together and off by the widest one.
+// Arming takes two keys together; disarming takes the widest key.
 constexpr auto kKeyRows = [] {
     using enum KeyWhen;
     return std::to_array<KeyRow>({
@@ -27,7 +27,7 @@ constexpr auto kKeyRows = [] {
         {typed_key('x'), 0, stereo, KeyAction::swap_eyes, "X", "stereo: swap the eyes"},
         {typed_key('+'), 0, bodies, KeyAction::raise_contour, "+", "contour level up"},
         {typed_key('-'), 0, bodies, KeyAction::lower_contour, "-", "contour level down"},
-        {typed_key('1'), '9', bodies, KeyAction::take_body, "1 ... 9", "hold that body"},
+        {typed_key('1'), '9', bodies, KeyAction::take_body, "1 ... 9", "hold the body of this number"},
         {typed_key('0'), 0, bodies, KeyAction::let_go, "0", "release all bodies"},
         {control_key('z'), 0, bodies, KeyAction::undo, "Ctrl+Z", "undo the last gesture"},
         {control_key('y'), 0, bodies, KeyAction::redo, "Ctrl+Y", "redo"},
@@ -39,11 +39,11 @@ constexpr auto kKeyRows = [] {
          "redo the last gesture"},
         {typed_key('r'), 0, bodies, KeyAction::refine, "R", "refine the body in the hand"},
         {named_key(KeyCode::enter), 0, bodies, KeyAction::accept, "Enter",
-         "accept the places; undo stops here"},
-        {named_key(KeyCode::escape), 0, bodies, KeyAction::revert, "Esc", "back to the last accepted places"},
+         "accept the current poses (clears undo)"},
+        {named_key(KeyCode::escape), 0, bodies, KeyAction::revert, "Esc", "return to the accepted poses"},
         {typed_key('k'), 0, always, KeyAction::calibrate, "K", "calibrate the stereo screen"},
-        {typed_key('t'), 0, calibrating, KeyAction::measure, "T", "measure the point, or stop"},
-        {typed_key('n'), 0, calibrating, KeyAction::skip_point, "N", "the next point"},
+        {typed_key('t'), 0, calibrating, KeyAction::measure, "T", "measure the point, or cancel"},
+        {typed_key('n'), 0, calibrating, KeyAction::skip_point, "N", "skip to the next point"},
         {typed_key('b'), 0, calibrating, KeyAction::redo_point, "B", "repeat the last point"},
         {named_key(KeyCode::enter), 0, calibrating, KeyAction::next_step, "Enter", "next step"},
         {control_key('s'), 0, calibrating, KeyAction::save_calibration, "Ctrl+S", "save the calibration"},
@@ -51,7 +51,7 @@ constexpr auto kKeyRows = [] {
         {named_key(KeyCode::escape), 0, calibrating, KeyAction::leave_calibration, "Esc",
          "leave the calibration"},
         {typed_key('o'), 0, always, KeyAction::open_browser, "O", "open another scene"},
-        {typed_key('p'), 0, always, KeyAction::picture, "P", "save a picture"},
+        {typed_key('p'), 0, always, KeyAction::picture, "P", "save a screenshot"},
         {typed_key('m'), 0, controller, KeyAction::mark, "M", "mark this moment for the flight recorder"},
         {typed_key('?'), 0, always, KeyAction::help, "?", "this table"},
     });
@@ -110,19 +110,19 @@ KeyFound find_key(const KeyStroke& stroke, const KeySituation& now) noexcept {
 bool collide(const KeyRow& a, const KeyRow& b) noexcept {
     using enum KeyWhen;
     if (a.action == KeyAction::none || b.action == KeyAction::none) return false;
-    if (precedence(a.when) != precedence(b.when)) return false;  // one of them comes first
+    if (precedence(a.when) != precedence(b.when)) return false;  // one of them takes precedence
     const bool of_scenes = (a.when == bodies && b.when == bone) || (a.when == bone && b.when == bodies);
     if (of_scenes) return false;  // no scene is both
     const auto of_picture = [](KeyWhen when) { return when == bodies || when == bone || when == stereo; };
     if ((a.when == calibrating && of_picture(b.when)) || (b.when == calibrating && of_picture(a.when)))
-        return false;  // it takes the picture's place
+        return false;  // calibration replaces the scene display
     const KeyStroke &p = a.stroke, &q = b.stroke;
     return p.code == q.code && p.control == q.control && p.shift == q.shift &&
            p.character <= last_character(b) && q.character <= last_character(a);
 }
 
 int sheet_columns(int rows, int rows_high, int columns_wide) noexcept {
-    constexpr int kLong = 16;  // seen at a glance; a longer one hides the scene over its whole height
+    constexpr int kLong = 16;  // readable at a glance; a longer column hides the scene over its whole height
     return columns_wide >= 2 && rows > std::min(rows_high, kLong) ? 2 : 1;
 }
 

@@ -1,8 +1,8 @@
-// Every shortcut: one table that the window's input is looked up in and that `?` shows. No key is handled elsewhere.
+// Table of all keyboard shortcuts: the window looks keys up in it, and `?` shows it. No key is handled elsewhere.
 //
-// Printed   letters are those printed on the keyboard, wherever they lie; signs and digits are what was typed.
-// Modifiers a row is meant with exactly its own, so that Ctrl+Z is never taken for Z.
-// Thread    any; the table is constant.
+// Letters   as printed on the keyboard, in any layout; signs and digits as typed
+// Modifiers must match a row exactly, so Ctrl+Z is never taken for Z
+// Thread    any; the table is constant
 #pragma once
 
 #include <array>
@@ -13,7 +13,7 @@ namespace tact {
 
 enum class KeyCode : std::uint8_t { none, character, home, enter, escape, space };
 
-// What was pressed. `character`: lower case or a sign, where the code is so.
+// A pressed key. `character`: a lower-case letter or a sign, if `code` is `character`.
 struct KeyStroke {
     KeyCode code = KeyCode::none;
     char character = '\0';
@@ -55,39 +55,39 @@ enum class KeyAction : std::uint8_t {
     count
 };
 
-// When a row applies. The sheet comes first, then the list of scenes: what they take reaches nothing below them.
+// Condition of a row. The sheet takes precedence, then the list of scenes; a key that they use goes no further.
 enum class KeyWhen : std::uint8_t { always, sheet, browser, bodies, bone, stereo, controller, calibrating };
 
 struct KeySituation {
-    bool sheet = false;        // `?` is shown
+    bool sheet = false;        // the key table (`?`) is shown
     bool browser = false;      // the list of scenes is shown
     bool bodies = false;       // the scene has a map and bodies to place
-    bool bone = false;         // the scene is drilled
-    bool stereo = false;       // the picture is for two eyes
+    bool bone = false;         // a drilling scene
+    bool stereo = false;       // the display is stereoscopic
     bool controller = false;   // attached
-    bool calibrating = false;  // then none of scene and stereo
+    bool calibrating = false;  // bodies, bone and stereo then do not apply
 };
 
 struct KeyRow {
     KeyStroke stroke;
-    char last;  // of a range of characters from the stroke's own on; 0: that one alone
+    char last;  // last character of a range that begins with the stroke's; 0: that character alone
     KeyWhen when;
     KeyAction action;
-    const char* keys;  // as a person reads it
+    const char* keys;  // as shown to the user
     const char* what;
 };
 
 struct KeyFound {
-    const KeyRow* row = nullptr;  // null: it means nothing here
-    int place = 0;                // in the row's range, from 0
+    const KeyRow* row = nullptr;  // null: the key has no function here
+    int place = 0;                // index in the row's range, from 0
 };
 
 [[nodiscard]] std::span<const KeyRow> key_rows() noexcept;
 [[nodiscard]] bool applies(KeyWhen when, const KeySituation& now) noexcept;
 [[nodiscard]] KeyFound find_key(const KeyStroke& stroke, const KeySituation& now) noexcept;
-// Whether both may apply at once and one stroke would mean both.
+// True if both rows can apply at once and one stroke would match both.
 [[nodiscard]] bool collide(const KeyRow& a, const KeyRow& b) noexcept;
-// Columns of the sheet, 1 or 2: two where both have room side by side and one would be long to read or too high.
+// Columns of the sheet, 1 or 2: two if they fit side by side and one would be too long or too high.
 [[nodiscard]] int sheet_columns(int rows, int rows_high, int columns_wide) noexcept;
 
 }  // namespace tact

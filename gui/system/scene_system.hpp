@@ -1,10 +1,10 @@
-// One system of scenes (docking, surface, drilling) as the window runs it: what it draws, shows, does with
-// keys and reports.
+// Interface between the window and a system of scenes (docking, surface, drilling, field): rendering, panels, keys
+// and reports.
 //
-// The window has one of each for as long as it runs (gui/window/systems.hpp); the one whose scene is shown
-// gets all calls but attach(), detach() and finish(), which all get.
+// The window owns one of each for its lifetime (gui/window/systems.hpp). The system of the current scene receives
+// all calls; attach(), detach() and finish() go to every system.
 // Frame    follow(), perform(), adapt(), move(), prepare(), the view is drawn, drawn(), ended(), add_to()
-// Thread   frame thread, OpenGL context current, but for SceneStart, which is made on the loader thread
+// Thread   frame thread with its OpenGL context current; SceneStart is constructed on the loader thread
 #pragma once
 
 #include <cstddef>
@@ -22,7 +22,7 @@
 
 namespace tact {
 
-// What a system makes of a scene before it is shown, as it takes longer than a frame. Each derives its own.
+// Data that a system prepares before its scene is shown, because this takes longer than a frame.
 class SceneStart {
 public:
     SceneStart() = default;
@@ -31,13 +31,13 @@ public:
     SceneStart& operator=(const SceneStart&) = delete;
 };
 
-// What of the window a system uses and changes.
+// The parts of the window that a system uses and changes.
 struct SystemContext {
     Controller& controller;
     CommandSender& commands;
     DashboardState& state;
     Camera& camera;
-    bool software = false;  // the processor draws
+    bool software = false;  // the CPU renders
 };
 
 class SceneSystem {
@@ -49,44 +49,44 @@ public:
 
     [[nodiscard]] virtual SystemPanels& panels() = 0;
 
-    // A scene of this system is shown from now on, in this view, which stays until close(). Throws
-    // StartupError where it cannot be drawn; it is in use all the same.
+    // Shows a scene of this system in this view, which stays valid until close(). Throws StartupError if the scene
+    // cannot be drawn; the scene is in use all the same.
     virtual void use(const std::shared_ptr<const SceneContent>& content, std::unique_ptr<SceneStart> start,
                      SceneView& view, const SystemContext& context) = 0;
-    // Another scene is shown.
+    // Another scene replaces this one.
     virtual void close() = 0;
     virtual void describe(const SceneContent& content, SceneState& scene) const = 0;
-    // What the home view shows about the centre, ångström; 0: all of the scene.
+    // Radius about the centre that the home view shows, ångström; 0: the whole scene.
     [[nodiscard]] virtual float home_reach_a() const { return 0.0F; }
 
-    // A controller came, or went.
+    // A controller attached or detached.
     virtual void attach(const SystemContext& context) { static_cast<void>(context); }
     virtual void detach() {}
-    // Records of the controller are new.
+    // The controller published new records.
     virtual void read(const Controller::Fresh& fresh, const SystemContext& context) {
         static_cast<void>(fresh), static_cast<void>(context);
     }
 
     virtual void follow(const SystemContext& context) { static_cast<void>(context); }
-    // False: the key means nothing to it. place: in the key's row (KeyFound).
+    // Returns false if the key has no function here. place: index in the key's row (KeyFound).
     virtual bool perform(KeyAction what, std::size_t place, const SystemContext& context) {
         static_cast<void>(what), static_cast<void>(place), static_cast<void>(context);
         return false;
     }
-    // Alt and the wheel.
+    // Alt + wheel.
     virtual void turn_wheel(double steps) { static_cast<void>(steps); }
     virtual void adapt() {}
     virtual void move(double frame_s, const Vec3& eye_model_m, const SystemContext& context) {
         static_cast<void>(frame_s), static_cast<void>(eye_model_m), static_cast<void>(context);
     }
-    // Whether the window draws the second of two hands as a pen.
+    // True if the window draws the second hand as a pen.
     [[nodiscard]] virtual bool second_hand_is_pen() const { return true; }
-    // sharp: this frame is kept, so nothing is left out for time.
+    // sharp: this frame is saved, so nothing is omitted to save time.
     virtual void prepare(std::int64_t now_ns, bool sharp, ViewFrame& frame, const SystemContext& context) = 0;
     virtual void drawn(const SystemContext& context) { static_cast<void>(context); }
     virtual void ended(double work_s) { static_cast<void>(work_s); }
     virtual void add_to(LoadTopic& load) const { static_cast<void>(load); }
-    // The window closes. Throws StartupError where a report cannot be written.
+    // The window closes. Throws StartupError if a report cannot be written.
     virtual void finish(const SystemContext& context) { static_cast<void>(context); }
 };
 

@@ -1,5 +1,4 @@
-// What one system shows among the panels: a card of its own, its part of the scene's card, and what it adds
-// over the 3D view.
+// Panels of one system: its own card, its part of the scene card, and its overlay on the 3D view.
 //
 // Thread   frame thread, inside an ImGui frame.
 #pragma once
@@ -15,7 +14,7 @@ namespace tact {
 
 class SystemPanels {
 public:
-    // At scale 1, and at most of the column's height; 0: there is no card.
+    // Height at scale 1 and greatest fraction of the column height; 0: no card.
     struct CardSize {
         float height = 0.0F, share_most = 0.0F;
     };
@@ -29,14 +28,14 @@ public:
     SystemPanels(const SystemPanels&) = delete;
     SystemPanels& operator=(const SystemPanels&) = delete;
 
-    // Between the controller's card and the scene's.
+    // Card between those of the controller and of the scene.
     [[nodiscard]] virtual CardSize card_size() const { return {}; }
     virtual void draw_card(const Theme& theme, const PixelRect& card) const {
         static_cast<void>(theme), static_cast<void>(card);
     }
-    // Inside the scene's card.
+    // Part inside the scene card.
     virtual void draw_in_scene_card(const Theme& theme, DashboardState& state) = 0;
-    // Over the 3D view: below the force's line; beside the frame rate; anywhere.
+    // Overlay on the 3D view: lines below the force, text beside the frame rate, free drawing.
     virtual void add_legend(const DashboardState& state, std::vector<LegendLine>& lines) const {
         static_cast<void>(state), static_cast<void>(lines);
     }

@@ -59,9 +59,9 @@ GuiApp::GuiApp(const GuiOptions& options)
     if (!options.scene.empty())
         start_loading(options.scene);
     else
-        state_.scene.status = "No scene yet: it comes from the controller, or give one as an argument.";
+        state_.scene.status = "No scene yet: start a controller, or give a scene as an argument.";
     if (options.calibrate || options.test_picture) open_calibration(options.test_picture);
-    spdlog::info("drawing with {}{}", window_.renderer(), options.hidden ? ", hidden" : "");
+    spdlog::info("renderer: {}{}", window_.renderer(), options.hidden ? ", hidden" : "");
 }
 
 SystemContext GuiApp::context() { return {controller_, commands_, state_, camera_, window_.software()}; }
@@ -70,7 +70,7 @@ int GuiApp::run() {
     const Instant begun = Monotonic::now();
     for (bool last = false; !last;) {
         const Instant now = Monotonic::now();
-        // A picture is asked for to see the scene, so the time is not over before it is there.
+        // A screenshot must show the scene, so the run does not end before the scene is loaded.
         const bool picture_waits = pictures_.wanted_at_end() && loader_.running();
         last = stop_signal != 0 || window_.close_wanted() || (stage_ && stage_->close_wanted()) ||
                (options_.seconds > 0.0 && to_s(now - begun) >= options_.seconds && !picture_waits);
@@ -138,7 +138,7 @@ void GuiApp::frame(Instant now, bool take_picture) {
 void GuiApp::follow_controller(std::int64_t now_ns) {
     const Controller::News news = controller_.poll();
     if (news.left) {
-        spdlog::warn("the controller of session {} is gone; waiting for the next", options_.session);
+        spdlog::warn("the controller of session {} ended; waiting for the next", options_.session);
         commands_.forget();
         for (const auto& system : systems_) system->detach();
     }
@@ -177,7 +177,7 @@ void GuiApp::draw_panels() {
                              request.body,
                              {Vec3(request.second, 0.0, 0.0), Quat::Identity()}},
                             state_.now_ns))
-            spdlog::warn("a command with a text too long was not sent");
+            spdlog::warn("a command was not sent: its text is too long");
     state_.requests.clear();
 }
 
@@ -214,7 +214,7 @@ void GuiApp::publish_frames() {
     region_->frames.publish(topic);
 }
 
-// The longest of the display's period, that of the highest rate asked for, and that of the governor's goal.
+// The longest of the display's period, that of the maximum frame rate, and that of the governor's goal.
 double GuiApp::due_s() const {
     double due = window_.paced_by_display() ? window_.display_period_s() : 0.0;
     if (fps_max_ > 0.0) due = std::max(due, 1.0 / fps_max_);

@@ -1,11 +1,11 @@
-// The visual process: one frame after the other until it is closed, its time is over or a signal comes.
+// The visual process: draws frames until it is closed, its time is over, or a signal arrives.
 //
-// A frame   adapt    read the controller's topics, go towards the level of "gui.mesh"
-//           upload   what of the surface changed
+// A frame   adapt    read the controller's topics, approach the level of "gui.mesh"
+//           upload   changes of the surface
 //           scene    the 3D view
 //           panels   the dashboard
-//           swap     show; then the load is published, which is also the heartbeat
-// Thread    frame thread; scenes are read by a loader thread of its own.
+//           swap     show; then publish the load, which is also the heartbeat
+// Thread    frame thread; a loader thread reads scenes.
 #pragma once
 
 #include "gui/window/options.hpp"

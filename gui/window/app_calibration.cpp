@@ -13,7 +13,7 @@ constexpr float kGround[3] = {0.024F, 0.028F, 0.036F};
 }  // namespace
 
 void GuiApp::make_stage(const StageSettings& settings) {
-    // First the old one's windows: two of them would have one monitor.
+    // Closes the old windows first: two windows cannot fill one monitor.
     stage_.reset();
     stage_ = std::make_unique<Stage>(settings, window_.handle(), options_.hidden, window_.paced_by_display());
 }
@@ -23,7 +23,7 @@ void GuiApp::open_calibration(bool check_alone) {
     if (stage_) now = stage_->settings();
     calibration_.begin(now, check_alone);
     if (stage_) return;
-    // Marks are to be seen on any monitor, and both eyes as well.
+    // Anaglyph shows the marks on any monitor, to both eyes.
     calibration_.set_mode(StereoMode::anaglyph);
     try {
         make_stage(calibration_.draft());
@@ -77,12 +77,12 @@ void GuiApp::draw_calibration(const ViewFrame& view, std::int64_t now_ns) {
     const double reach_mm = calibration_.reach_mm(glass);
     for (std::size_t eye = 0; eye < 2; ++eye) {
         stage_->begin(eye, Eigen::Vector3f(kGround[0], kGround[1], kGround[2]));
-        // Swapped, a picture is meant for the other eye, and its word says so.
+        // With swapped eyes a picture is for the other eye, and its word shows that eye.
         const std::size_t meant = stage_->settings().eyes.swapped ? 1 - eye : eye;
         calibration_painter_->draw(stage_->eye_on_glass(eye, reach_mm), calibration_.picture(glass, meant));
     }
     stage_->show(window_.frame_buffer());
-    state_.a_per_px = 0.0;  // each eye has a scale of its own
+    state_.a_per_px = 0.0;  // each eye has its own scale
     state_.stage = std::string("stereo: ") + stage_text(*stage_);
     state_.head_lost = stage_->head().sight() == HeadSight::lost;
 }

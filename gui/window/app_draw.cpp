@@ -84,7 +84,7 @@ void GuiApp::draw_stage(ViewFrame view, std::int64_t now_ns) {
         const PassClock::Scope scope(&passes_, Pass::stereo);
         stage_->show(window_.frame_buffer());
     }
-    state_.a_per_px = 0.0;  // each eye has a scale of its own
+    state_.a_per_px = 0.0;  // each eye has its own scale
     state_.stage = std::string("stereo: ") + stage_text(*stage_);
     state_.head_lost = stage_->head().sight() == HeadSight::lost;
 }

@@ -48,10 +48,10 @@ void GuiApp::perform(KeyAction what, std::size_t place) {
             return;
         case KeyAction::swap_eyes:
             return stage_->swap_eyes();
-        case KeyAction::arm:  // as the button: only from where it can be followed
+        case KeyAction::arm:  // as the button: only from a state that allows it
             if (run == RunState::ready) command(CommandKind::arm);
             return;
-        case KeyAction::disarm:  // whatever is known: no force is always safe, and the controller answers
+        case KeyAction::disarm:  // in any state: disarming is always safe, and the controller answers
             return command(CommandKind::disarm);
         case KeyAction::picture:
             picture_wanted_ = true;
@@ -87,7 +87,7 @@ void GuiApp::perform(KeyAction what, std::size_t place) {
             return calibration_.perform(CalibrationAction::save);
         case KeyAction::swap_calibrated_eyes:
             return calibration_.swap_eyes();
-        default:  // of the system, and it is another one
+        default:  // belongs to another system
             return;
     }
 }

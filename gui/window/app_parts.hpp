@@ -1,9 +1,9 @@
-// The visual process in one object; app.hpp says what a frame is.
+// The visual process in one object; app.hpp describes a frame.
 //
-// app.cpp      the frame, the controller, panels, the load that is reported
-// app_scene    what is shown: the scene, its levels, its bodies
-// app_draw     the three-dimensional view, for one eye or two
-// app_calibration  the screen of the stage while it is calibrated
+// app.cpp      the frame, the controller, panels, the published load
+// app_scene    the scene shown, its levels, its bodies
+// app_draw     the 3D view, for one eye or two
+// app_calibration  the screen of the stage during its calibration
 // app_input    mouse and keys
 #pragma once
 
@@ -74,32 +74,32 @@ private:
     PanelState state_;
     const std::int64_t first_ns_ = to_ns(Monotonic::now());
     double fps_max_ = 60.0;
-    // OpenGL objects go before the window: members are destroyed from below.
+    // OpenGL objects are destroyed before the window: members are destroyed in reverse order.
     PassClock passes_{PassClock::possible(window_.software())};
     Instant frames_published_{};
-    std::unique_ptr<Stage> stage_;  // of a stereo picture
+    std::unique_ptr<Stage> stage_;  // of the stereo display
     std::unique_ptr<PicturePainter> calibration_painter_;
     CalibrationController calibration_{options_.stage_file.empty() ? "stage.toml" : options_.stage_file};
     std::unique_ptr<Programs> programs_;
     std::shared_ptr<const SceneContent> content_;
     std::unique_ptr<SceneView> view_;
-    // One for each of system_rows(); they keep what they drew in the view, so they go before it.
+    // One for each of system_rows(); they hold data in the view, so they are destroyed before it.
     std::vector<std::unique_ptr<SceneSystem>> systems_;
-    std::size_t shown_ = 0;        // of system_rows()
-    double vertices_share_ = 1.0;  // of what all surfaces have; stays as the controller last told
+    std::size_t shown_ = 0;        // index in system_rows()
+    double vertices_share_ = 1.0;  // of the vertices of all surfaces; keeps the controller's newest value
     BrowserController browser_{options_.scene_switch};
-    bool as_left_wanted_ = !options_.window_state_file.empty();  // for the first scene that is shown
+    bool as_left_wanted_ = !options_.window_state_file.empty();  // for the first scene shown
     SecondHand second_hand_;
     RingCursor traces_place_;  // in the trace ring
     TraceExport trace_export_;
     ViewOptions view_options_;
     Camera camera_;
     SceneLoader loader_;
-    std::string next_scene_;  // asked for while another was being read
+    std::string next_scene_;  // requested while another one was being read
     PictureFiles pictures_{options_.screenshot, options_.every_s, options_.stage_screenshot};
     PictureFiles::View drawn_view_;
     bool picture_wanted_ = false;
-    bool sharp_ = false;  // this frame is kept: all its rays
+    bool sharp_ = false;  // this frame is saved: with all its rays
 };
 
 }  // namespace tact

@@ -12,7 +12,7 @@
 namespace tact {
 namespace {
 
-// A volume's ball is wider than what is in it, and one works on a part of that.
+// A volume's ball is wider than its content, and the user works on a part of that.
 constexpr float kReachShown = 0.8F;
 
 }  // namespace
@@ -83,7 +83,7 @@ void GuiApp::home_view() {
     camera_.zoom(static_cast<float>(std::log(options_.zoom) / std::log(1.0 / 0.9)));
 }
 
-// The scene is drawn and seen as when the window was closed, if it is the same one.
+// Restores style and view of the last run, if the scene is the same.
 void GuiApp::begin_as_left() {
     const WindowState& window_state = options_.window_state;
     if (!std::exchange(as_left_wanted_, false) || window_state.scene != content_->checksum ||
@@ -122,7 +122,7 @@ void GuiApp::keep_window_state() const {
 void GuiApp::apply_level() {
     if (!view_) return;
     const PathLevel* const path = controller_.level(kMeshPath);
-    // Without a controller the surface stays as it was last told; at first that is all of it.
+    // Without a controller the surface keeps its last level; initially full detail.
     const std::uint32_t most = view_->vertices_max();
     if (path != nullptr && most > 0)
         vertices_share_ =

@@ -44,7 +44,7 @@ void BrowserController::used(const std::filesystem::path& scene, BrowserState& s
                 scenes = read_recents(file);
             } catch (const StartupError& e) {
                 spdlog::warn("{}", e.what());
-                spdlog::warn("the list of scenes begins anew; the old file is kept as {}",
+                spdlog::warn("starting a new list of scenes; the old file is kept as {}",
                              set_aside(file).string());
             }
             write_whole_file(file, recents_text(with_recent(scenes, {path.string(), unix_now_s()})));
@@ -60,8 +60,7 @@ void BrowserController::read(const BrowserState& state) {
         Read out;
         const std::int64_t now = unix_now_s();
         if (const auto used = state_folder(); used.empty()) {
-            out.recent_trouble =
-                "Scenes that were used are not kept: neither XDG_STATE_HOME nor HOME is set.";
+            out.recent_trouble = "Recent scenes are not saved: neither XDG_STATE_HOME nor HOME is set.";
         } else {
             try {
                 out.recent = recent_rows(read_recents(used / kRecentName), now);
@@ -78,13 +77,13 @@ void BrowserController::open_scene(const std::filesystem::path& scene, BrowserSt
     state.open = true;
     if (scene_switch_.empty())
         return say(state, Grade::watch,
-                   "This window was started alone and cannot end the controller for another scene.\n"
-                   "Close it and start: tact run " +
+                   "This window has no launcher and cannot switch scenes.\n"
+                   "Close it and run: tact run " +
                        scene.string());
     try {
         ask_for_scene(scene_switch_, scene);
         asked_ = true;
-        spdlog::info("asking the launcher for {}", scene.string());
+        spdlog::info("requesting from the launcher: {}", scene.string());
         say(state, Grade::unknown, "Opening " + scene.string() + " ...");
     } catch (const StartupError& e) {
         say(state, Grade::bad, e.what());
@@ -94,7 +93,7 @@ void BrowserController::open_scene(const std::filesystem::path& scene, BrowserSt
 void BrowserController::drop(const std::vector<std::string>& files, BrowserState& state) {
     state.open = true;
     if (import_.running())
-        return say(state, Grade::watch, "An import is under way: cancel it, or drop again when it is done.");
+        return say(state, Grade::watch, "An import is in progress: cancel it, or drop again when it ends.");
     Dropped meant = meaning_of(files);
     if (!meant.scene.empty()) return open_scene(meant.scene, state);
     if (meant.import.empty()) return say(state, Grade::watch, meant.trouble + "\n" + dropped_kinds_text());
@@ -147,17 +146,17 @@ void BrowserController::follow_marks(BrowserState& state) {
     }
 }
 
-// tact-prep prints a line a step, most with the share of the whole that is done.
+// tact-prep prints one line per step, most with the completed fraction of the whole.
 void BrowserController::follow_steps(BrowserState& state) const {
     const std::string output = import_.output();
     state.import_share = share_done(output);
     say(state, Grade::unknown,
         "Importing " + importing_ + ", " +
             std::to_string(static_cast<long>(to_s(Monotonic::now() - import_begun_))) + " s" +
-            (output.empty() ? ": reading it" : ": " + last_line(output)));
+            (output.empty() ? ": reading" : ": " + last_line(output)));
 }
 
-// At the end tact prints the path of the scene.
+// On success tact prints the path of the scene.
 void BrowserController::follow_import(BrowserState& state) {
     if (std::exchange(state.cancel_wanted, false) && import_.running()) {
         cancelled_ = true;
@@ -171,7 +170,7 @@ void BrowserController::follow_import(BrowserState& state) {
     }
     const std::string last = last_line(outcome->output);
     if (cancelled_ && outcome->good())
-        say(state, Grade::unknown, "The import was done before it could be cancelled: " + last);
+        say(state, Grade::unknown, "The import finished before it could be cancelled: " + last);
     else if (cancelled_)
         say(state, Grade::unknown, "The import was cancelled; nothing was written.");
     else if (!outcome->good())
@@ -194,7 +193,7 @@ void BrowserController::follow(BrowserState& state) {
         if (const auto refusal = take_refusal(scene_switch_)) {
             asked_ = false;
             state.open = true;
-            spdlog::warn("another scene was refused: {}", *refusal);
+            spdlog::warn("scene switch refused: {}", *refusal);
             say(state, Grade::bad, *refusal);
         }
     }

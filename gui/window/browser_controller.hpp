@@ -1,7 +1,7 @@
-// The list of scenes and the way to another one: what was used is kept, a folder is read beside the frame loop, and
-// the launcher is asked. Without a launcher there is nobody who could end the controller and start it on another scene.
+// The scene list, and the switch to another scene: remembers used scenes, reads a folder in the background, and
+// sends requests to the launcher. Without a launcher nothing can restart the controller on another scene.
 //
-// Thread  frame thread; disks are waited for on another.
+// Thread  frame thread; disks are accessed on another one.
 #pragma once
 
 #include <filesystem>
@@ -19,15 +19,15 @@ namespace tact {
 
 class BrowserController {
 public:
-    // scene_switch: the launcher's folder; empty: there is none.
+    // scene_switch: the launcher's folder; empty: no launcher.
     explicit BrowserController(std::filesystem::path scene_switch) : scene_switch_(std::move(scene_switch)) {}
-    // A scene is shown: it goes into the list, where a launcher runs it.
+    // A scene is shown: adds it to the list if a launcher runs the window.
     void used(const std::filesystem::path& scene, BrowserState& state);
-    // Once a frame.
+    // Call once a frame.
     void follow(BrowserState& state);
-    // From the list or from elsewhere.
+    // Requests a scene, from the list or from elsewhere.
     void open_scene(const std::filesystem::path& scene, BrowserState& state);
-    // Files that were dropped: a scene is opened, raw data are baked by `tact` into its cache and opened then.
+    // Handles dropped files: opens a scene; has raw data baked by `tact` into its cache, then opens the result.
     void drop(const std::vector<std::string>& files, BrowserState& state);
 
 private:
@@ -46,13 +46,13 @@ private:
     std::filesystem::path scene_switch_;
     std::string current_;
     bool was_open_ = false, asked_ = false;
-    std::vector<std::string> marked_;  // of any folder, at most one more than can be imported at once
+    std::vector<std::string> marked_;  // from any folder, at most one more than an import allows
     ChildJob import_;
-    std::string importing_;  // the file
+    std::string importing_;  // first file of the import
     Instant import_begun_{};
     bool cancelled_ = false;
     std::future<Read> reading_;
-    std::future<std::string> keeping_;  // trouble, or nothing
+    std::future<std::string> keeping_;  // error, or empty
 };
 
 }  // namespace tact

@@ -8,9 +8,9 @@
 namespace tact {
 namespace {
 
-constexpr ImU32 kHovered = IM_COL32(44, 84, 132, 255);  // dim words stay readable on it
+constexpr ImU32 kHovered = IM_COL32(44, 84, 132, 255);  // dim text stays readable on it
 
-// A box to be ticked, left of the row's name.
+// A check box, left of the row's name.
 void tick_box(const Theme& theme, ImVec2 at, bool ticked) {
     ImDrawList* const draw = ImGui::GetWindowDrawList();
     const float side = theme.px(12.0F);
@@ -20,8 +20,8 @@ void tick_box(const Theme& theme, ImVec2 at, bool ticked) {
                             {at.x + 0.75F * side, at.y + 0.75F * side}, colour::kAccent);
 }
 
-// What is pressed: name and kind, then size and time; beneath, where it lies or what is wrong with it. Raw data are shown
-// in their folder alone, whose path stands above.
+// A row to click: name and kind, then size and time; below, its folder or its error. Raw data appear only in their
+// folder, whose path stands above.
 void scene_row(const Theme& theme, const SceneRow& row, float width, BrowserState& browser) {
     const bool usable = row.trouble.empty();
     const float height = theme.px(row.folder || (row.raw && usable) ? 22.0F : 40.0F);
@@ -80,7 +80,7 @@ void import_line(const Theme& theme, BrowserState& browser) {
     ImGui::PopStyleColor();
 }
 
-// What would be made of the rows that are marked, and the way to it; as high as marks_height() says.
+// The result of importing the marked rows, with its buttons; as high as marks_height().
 constexpr float kMarksButtons = 130.0F;
 float marks_height(const Theme& theme, const BrowserState& browser) {
     if (browser.marks_text.empty()) return 0.0F;
@@ -106,7 +106,7 @@ void marks_line(const Theme& theme, BrowserState& browser) {
 }  // namespace
 
 void draw_browser(const Theme& theme, BrowserState& browser, const PixelRect& view) {
-    // Below what is written into the view's upper corners, which would be drawn over it.
+    // Below the text in the view's upper corners, which would be drawn over it.
     const float above = theme.px(66.0F);
     const float width = std::min(theme.px(660.0F), 0.94F * view.width),
                 height = std::min(theme.px(440.0F), std::max(view.height - above - theme.px(10.0F), 1.0F));
@@ -139,10 +139,10 @@ void draw_browser(const Theme& theme, BrowserState& browser, const PixelRect& vi
     if (browser.reading) {
         text_coloured(colour::kDim, "reading ...");
     } else if (browser.tab == 0 && list.empty() && trouble.empty()) {
-        text_coloured(colour::kDim, "No scene was used yet. The tab Folder shows scenes and raw data.");
+        text_coloured(colour::kDim, "No recent scenes. The Folder tab shows scenes and raw data.");
     } else if (browser.tab == 1 && trouble.empty() &&
                std::none_of(list.begin(), list.end(), [](const SceneRow& r) { return !r.folder; })) {
-        text_coloured(colour::kDim, "There is nothing in this folder that Tact reads.");
+        text_coloured(colour::kDim, "This folder has no files that Tact reads.");
     }
     ImGui::EndChild();
     if (below > 0.0F) marks_line(theme, browser);

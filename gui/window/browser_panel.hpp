@@ -1,4 +1,4 @@
-// What the list of scenes shows and what a person chose there: plain data that the application fills and takes.
+// Contents of the scene list and the user's choices: plain data that the application fills and reads.
 #pragma once
 
 #include <optional>
@@ -14,11 +14,11 @@ namespace tact {
 struct SceneRow {
     std::string path, name;
     std::string place;       // its folder
-    std::string kind;        // docking, surface, drilling; of raw data map, structure, mesh, scan
-    std::string size, when;  // as a person reads it
+    std::string kind;        // docking, surface, drilling; for raw data map, structure, mesh, scan
+    std::string size, when;  // as displayed
     std::string trouble;     // why it cannot be opened: missing, not a scene, ...
     bool folder = false, current = false;
-    bool raw = false, marked = false;  // raw data: pressed to be marked, not opened
+    bool raw = false, marked = false;  // raw data: a click marks them instead of opening
 };
 
 struct BrowserState {
@@ -29,19 +29,20 @@ struct BrowserState {
     std::string folder, folder_trouble;
     bool reading = false;
     bool importing = false, cancel_wanted = false;
-    std::optional<double> import_share;  // of the import, 0 to 1, where it says
-    std::string marks_text;  // what would be made of the marked rows, or why nothing can; empty: no mark
+    std::optional<double> import_share;  // of the import, 0 to 1, if reported
+    std::string
+        marks_text;  // result of importing the marked rows, or why nothing can be imported; empty: no mark
     bool marks_import = false;
     std::string message;
     Grade message_grade = Grade::unknown;
-    // What a person chose; emptied by the application.
+    // The user's choices; emptied by the application.
     std::string scene_wanted, folder_wanted, mark_wanted;
     bool import_wanted = false, clear_wanted = false;
 };
 
-// Over the middle of the view.
+// Over the centre of the view.
 void draw_browser(const Theme& theme, BrowserState& browser, const PixelRect& view);
-// What opens it, in the corner of the view.
+// The button that opens the list, in the corner of the view.
 void draw_browser_button(const Theme& theme, BrowserState& browser, const PixelRect& view);
 
 }  // namespace tact

@@ -1,4 +1,4 @@
-// From what was read to what the panels show.
+// Converts records to the contents of panels.
 #pragma once
 
 #include "gui/dashboard/dashboard_state.hpp"
@@ -7,7 +7,7 @@
 
 namespace tact {
 
-// What every system's scene has; the rest is its system's to tell.
+// The part common to all systems; the scene's system adds the rest.
 [[nodiscard]] SceneState describe(const SceneContent& content);
 [[nodiscard]] EventLine describe(const EventTopic& event);
 

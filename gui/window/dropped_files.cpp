@@ -49,7 +49,7 @@ RawKind kind_of(const std::string& file) {
     return std::filesystem::is_directory(file, ignored) ? kind_of_folder() : kind_of_name(file);
 }
 
-// A file's name for a line of words: no control characters, and what is long keeps its beginning and its ending.
+// A file's name for a line of text: no control characters; a long name keeps its beginning and its ending.
 std::string shown_name(const std::string& file) {
     constexpr std::size_t kHead = 24, kTail = 12;
     std::string name = std::filesystem::path(file).filename().string();
@@ -69,7 +69,7 @@ std::string shown_name(const std::string& file) {
 
 const std::string& dropped_kinds_text() {
     static const std::string text = [] {
-        std::string all = "What can be dropped: a scene (.tact)";
+        std::string all = "Files to drop: a scene (.tact)";
         for (const SceneKindRow& system : scene_kinds()) {
             for (const RawFileType& type : system.raw) {
                 all +=
@@ -101,13 +101,12 @@ Dropped meaning_of(const std::vector<std::string>& files) {
         out = {{}, {}, why};
         return out;
     };
-    if (files.empty()) return no("There is no file.");
-    if (files.size() > kDroppedMost)
-        return no("Too many files at once: a map and 16 structures are the most.");
+    if (files.empty()) return no("No file.");
+    if (files.size() > kDroppedMost) return no("Too many files: at most a map and 16 structures.");
     const SceneKindRow* system = nullptr;
     std::vector<std::vector<std::string>> by_type;
     for (const std::string& file : files) {
-        // Arguments of a command: an option must not be made of a name.
+        // Names become arguments of a command: none may look like an option.
         if (file.empty() || file.front() != '/') return no("A file has no absolute path.");
         if (is_scene(file)) {
             if (files.size() > 1) return no("One scene at a time, without other files.");
@@ -117,9 +116,9 @@ Dropped meaning_of(const std::vector<std::string>& files) {
         const RawKind kind = kind_of(file);
         if (kind.system == nullptr)
             return no("'" + std::filesystem::path(file).filename().string() +
-                      "' is of no kind that Tact reads: its ending says what a file is.");
+                      "' has an ending that Tact does not read.");
         if (system != nullptr && system != kind.system)
-            return no("These files belong to different systems: give those of one at a time.");
+            return no("These files belong to different systems: choose those of one.");
         system = kind.system;
         by_type.resize(system->raw.size());
         by_type[kind.type].push_back(file);

@@ -57,7 +57,7 @@ void FrameClock::pace(double fps_max) const {
     const timespec until{static_cast<time_t>(until_ns / 1'000'000'000),
                          static_cast<long>(until_ns % 1'000'000'000)};
     clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &until,
-                    nullptr);  // a signal ends it early, which is right
+                    nullptr);  // a signal may end it early
 }
 
 double FrameClock::process_cpu_s() {

@@ -1,5 +1,5 @@
-// Measures a frame in parts and paces frames. Wall-clock time between calls; the graphics driver is never
-// asked to finish, so that measuring costs nothing. Which frames are late: ipc/topics/frames.hpp.
+// Times the parts of a frame and paces frames. Wall-clock time between calls, without glFinish(), so that measuring
+// costs nothing. Late frames are defined in ipc/topics/frames.hpp.
 #pragma once
 
 #include <array>
@@ -15,13 +15,13 @@ namespace tact {
 
 class FrameClock {
 public:
-    // Of a frame. due_s: the period that it is due in, 0: none.
+    // Starts a frame. due_s: the period in which it is due; 0: none.
     void begin(double due_s);
     void end_part(FramePart part);  // since the last call of either
-    // Sleeps until 1/fps_max after the beginning of this frame. 0: not at all.
+    // Sleeps until 1/fps_max after the start of this frame. 0: no sleep.
     void pace(double fps_max) const;
 
-    [[nodiscard]] double frame_s() const { return frame_s_; }  // start to start, of the last frame
+    [[nodiscard]] double frame_s() const { return frame_s_; }  // start to start, last frame
     [[nodiscard]] double work_s() const;                       // sum of the parts, this frame
     [[nodiscard]] double part_s(FramePart part) const { return part_s_[static_cast<std::size_t>(part)]; }
     [[nodiscard]] double fps() const { return fps_; }  // over the last second

@@ -36,7 +36,7 @@ void write_frame_report(const std::string& path, const FrameMetrics& metrics) {
     std::ofstream file(path, std::ios::trunc);
     file << frames_json(metrics).dump(2) << '\n';
     if (!file.flush())
-        throw StartupError("writing what the frames took to " + path, "it cannot be written",
+        throw StartupError("writing the frame times to " + path, "the write failed",
                            "give --frames another path");
 }
 

@@ -1,4 +1,4 @@
-// The figures of the frames as they are published and written down, with the memory of the process.
+// Frame metrics as published and reported, with the memory of the process.
 #pragma once
 
 #include <string>
@@ -9,10 +9,10 @@
 
 namespace tact {
 
-// Frame thread. Resident memory: 0 where the kernel does not say.
+// Frame thread. Resident memory: 0 if the kernel does not report it.
 [[nodiscard]] FrameMetrics frame_metrics(const FrameClock& clock, const PassClock& passes);
 
-// JSON; the layout is that of "frames" in the report of tact run. Throws StartupError where it cannot be written.
+// JSON, with the layout of "frames" in the report of tact run. Throws StartupError if it cannot be written.
 void write_frame_report(const std::string& path, const FrameMetrics& metrics);
 
 }  // namespace tact

@@ -1,4 +1,4 @@
-// The ground of the window and of the panels' cards, painted by one clear each (see gui/README.md).
+// Backgrounds of the window and of the cards, painted by one clear each (see gui/DECISIONS.md).
 //
 // Thread   frame thread, context current.
 #pragma once
@@ -7,7 +7,7 @@
 
 namespace tact {
 
-// to_px: pixels of the frame buffer for one of the layout's; height_px: of the frame buffer.
+// to_px: framebuffer pixels per layout pixel; height_px: of the framebuffer.
 void paint_grounds(const Layout& layout, float to_px, int height_px);
 
 }  // namespace tact

@@ -33,7 +33,7 @@ std::optional<double> share_done(const std::string& output) {
 std::string error_text(const std::string& output) {
     const std::size_t at = std::min(output.find("tact-prep: "), output.find("tact: "));
     const std::string words = at == std::string::npos ? output : output.substr(at);
-    return words.empty() ? "The import ended without a word."
+    return words.empty() ? "The import failed without a message."
                          : words.substr(0, words.find_last_not_of('\n') + 1);
 }
 

@@ -1,6 +1,6 @@
-// What `tact dock|touch|drill --bake-only` printed up to now: how far it is, and what it says.
+// Interprets the output of `tact dock|touch|drill --bake-only`: progress and messages.
 //
-// Input    another program's, bounded by ChildJob.  Fails by nothing told.  Thread any.
+// Input    from another program, bounded by ChildJob.  Never fails.  Thread any.
 #pragma once
 
 #include <optional>
@@ -8,11 +8,11 @@
 
 namespace tact {
 
-// The last line that is not empty.
+// The last non-empty line.
 [[nodiscard]] std::string last_line(const std::string& output);
-// Of the whole, 0 to 1, from the last line "[ 45 %] what is done"; nothing: no line says it.
+// Completed fraction, 0 to 1, from the last line "[ 45 %] step"; nullopt: no such line.
 [[nodiscard]] std::optional<double> share_done(const std::string& output);
-// From the first word of an error on: before it are the steps that went well.
+// The output from the first error message on, without the successful steps before it.
 [[nodiscard]] std::string error_text(const std::string& output);
 
 }  // namespace tact

@@ -22,7 +22,7 @@ Layout layout_for(const Theme& theme, float width_px, float height_px, const Mid
     Layout l;
     l.view = {left, 0.0F, at_least_one(width_px - left), at_least_one(height_px - below)};
 
-    // The scene's card, which has lists, gets what the other two, whose content is of known height, leave.
+    // The scene card contains lists and gets the remaining height; the other two have known heights.
     const float usable = height_px - 4.0F * gap;
     const float health = std::round(std::min(theme.px(344.0F), 0.48F * usable));
     const float between = std::round(std::min(theme.px(middle.size.height), middle.size.share_most * usable));

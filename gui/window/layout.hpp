@@ -1,5 +1,5 @@
-// Where everything lies in the window, and drawing it: a column of cards on the left, a strip of plots below, the 3D view in
-// the rest; nothing overlaps.
+// Layout of the window, and drawing of its panels: a column of cards on the left, a strip of plots below, the 3D view
+// in the rest; nothing overlaps.
 //
 // Thread   frame thread, inside an ImGui frame.
 #pragma once
@@ -13,30 +13,29 @@
 
 namespace tact {
 
-// Where everything lies in a window of this size. The cards' ground is for the application to paint (one
-// clear per card): ImGui fills areas through its font texture, which costs several milliseconds where the
-// processor draws.
+// Positions in a window of this size. The application paints the cards' backgrounds (one clear per card): ImGui fills
+// areas through its font texture, which takes several milliseconds in software rendering.
 struct Layout {
     PixelRect view, health, middle, scene, plots, events;
 
     [[nodiscard]] std::array<PixelRect, 5> cards() const { return {health, middle, scene, plots, events}; }
 };
-// The card between the controller's and the scene's: of the scene's system, or none, and its place goes to the scene.
-// While a screen is calibrated, its card takes the whole column.
+// The card between those of the controller and the scene: from the scene's system; without one, the scene card gets
+// its space. A calibration's card takes the whole column.
 struct MiddleCard {
     SystemPanels::CardSize size;
     bool calibration = false;
 };
 [[nodiscard]] MiddleCard middle_card(const PanelState& state, const SystemPanels& system);
-// traces: the strip below is as high as they need.
+// traces: gives the strip below the height that they need.
 [[nodiscard]] Layout layout_for(const Theme& theme, float width_px, float height_px, const MiddleCard& middle,
                                 bool traces = false);
 
-// Draws everything but the 3D view and the cards' ground.
+// Draws everything except the 3D view and the cards' backgrounds.
 void draw_dashboard(const Theme& theme, PanelState& state, SystemPanels& system, float width_px,
                     float height_px);
 
-// Over the 3D view: legend, scale bar, axes, what is being waited for.
+// Over the 3D view: legend, scale bar, axes, status.
 void draw_overlay(const Theme& theme, PanelState& state, const SystemPanels& system, const PixelRect& view);
 void draw_scene(const Theme& theme, DashboardState& state, SystemPanels& system, const PixelRect& card);
 

@@ -34,7 +34,7 @@ void find_extent(SceneContent& content) {
         box.add(content.box_max_model_m);
     }
     content.centre_model_m = 0.5 * (box.low + box.high);
-    // One angstrom at least; where nothing is drawn but the box, that.
+    // At least one angstrom; the box if nothing else is drawn.
     double most = 1e-10;
     if (nothing) most = std::max(most, (box.high - content.centre_model_m).norm());
     each_point(content, [&](const Vec3& p) { most = std::max(most, (p - content.centre_model_m).norm()); });

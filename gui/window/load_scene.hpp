@@ -8,7 +8,7 @@
 
 namespace tact {
 
-// On the loader thread: it may take a second for large meshes. Throws StartupError naming the file.
+// For the loader thread: a large mesh may take a second. Throws StartupError naming the file.
 std::shared_ptr<const SceneContent> load_scene(const std::filesystem::path& path);
 
 }  // namespace tact

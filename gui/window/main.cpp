@@ -11,7 +11,7 @@
 int main(int argc, char** argv) {
     spdlog::set_default_logger(spdlog::stderr_color_mt("tact-gui"));
     spdlog::set_pattern("%n: %v");
-    spdlog::cfg::load_env_levels();  // SPDLOG_LEVEL=debug tells each shortcut
+    spdlog::cfg::load_env_levels();  // SPDLOG_LEVEL=debug logs each shortcut
     tact::GuiOptions options;
     int exit_code = 0;
     if (!tact::parse_gui_options(argc, argv, options, exit_code)) return exit_code;

@@ -15,41 +15,38 @@ namespace tact {
 
 bool parse_gui_options(int argc, const char* const* argv, GuiOptions& options, int& exit_code) {
     CLI::App app(
-        "tact-gui: shows what the hand is touching. Starts without the controller and waits for it.");
+        "tact-gui: displays the scene and the state of the controller. Waits for a controller to start.");
     app.footer(
-        "Exit codes: 0 the window was closed or the time was over; 1 error; 2 wrong usage, or an unusable "
-        "file of settings.");
+        "Exit codes: 0 window closed or time over; 1 error; 2 wrong usage, or an invalid "
+        "settings file.");
     app.set_version_flag("--version", program_version("tact-gui"));
     std::string size;
-    app.add_option("scene", options.scene, "baked scene; by default the one that the controller runs");
-    app.add_option("--session", options.session, "name of the session that the controller runs in")
+    app.add_option("scene", options.scene, "Baked scene; default: the scene of the controller");
+    app.add_option("--session", options.session, "Session name of the controller")
         ->type_name("NAME")
         ->capture_default_str();
     app.add_option("--scene-switch", options.scene_switch,
-                   "folder in which the launcher takes the request for another scene; tact gives it")
+                   "Folder for requests to run another scene; set by tact")
         ->check(CLI::ExistingDirectory);
-    app.add_option("--seconds", options.seconds, "end after this many seconds; 0: when closed")
+    app.add_option("--seconds", options.seconds, "Run time (s); 0: until the window is closed")
         ->check(CLI::Range(0.0, 1e7));
-    app.add_option("--screenshot", options.screenshot, "write a PNG of the last picture at the end")
+    app.add_option("--screenshot", options.screenshot, "Write a PNG of the last frame at the end")
         ->type_name("FILE.png");
-    app.add_option("--report", options.report,
-                   "write a report of what was drilled as JSON at the end, where the scene is of bone")
+    app.add_option("--report", options.report, "Write a report of a drilling scene as JSON at the end")
         ->type_name("FILE.json");
     app.add_option("--frames", options.frames,
-                   "write the times of frames and their passes as JSON at the end")
+                   "Write the times of frames and their passes as JSON at the end")
         ->type_name("FILE.json");
-    app.add_option(
-           "--picture-every", options.every_s,
-           "with --screenshot NAME.png: also NAME-01.png and so on, of the view alone, so many seconds apart")
+    app.add_option("--picture-every", options.every_s,
+                   "Interval (s) of a series NAME-01.png, ... of the 3D view; needs --screenshot NAME.png")
         ->check(CLI::Range(0.1, 1e5));
-    app.add_option("--zoom", options.zoom, "factor by which the view is nearer at the start")
-        ->check(CLI::Range(0.1, 20.0));
+    app.add_option("--zoom", options.zoom, "Zoom factor of the initial view")->check(CLI::Range(0.1, 20.0));
     app.add_option("--window-state", options.window_state_file,
-                   "TOML file of what was set in the window: begin as it says, and write it at the end; it "
-                   "need not exist")
+                   "TOML file of the window's settings: read at the start if it exists, written at "
+                   "the end")
         ->type_name("FILE.toml");
     CLI::Option* const size_option =
-        app.add_option("--size", size, "size of the window in pixels, as 1280x720");
+        app.add_option("--size", size, "Window size (pixels), for example 1280x720");
     size_option->check(CLI::Validator(
         [&options](std::string& text) -> std::string {
             const auto px = numbers_between(text, "x");
@@ -61,56 +58,55 @@ bool parse_gui_options(int argc, const char* const* argv, GuiOptions& options, i
         },
         "WxH"));
     app.add_option("--ui-scale", options.ui_scale,
-                   "letters and panels so many times as large as the display's size and density ask for")
+                   "Scale factor of text and panels, on top of the automatic scale")
         ->check(CLI::Range(0.5, 4.0));
     app.add_flag("--traces", options.traces,
-                 "begin with the traces of every servo cycle in place of the plots");
-    app.add_flag("--hidden", options.hidden, "draw without showing a window");
-    app.add_flag("--plain", options.plain, "cheapest drawing: no gradient, solid surface");
-    app.add_option(
-           "--fps-max", options.fps_max,
-           "at most this many pictures a second; 0: as many as can be; default: the display's rate, or 60")
+                 "Start with the traces of every servo cycle instead of the plots");
+    app.add_flag("--hidden", options.hidden, "Draw without showing a window");
+    app.add_flag("--plain", options.plain, "Cheapest rendering: no gradient, solid surface");
+    app.add_option("--fps-max", options.fps_max,
+                   "Maximum frame rate (1/s); 0: unlimited; default: the display's rate, or 60")
         ->check(CLI::Range(0.0, 1e5));
-    app.add_option("--molecule", options.look.style, "bodies as trace, tube, sticks or spheres")
+    app.add_option("--molecule", options.look.style, "Style of bodies: trace, tube, sticks or spheres")
         ->transform(CLI::CheckedTransformer(
             std::map<std::string, MoleculeStyle>{{"trace", MoleculeStyle::trace},
                                                  {"tube", MoleculeStyle::tube},
                                                  {"sticks", MoleculeStyle::sticks},
                                                  {"spheres", MoleculeStyle::spheres}}));
-    app.add_option("--colour", options.look.colouring, "bodies by chain, element or body")
+    app.add_option("--colour", options.look.colouring, "Colour of bodies: by chain, element or body")
         ->transform(CLI::CheckedTransformer(std::map<std::string, Colouring>{
             {"chain", Colouring::chain}, {"element", Colouring::element}, {"body", Colouring::body}}));
     app.add_option(
            "--contour",
-           "a surface as LEVEL[:RRGGBB][:OPACITY][:STYLE], up to four times: the level in the map's unit, "
+           "Isosurface as LEVEL[:RRGGBB][:OPACITY][:STYLE], up to four times; level in the map's unit, "
            "with s in sigma, with % of the map's volume; styles glass, solid, wire")
         ->expected(1)
-        ->take_all()  // repeated, as what follows may be the scene
+        ->take_all()  // repeated, because the next argument may be the scene
         ->type_name("CONTOUR")
         ->each(
             [&options](const std::string& text) { options.contours.push_back(read_contour_option(text)); });
-    app.add_flag("!--no-depth-cue", options.depth_cue, "do not fade what lies far behind");
+    app.add_flag("!--no-depth-cue", options.depth_cue, "Do not fade distant content");
     app.add_flag("--near-burr", options.near_burr,
-                 "close view of the burr once it is in bone, as key F does");
+                 "Close view of the burr once it is in bone, as with key F");
     app.add_option("--particles", options.particles,
-                   "keep this many particles over bone, to measure what they cost")
+                   "Constant number of particles over bone, to measure their cost")
         ->check(CLI::Range(0, 100000));
     app.add_flag("--bench-particles", options.bench_particles,
-                 "measure what moving particles costs, print it as JSON and end; opens no window");
+                 "Measure the cost of moving particles, print it as JSON and end; opens no window");
     std::string stereo;
     bool swap_eyes = false;
     app.add_option("--stage", options.stage_file,
-                   "TOML file of the stereo picture: screen, eyes, monitors (gui/stereo/README.md)")
+                   "TOML file of the stereo display: screen, eyes, monitors (gui/stereo/README.md)")
         ->type_name("FILE.toml");
-    app.add_option("--stereo", stereo, "stereo mode of the window")
+    app.add_option("--stereo", stereo, "Stereo mode of the window")
         ->check(CLI::IsMember(std::vector<std::string>(std::begin(kStereoModes), std::end(kStereoModes))));
     app.add_flag("--calibrate", options.calibrate,
-                 "begin with the calibration of the screen, as key K does; it is saved to --stage FILE");
+                 "Start with the calibration of the screen, as with key K; it is saved to --stage FILE");
     app.add_flag("--test-picture", options.test_picture,
-                 "begin with the picture that tells whether screen, eyes and tool are where they should be");
-    app.add_flag("--swap-eyes", swap_eyes, "swap the pictures of the two eyes");
+                 "Start with the test picture, which checks the poses of screen, eyes and tool");
+    app.add_flag("--swap-eyes", swap_eyes, "Swap the images of the two eyes");
     app.add_option("--stage-screenshot", options.stage_screenshot,
-                   "write a PNG of the stereo picture at the end; of two windows two: NAME-left, NAME-right")
+                   "Write a PNG of the stereo display at the end; with two windows NAME-left and NAME-right")
         ->type_name("FILE.png");
     if (const auto answered = manual::answer(app, "tact-gui", argc, argv)) {
         exit_code = *answered;
@@ -118,7 +114,7 @@ bool parse_gui_options(int argc, const char* const* argv, GuiOptions& options, i
     }
     try {
         app.parse(argc, argv);
-        // A calibration may make the file.
+        // A calibration may create the file.
         if (!options.stage_file.empty() &&
             !(options.calibrate && !std::filesystem::exists(options.stage_file)))
             options.stage = read_stage_file(options.stage_file);

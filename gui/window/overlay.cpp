@@ -1,5 +1,4 @@
-// Over the 3D view: scale bar, axes, the force's legend, frames per second, what is being waited for, the
-// keys.
+// Overlay on the 3D view: scale bar, axes, force legend, frame rate, status, keys.
 #include <algorithm>
 #include <cmath>
 #include <vector>
@@ -37,7 +36,7 @@ void axes(const OverlayPen& pen, const PanelState& state, const PixelRect& v) {
     static constexpr ImU32 kColours[3] = {IM_COL32(240, 112, 96, 255), IM_COL32(96, 200, 120, 255),
                                           IM_COL32(96, 160, 250, 255)};
     static constexpr const char* kNames[3] = {"x", "y", "z"};
-    // Those that point away first, so that the near ones lie over them.
+    // Axes that point away first, so that near ones cover them.
     int order[3] = {0, 1, 2};
     std::sort(order, order + 3, [&](int a, int b) { return state.eye_axes[a][2] < state.eye_axes[b][2]; });
     for (const int i : order) {
@@ -53,7 +52,7 @@ void axes(const OverlayPen& pen, const PanelState& state, const PixelRect& v) {
 
 void legend(const OverlayPen& pen, const PanelState& state, const SystemPanels& system, const PixelRect& v) {
     const float x = v.x + pen.theme.px(16.0F);
-    float y = v.y + pen.theme.px(12.0F), taken = x;  // to the right of it is room for numbers
+    float y = v.y + pen.theme.px(12.0F), taken = x;  // space for numbers begins right of it
     if (state.scene.loaded) {
         pen.text(pen.theme.bold, {x, y}, colour::kText, state.scene.title);
         taken = x + pen.width(pen.theme.bold, state.scene.title);
@@ -81,13 +80,13 @@ void legend(const OverlayPen& pen, const PanelState& state, const SystemPanels& 
     float at = v.y + pen.theme.px(12.0F);
     for (const std::string& words : {fps, frame_line(state.frames), std::string("? keys")}) {
         const float left = v.x + v.width - pen.theme.px(16.0F) - pen.width(pen.theme.small, words);
-        // In a narrow view, what is drawn goes before how fast.
+        // In a narrow view, lines that would reach the title are omitted.
         if (left > taken + pen.theme.px(8.0F)) pen.text(pen.theme.small, {left, at}, colour::kDim, words);
         at += pen.theme.px(18.0F);
     }
 }
 
-// Over everything, as nothing else matters then.
+// Over everything else, because it takes precedence.
 void stop_banner(const OverlayPen& pen, const PanelState& state, const PixelRect& v) {
     if (!state.attached || !state.have_health) return;
     const StopNotice notice = stop_notice(state.health);
@@ -126,7 +125,7 @@ void message(const OverlayPen& pen, const PanelState& state, const PixelRect& v)
                       nullptr, most);
 }
 
-// Those that mean something now.
+// Keys that apply now.
 void keys(const OverlayPen& pen, const KeySituation& now, const PixelRect& v) {
     std::vector<const KeyRow*> rows;
     for (const KeyRow& row : key_rows())

@@ -1,4 +1,4 @@
-// All that the panels of the window show; what a system shows, it keeps itself.
+// State of all panels of the window; each system keeps its own.
 #pragma once
 
 #include "gui/dashboard/dashboard_state.hpp"
@@ -11,7 +11,7 @@ namespace tact {
 struct PanelState : DashboardState {
     CalibrationCardState calibration;
     BrowserState browser;
-    KeySituation situation;  // of the keys; its sheet is what a person opened
+    KeySituation situation;  // for the keys; the user opens its sheet
 };
 
 }  // namespace tact

@@ -1,6 +1,6 @@
-// Pictures of the window in files: one at the end, one when a person asks, and a numbered series of the view alone.
+// Screenshots of the window: one at the end, one on request, and a numbered series of the 3D view.
 //
-// Thread   frame thread.  Fails by  a line in the log, and failed().
+// Thread   frame thread.  Fails by  a log line, and failed().
 #pragma once
 
 #include <cstdint>
@@ -15,24 +15,24 @@ namespace tact {
 
 class PictureFiles {
 public:
-    // path: of the one at the end; empty: neither that nor a series. every_s: between two of the series; 0: none. stage: of
-    // the stereo picture at the end; empty: none.
+    // path: of the screenshot at the end; empty: neither that nor a series. every_s: interval of the series; 0: none.
+    // stage: of the stereo display at the end; empty: none.
     PictureFiles(std::string path, double every_s, std::string stage)
         : path_(std::move(path)), stage_(std::move(stage)), every_s_(every_s) {}
 
     [[nodiscard]] bool wanted_at_end() const { return !path_.empty() || !stage_.empty(); }
-    // The first as soon as there is something to see.
+    // The first is due as soon as there is something to show.
     [[nodiscard]] bool series_due(Instant now, bool something_to_see);
     struct View {
         int x_px = 0, y_px = 0, width_px = 1, height_px = 1;  // y from below
     };
-    // Without what is written over the view.
+    // Without the overlay on the view.
     void save_of_series(const Image& window, const View& view);
     void save_at_end(const Image& window) {
         if (!path_.empty()) write(path_, window);
     }
-    void save_stage(const std::vector<Image>& eyes);  // one of both, or left and right
-    void save_now(const Image& window);               // in the working folder, named by the moment
+    void save_stage(const std::vector<Image>& eyes);  // one for both, or left and right
+    void save_now(const Image& window);               // in the working folder, named by its time
     [[nodiscard]] bool failed() const { return failed_; }
 
 private:

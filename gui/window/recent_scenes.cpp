@@ -16,7 +16,7 @@ namespace {
 
 constexpr std::size_t kRecentPathMost = 4096;
 constexpr const char* kRecentsFix =
-    "fix it, or remove it: with the next scene it is set aside and written anew";
+    "fix or remove it; with the next scene it is renamed and a new one written";
 constexpr std::int64_t kLatestUnixS = 253402300799;  // the year 9999
 
 }  // namespace
@@ -33,11 +33,11 @@ std::filesystem::path state_folder() {
 
 std::vector<RecentScene> read_recents_text(std::string_view text, const std::string& name) {
     const auto fail = [&](const std::string& why) {
-        throw StartupError("reading the scenes used before, " + name, why, kRecentsFix);
+        throw StartupError("reading the recent scenes, " + name, why, kRecentsFix);
     };
-    if (text.size() > kRecentsBytesMost) fail("it is larger than such a list may be");
+    if (text.size() > kRecentsBytesMost) fail("the file is too large");
     const nlohmann::json all = nlohmann::json::parse(text, nullptr, false);
-    if (all.is_discarded()) fail("it is no JSON");
+    if (all.is_discarded()) fail("it is not JSON");
     if (!all.is_object() || !all.contains("scenes") || !all["scenes"].is_array())
         fail("it has no list 'scenes'");
     std::vector<RecentScene> scenes;
@@ -51,7 +51,7 @@ std::vector<RecentScene> read_recents_text(std::string_view text, const std::str
             std::any_of(scene.path.begin(), scene.path.end(),
                         [](char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7F; }))
             fail("a path in it is not absolute, too long, or holds a control character");
-        if (scene.used_unix_s < 0 || scene.used_unix_s > kLatestUnixS) fail("a time in it is impossible");
+        if (scene.used_unix_s < 0 || scene.used_unix_s > kLatestUnixS) fail("a time in it is out of range");
         scenes.push_back(std::move(scene));
     }
     return scenes;
@@ -63,7 +63,7 @@ std::string recents_text(const std::vector<RecentScene>& scenes) {
     try {
         return nlohmann::json{{"scenes", std::move(list)}}.dump(1) + "\n";
     } catch (const nlohmann::json::exception&) {
-        throw StartupError("writing the scenes used before", "a path is not UTF-8",
+        throw StartupError("writing the recent scenes", "a path is not UTF-8",
                            "give the file a name in UTF-8");
     }
 }
@@ -78,9 +78,9 @@ std::vector<RecentScene> read_recents(const std::filesystem::path& file) {
         text.resize(kRecentsBytesMost + 1);
         got = ::pread(fd, text.data(), text.size(), 0);
     }
-    const std::string why = fd >= 0 && !S_ISREG(info.st_mode) ? "it is no regular file" : last_error();
+    const std::string why = fd >= 0 && !S_ISREG(info.st_mode) ? "it is not a regular file" : last_error();
     if (fd >= 0) ::close(fd);
-    if (got < 0) throw StartupError("reading the scenes used before, " + file.string(), why, kRecentsFix);
+    if (got < 0) throw StartupError("reading the recent scenes, " + file.string(), why, kRecentsFix);
     text.resize(static_cast<std::size_t>(got));
     return read_recents_text(text, file.string());
 }
@@ -90,7 +90,7 @@ std::filesystem::path set_aside(const std::filesystem::path& file) {
     std::error_code failed;
     std::filesystem::rename(file, aside, failed);
     if (failed)
-        throw StartupError("setting " + file.string() + " aside as " + aside.string(), failed.message(),
+        throw StartupError("renaming " + file.string() + " to " + aside.string(), failed.message(),
                            "move the file away, or fix the permissions of its folder");
     return aside;
 }

@@ -1,4 +1,4 @@
-// The scene's card: what is loaded, or why nothing is, and what its system shows there.
+// Scene card: the loaded scene, or why none is loaded, and its system's part.
 #include "gui/dashboard/widgets.hpp"
 #include "gui/window/layout.hpp"
 

@@ -17,9 +17,9 @@ namespace tact {
 namespace {
 
 constexpr std::size_t kLookedAtMost = 20'000;  // entries of a folder
-constexpr std::size_t kOpenedMost = 16;        // of them, to see whether they are DICOM
+constexpr std::size_t kOpenedMost = 16;        // of them, to check for DICOM
 
-// The reason alone: attempt and fix are for a terminal.
+// Only the reason: attempt and fix are for a terminal.
 std::string reason_of(const std::string& error, const std::string& path) {
     std::string words = error.substr(0, error.find('\n'));
     if (const auto at = words.find(path); at != std::string::npos) words.erase(0, at + path.size());
@@ -143,11 +143,11 @@ FolderRows folder_rows(const std::filesystem::path& folder, std::int64_t now_uni
     if (folder.has_parent_path() && folder.parent_path() != folder) add_folder(folder.parent_path(), "..");
     if (dicom) {
         SceneRow row = raw_row_of(folder, raw_folder_text(), now_unix_s);
-        row.name = "This folder, of DICOM files";
+        row.name = "This folder (DICOM files)";
         row.size.clear();
         out.rows.push_back(std::move(row));
     }
-    // Scenes are what one looks for; raw data leave half of the rest to folders, where these need it.
+    // Scenes take precedence; raw data leave half of the rest to folders if these need it.
     const std::size_t scenes_shown = std::min(scenes.size(), kFolderRowsMost),
                       rest = kFolderRowsMost - scenes_shown;
     const std::size_t raw_shown =
@@ -159,7 +159,7 @@ FolderRows folder_rows(const std::filesystem::path& folder, std::int64_t now_uni
         out.rows.push_back(raw_row_of(raw[i], raw_file_text(raw[i].filename().string()), now_unix_s));
     if (out.trouble.empty() &&
         (folders.size() + scenes.size() + raw.size() > kFolderRowsMost || looked_at > kLookedAtMost))
-        out.trouble = "Not all of this folder is shown: it holds too much.";
+        out.trouble = "Only part of this folder is shown: too many entries.";
     return out;
 }
 

@@ -1,6 +1,6 @@
-// Rows of the list of scenes: what each file is, without reading all of it.
+// Rows of the scene list: the type of each file, without reading all of it.
 //
-// Fails by words in a row.  Thread a worker's: a folder may lie on a disk that answers slowly.
+// Fails by a message in the row.  Thread a worker's: a folder may lie on a slow disk.
 #pragma once
 
 #include <cstdint>
@@ -17,11 +17,11 @@ inline constexpr std::size_t kFolderRowsMost = 500;
 
 struct FolderRows {
     std::vector<SceneRow>
-        rows;  // the folder above, itself where it is a scan, folders, scenes, raw data; by name
+        rows;  // parent folder, the folder itself if it is a scan, folders, scenes, raw data; by name
     std::string trouble;
 };
 
-// used_unix_s: 0, the file's own time.
+// used_unix_s: 0 for the file's own time.
 [[nodiscard]] SceneRow scene_row_of(const std::filesystem::path& path, std::int64_t used_unix_s,
                                     std::int64_t now_unix_s);
 [[nodiscard]] std::vector<SceneRow> recent_rows(const std::vector<RecentScene>& scenes,

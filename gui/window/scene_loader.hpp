@@ -1,6 +1,6 @@
-// Reads a scene beside the frame loop.
+// Loads a scene in the background.
 //
-// Thread   frame thread; the reading on one of its own.
+// Thread   frame thread; loading on its own thread.
 #pragma once
 
 #include <future>
@@ -17,14 +17,14 @@ namespace tact {
 class SceneLoader {
 public:
     struct Outcome {
-        std::shared_ptr<const SceneContent> content;  // null: it failed
+        std::shared_ptr<const SceneContent> content;  // null: failed
         std::unique_ptr<SceneStart> start;
         std::string error;
     };
-    // False, and nothing is begun, while another is being read.
+    // Returns false and starts nothing while another scene is loading.
     bool start(const std::string& path);
     [[nodiscard]] bool running() const { return loading_.valid(); }
-    [[nodiscard]] std::optional<Outcome> poll();  // once, when it is done
+    [[nodiscard]] std::optional<Outcome> poll();  // once, when done
 
 private:
     struct Loaded {

@@ -1,6 +1,6 @@
-// The second of two hands as the picture shows it: where it will be when the picture is seen.
+// The second of two hands as displayed: its pose predicted for display time.
 //
-// Frames   comes in world axes and metres, goes in model axes; the two are parallel (ipc/scene/file/scene_meta.hpp)
+// Frames   input in world axes and metres, output in model axes; both are parallel (ipc/scene/file/scene_meta.hpp)
 // Thread   frame thread
 #pragma once
 
@@ -17,9 +17,9 @@ namespace tact {
 class SecondHand {
 public:
     void follow(const ToolTopic& tool);
-    // Of another controller, which may have one hand.
+    // For another controller, which may have one hand.
     void forget() { predictor_.clear(); }
-    // None where there is no second hand.
+    // None without a second hand.
     [[nodiscard]] std::optional<DrawnHand> at(std::int64_t now_ns, const SceneMeta& scene) const;
 
 private:

@@ -19,7 +19,7 @@ void take_events(Controller& controller, DashboardState& state) {
                 state.history.at_s(event.taken_at_ns), static_cast<std::size_t>(event.a), event.b,
                 event.detail < 255 ? static_cast<LevelReason>(event.detail) : static_cast<LevelReason>(255));
         EventLine line = describe(event);
-        // What repeats, such as a limit that is reached again and again, must not push the rest out.
+        // Repeated events, such as a limit reached again and again, must not push out the others.
         const bool repeats = !state.events.empty() && state.events.front().code == line.code;
         if (repeats && (line.grade == Grade::watch ||
                         line.code == static_cast<std::uint16_t>(EventCode::level_changed))) {
@@ -76,7 +76,7 @@ void add_rates(const Controller& controller, const Controller::Fresh& fresh, Das
 void add_cycles(const Controller& controller, RingCursor& place, DashboardState& to) {
     const std::uint64_t missed = place.missed;
     TraceTopic cycle;
-    // A loop that runs away from its reader must not hold the frame.
+    // A loop faster than its reader must not block the frame.
     for (std::size_t i = 0; i < kCyclesPerFrame && controller.next_cycle(place, cycle); ++i)
         to.traces.scope.add(cycle, controller.have_health ? controller.health.period_ns : 0);
     to.traces.scope.add_missed(place.missed - missed);

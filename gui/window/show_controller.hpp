@@ -1,4 +1,4 @@
-// What the panels show of the controller: its newest records, events and the fate of the last command.
+// Fills the panels from the controller: newest records, events, and the result of the last command.
 //
 // Thread   frame thread.
 #pragma once
@@ -10,11 +10,11 @@
 namespace tact {
 
 void show_controller(Controller& controller, const CommandSender& commands, DashboardState& state);
-// One more sample of the plots.
+// Adds a sample to the plots.
 void add_health(const HealthTopic& health, History& to);
-// What is counted up over records: lateness, samples a second. Another controller begins anew.
+// Updates rates over records: lateness, samples per second. Another controller restarts them.
 void add_rates(const Controller& controller, const Controller::Fresh& fresh, DashboardState& to);
-// Every servo cycle since the frame before.
+// Adds every servo cycle since the last frame.
 void add_cycles(const Controller& controller, RingCursor& place, DashboardState& to);
 void forget_rates(DashboardState& state);
 void add_load(const LoadTopic& load, const LevelsTopic* levels, History& to);

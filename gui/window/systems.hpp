@@ -1,4 +1,4 @@
-// The systems of this window, one row for each kind of scene. Nothing else in gui names them.
+// The systems of this window, one row per kind of scene. Nothing else in gui names them.
 //
 // Thread   constant; read() and start() on the loader thread
 #pragma once
@@ -15,17 +15,17 @@ namespace tact {
 
 struct SystemRow {
     SceneKind kind;
-    KeyWhen keys;  // those that apply to its scenes
+    KeyWhen keys;  // that apply to its scenes
     std::unique_ptr<SceneSystem> (*make)(const GuiOptions& options);
-    // What the system alone has in a file, whose common parts are in `content`. Throws StartupError naming the file.
+    // Reads the system's own part of a file; the common parts are in `content`. Throws StartupError naming the file.
     std::unique_ptr<SystemContent> (*read)(SceneFile file, SceneContent& content);
-    std::unique_ptr<SceneStart> (*start)(const SceneContent& content);     // null: nothing takes long
+    std::unique_ptr<SceneStart> (*start)(const SceneContent& content);     // null: nothing slow to prepare
     RefineContour (*refine)(std::shared_ptr<const SceneContent> content);  // null: a scene has one contour
 };
 
-// The first one is shown where there is no scene yet.
+// The first one is used while there is no scene.
 [[nodiscard]] std::span<const SystemRow> system_rows();
-// Of a kind that read_meta() lets pass.
+// For a kind that read_meta() accepts.
 [[nodiscard]] const SystemRow& system_row(SceneKind kind);
 
 }  // namespace tact

@@ -31,8 +31,8 @@ void on_drop(GLFWwindow* window, int count, const char** paths) {
     input_of(window).dropped.assign(paths, paths + count);
 }
 
-// The letter printed on a key, as where Z lies depends on the keyboard; of a keyboard without Latin letters the one at
-// that place. 0: none.
+// The letter printed on a key, because the position of Z depends on the keyboard; without Latin letters, the one at
+// that position. 0: none.
 char letter_of(int key, int scancode) {
     const char* const name = glfwGetKeyName(key, scancode);
     if (name != nullptr && name[0] >= 'a' && name[0] <= 'z' && name[1] == '\0') return name[0];
@@ -71,10 +71,10 @@ void on_key(GLFWwindow* window, int key, int scancode, int action, int modifiers
     if (stroke.code != KeyCode::none) keys_of(window).push_back(stroke);
 }
 
-// Signs and digits as characters, not as keys: where '?' lies depends on the keyboard.
+// Signs and digits by character, not by key: the position of '?' depends on the keyboard.
 void on_char(GLFWwindow* window, unsigned int character) {
     const bool letter = (character | 0x20U) >= 'a' && (character | 0x20U) <= 'z';
-    if (character <= ' ' || character > '~' || letter) return;  // on_key() has those
+    if (character <= ' ' || character > '~' || letter) return;  // on_key() handles those
     keys_of(window).push_back({KeyCode::character, static_cast<char>(character), false, false});
 }
 
@@ -97,7 +97,7 @@ void Window::open(int width_px, int height_px, bool hidden) {
         const bool none = display == nullptr && wayland == nullptr;
         throw StartupError(
             "opening a window", none ? "no display: DISPLAY and WAYLAND_DISPLAY are not set" : glfw_text(),
-            "run it in a desktop session, or under an X server of its own: xvfb-run -a tact-gui ...");
+            "run it in a desktop session, or under its own X server: xvfb-run -a tact-gui ...");
     }
     glfwWindowHint(GLFW_CONTEXT_VERSION_MAJOR, 3);
     glfwWindowHint(GLFW_CONTEXT_VERSION_MINOR, 3);
@@ -109,21 +109,20 @@ void Window::open(int width_px, int height_px, bool hidden) {
     window_ = glfwCreateWindow(width_px, height_px, "Tact", nullptr, nullptr);
     if (window_ == nullptr)
         throw StartupError(
-            "making an OpenGL 3.3 core context", glfw_text(),
-            "install a graphics driver with OpenGL 3.3, or draw on the processor: LIBGL_ALWAYS_SOFTWARE=1 "
+            "creating an OpenGL 3.3 core context", glfw_text(),
+            "install a graphics driver with OpenGL 3.3, or render in software: LIBGL_ALWAYS_SOFTWARE=1 "
             "with the package libgl1-mesa-dri");
     glfwMakeContextCurrent(window_);
     if (epoxy_gl_version() < 33)
-        throw StartupError("making an OpenGL 3.3 core context",
-                           "the driver gives version " + std::to_string(epoxy_gl_version() / 10) + "." +
+        throw StartupError("creating an OpenGL 3.3 core context",
+                           "the driver provides version " + std::to_string(epoxy_gl_version() / 10) + "." +
                                std::to_string(epoxy_gl_version() % 10),
                            "install a graphics driver with OpenGL 3.3, or set LIBGL_ALWAYS_SOFTWARE=1");
     const auto* const name = reinterpret_cast<const char*>(glGetString(GL_RENDERER));
     renderer_ = name != nullptr ? name : "unknown";
     for (const char* const word : {"llvmpipe", "softpipe", "SWR", "Software"})
         if (renderer_.find(word) != std::string::npos) software_ = true;
-    // Drawing on the processor, show() is where the drawing itself happens: it has to be counted as work, so
-    // the display must not be waited for there.
+    // A software renderer draws in show(), which must count as work, so it must not wait for the display there.
     paced_ = !software_ && !hidden;
     glfwSwapInterval(paced_ ? 1 : 0);
     GLFWmonitor* const monitor = glfwGetPrimaryMonitor();
@@ -144,7 +143,7 @@ void Window::start_imgui() {
     ImGui::GetIO().IniFilename = nullptr;  // the layout is fixed
     ImGui::GetIO().LogFilename = nullptr;
     if (!ImGui_ImplGlfw_InitForOpenGL(window_, true) || !ImGui_ImplOpenGL3_Init("#version 330 core"))
-        throw StartupError("starting ImGui", "its OpenGL backend refuses the context",
+        throw StartupError("starting ImGui", "its OpenGL backend rejects the context",
                            "update the graphics driver");
 }
 
@@ -168,7 +167,7 @@ Window::Size Window::size() const {
     return s;
 }
 
-// What of the display's scale is not in the window's own units already: all of it under X11, nothing under Wayland.
+// The part of the display's scale that is not in the window's units: all of it under X11, none under Wayland.
 float Window::density(const Size& s) const {
     float x = 1.0F, y = 1.0F;
     if (!target_) glfwGetWindowContentScale(window_, &x, &y);
@@ -211,7 +210,7 @@ void Window::draw_panels() {
 
 void Window::show() {
     if (target_)
-        glFinish();  // there is nothing to swap, and frames must not pile up
+        glFinish();  // nothing to swap, and frames must not queue up
     else
         glfwSwapBuffers(window_);
 }

@@ -1,7 +1,7 @@
 // The window and its OpenGL 3.3 core context, with ImGui on it.
 //
-// Thread   frame thread.  Fails by StartupError that tells no display from no OpenGL 3.3.
-// Hidden   a window that is not shown holds nothing defined, so pictures go to an image of the same size.
+// Thread   frame thread.  Fails by StartupError that distinguishes a missing display from missing OpenGL 3.3.
+// Hidden   the contents of a hidden window are undefined, so frames go to an image of the same size.
 #pragma once
 
 #include <memory>
@@ -16,7 +16,7 @@ struct GLFWwindow;
 
 namespace tact {
 
-// What came in since it was last taken.
+// Input since it was last taken.
 struct WindowInput {
     std::vector<KeyStroke> keys;
     std::vector<std::string> dropped;
@@ -24,23 +24,23 @@ struct WindowInput {
 
 class Window {
 public:
-    // ui_scale: of letters and panels, times what size and density of the display ask for.
+    // ui_scale: of text and panels, on top of the scale from the display's size and density.
     Window(int width_px, int height_px, bool hidden, float ui_scale = 1.0F);
     ~Window();
     Window(const Window&) = delete;
     Window& operator=(const Window&) = delete;
 
     struct Size {
-        int width = 1, height = 1;        // as ImGui counts
-        int width_px = 1, height_px = 1;  // of the frame buffer
+        int width = 1, height = 1;        // in ImGui's units
+        int width_px = 1, height_px = 1;  // of the framebuffer
     };
     [[nodiscard]] Size size() const;
     [[nodiscard]] bool close_wanted() const;
     void set_title(const std::string& title);
-    // Handles input, adapts the fonts to the size, begins an ImGui frame and binds the frame buffer.
+    // Processes input, adapts the fonts to the size, begins an ImGui frame and binds the framebuffer.
     void begin_frame(Theme& theme);
-    void draw_panels();  // what ImGui was told in this frame
-    void show();         // swaps, or finishes the image where hidden
+    void draw_panels();  // ImGui's content of this frame
+    void show();         // swaps, or finishes the image if hidden
     [[nodiscard]] std::vector<KeyStroke> take_keys();
     [[nodiscard]] std::vector<std::string> take_dropped();  // paths of files
     [[nodiscard]] GLFWwindow* handle() const { return window_; }
@@ -49,9 +49,9 @@ public:
 
     [[nodiscard]] const std::string& renderer() const { return renderer_; }
     [[nodiscard]] bool software() const { return software_; }
-    // The display sets the pace of show(): waiting there is not work.
+    // True if the display paces show(): waiting there is not work.
     [[nodiscard]] bool paced_by_display() const { return paced_; }
-    [[nodiscard]] double display_period_s() const { return display_period_s_; }  // 0: not known
+    [[nodiscard]] double display_period_s() const { return display_period_s_; }  // 0: unknown
 
 private:
     void open(int width_px, int height_px, bool hidden);

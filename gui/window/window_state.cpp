@@ -12,7 +12,7 @@
 namespace tact {
 namespace {
 
-constexpr const char* kFix = "gui/README.md shows the keys; or remove the file, and it is written anew";
+constexpr const char* kFix = "gui/README.md lists the keys; or remove the file: a new one is written";
 constexpr std::array<const char*, 3> kStyles{"glass", "solid", "wire"};
 constexpr std::array<const char*, 4> kMolecules{"trace", "tube", "sticks", "spheres"};
 constexpr std::array<const char*, 3> kColourings{"chain", "element", "body"};
@@ -76,10 +76,10 @@ WindowState read_window_state_text(std::string_view text, const std::string& nam
         char* end = nullptr;
         s.scene = std::strtoull(checksum.c_str(), &end, 16);
         if (checksum.size() != 16 || checksum.find_first_not_of("0123456789abcdef") != std::string::npos)
-            reader.fail("scene.checksum: ", "16 digits from 0 to f are wanted");
+            reader.fail("scene.checksum: ", "must be 16 hexadecimal digits");
     }
     const Quat q(quat[3], quat[0], quat[1], quat[2]);
-    if (std::abs(q.norm() - 1.0) > 0.01) reader.fail("scene.quat_eye_scene_xyzw: ", "its length is not 1");
+    if (std::abs(q.norm() - 1.0) > 0.01) reader.fail("scene.quat_eye_scene_xyzw: ", "its norm must be 1");
     s.q_eye_scene = q.normalized();
     return s;
 }
@@ -94,8 +94,7 @@ std::string window_state_text(const WindowState& s) {
     char checksum[20];
     std::snprintf(checksum, sizeof checksum, "%016" PRIx64, s.scene);
     const auto flag = [](bool value) { return value ? "true" : "false"; };
-    std::string text =
-        "# How the window of Tact was left. It is read and written by tact run SCENE --window-state FILE.\n";
+    std::string text = "# Window settings of Tact, read and written by tact run SCENE --window-state FILE.\n";
     text += line("size_px", "[" + std::to_string(s.width_px) + ", " + std::to_string(s.height_px) + "]");
     text += line("traces", flag(s.traces));
     text += line("span", quoted(name_of(kSpanNames, s.span_choice)));
@@ -120,8 +119,8 @@ std::string window_state_text(const WindowState& s) {
 
 void write_window_state_file(const std::filesystem::path& path, const WindowState& settings) {
     const std::string text = window_state_text(settings);
-    static_cast<void>(
-        read_window_state_text(text, path.string()));  // what cannot be read again takes no file's place
+    static_cast<void>(read_window_state_text(
+        text, path.string()));  // a text that cannot be read back must not replace a file
     write_whole_file(path, text);
 }
 

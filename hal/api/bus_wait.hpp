@@ -1,10 +1,10 @@
-// How a thread waits for the descriptors of its bus, without ever keeping the processor from whoever is below it.
+// Waits for the descriptors of a bus without starving threads of lower priority.
 //
-// A pump runs at a priority above the kernel's own threads that end transfers and take devices away. If it
-// looped while it waits for those, as poll() makes it once a descriptor is in error, they would never come
-// to it: seen on a real-time kernel, where an arm that was unplugged kept its pump awake for a second.
+// A pump runs at a priority above the kernel threads that complete transfers and remove devices. poll() returns
+// at once when a descriptor is in error; a pump that loops on it would starve those threads. Observed on a
+// real-time kernel: an unplugged arm kept its pump busy for a second.
 //
-// Thread  a pump's; blocks, so never the servo's.
+// Thread  pump only; blocks, so never the servo
 #pragma once
 
 #include <poll.h>
@@ -29,7 +29,7 @@ inline void nap(Duration d) noexcept {
     nanosleep(&time, nullptr);
 }
 
-// Until a descriptor is ready, but no longer than `patience`.
+// Waits until a descriptor is ready, at most `patience`.
 inline void wait_for(std::span<pollfd> descriptors, Duration patience) noexcept {
     const timespec time = to_timespec(patience);
     if (ppoll(descriptors.data(), descriptors.size(), &time, nullptr) <= 0) return;

@@ -1,7 +1,6 @@
-// With currents c = g + s r, g for the weight and r for the wrench, |c_i| <= L_i for all i holds for the
-// largest
-//     s = min over i of (L_i - g_i sign r_i) / |r_i|,   held to [0, 1],
-// and the wrench that is felt is s times the one asked for, since tau = J^T w is linear in w.
+// With currents c = g + s r, g for the weight and r for the wrench, the largest s with |c_i| <= L_i for all i is
+//     s = min over i of (L_i - g_i sign r_i) / |r_i|,   clamped to [0, 1].
+// The output wrench is s times the requested one, since tau = J^T w is linear in w.
 #include "hal/arm/arm_drive.hpp"
 
 #include <algorithm>
@@ -13,7 +12,7 @@ namespace tact {
 
 namespace {
 
-// Each joint of the gimbal has a limit of its own; the torque is shortened as a whole until all hold.
+// Each joint of the gimbal has its own limit; the whole torque is scaled down until all limits hold.
 double torque_share(const Joint6& tau, const Vec3& max) noexcept {
     double share = 1.0;
     for (Eigen::Index i = 0; i < 3; ++i) {
@@ -35,7 +34,7 @@ DriveCurrents drive_currents(const ArmKinematics& arm, const Joint6& q, const Wr
     held.force_n = shortened(wrench_dev.force_n, p.force_n_max);
     double share = held.force_n == wrench_dev.force_n ? 1.0 : p.force_n_max / wrench_dev.force_n.stableNorm();
     if (p.wrist == Wrist::driven) {
-        // Force and torque are felt together, so one factor shortens both.
+        // One factor scales force and torque, since the hand feels them together.
         const Joint6 turn = arm.torque_n_m(q, {Vec3::Zero(), wrench_dev.torque_n_m});
         share = std::min(share, torque_share(turn, p.torque_n_m_max));
     }
@@ -56,7 +55,7 @@ DriveCurrents drive_currents(const ArmKinematics& arm, const Joint6& q, const Wr
     }
     shown = std::max(shown, 0.0);
     out.current_a = hold_a + shown * wrench_a;
-    for (Eigen::Index i = 0; i < 6; ++i) {  // the last rounding
+    for (Eigen::Index i = 0; i < 6; ++i) {  // rounding errors
         const double limit = std::clamp(limit_a[i], 0.0, p.current_a_max[i]);
         out.current_a[i] = std::clamp(out.current_a[i], -limit, limit);
     }

@@ -2,45 +2,42 @@
 //
 //        y |                  elbow
 //          |          thigh .-'o
-//          |         l1  .-'    \   shin l2          q2: thigh above the level
-//          |         .-'         \                   q3: shin out of the plumb line
+//          |         l1  .-'    \   shin l2          q2: thigh above the horizontal
+//          |         .-'         \                   q3: shin from the vertical
 //          |     .-'  q2       q3 \   (here above 0)
 //          o -'- - - - - - - - - - o tip - - - z
 //       shoulder
 //
 // Tip. In the plane of the arm, from the shoulder: forward A = l1 cos q2 + l2 sin q3, up Y = l1 sin q2 - l2
-// cos q3. The turret turns that plane by q1 about y, to the left: p = (-A sin q1, Y, A cos q1). In the reset
-// pose p is (0, -l2, l1); seen from there and less the origin of the device, p + (0, l2, -l1) - origin.
+// cos q3. The turret rotates that plane by q1 about y, to the left: p = (-A sin q1, Y, A cos q1). In the reset
+// pose p is (0, -l2, l1); relative to it and to the device origin, the tip is p + (0, l2, -l1) - origin.
 //
 // Jacobian. Columns are the derivatives by q1, q2, q3:
 //     (-A c1, 0, -A s1),  (l1 s2 s1, l1 c2, -l1 s2 c1),  (-l2 c3 s1, l2 s3, l2 c3 c1),
 // det J = A l1 l2 cos(q3 - q2): singular with the tip above the shoulder, and with the arm stretched or
 // folded.
 //
-// Inverse. A = |(x, z)| as the tip is before the turret, q1 = atan2(-x, z). With d = q3 - q2
+// Inverse. A = |(x, z)|, since the tip is in front of the turret; q1 = atan2(-x, z). With d = q3 - q2
 //     A + iY = e^(i q2) (l1 + l2 sin d - i l2 cos d),   so   A^2 + Y^2 = l1^2 + l2^2 + 2 l1 l2 sin d.
 // Elbow up is cos d > 0; then q2 = atan2(Y, A) + atan2(l2 cos d, l1 + l2 sin d). Published inverses write the
-// same with two arc cosines of the triangle's sides, in a frame with x forward, y left, z up: with h^2 = A^2
+// same as two arc cosines of the triangle's sides, in a frame with x forward, y left, z up: with h^2 = A^2
 // + Y^2 their elbow angle is d + pi/2, and their angle at the shoulder is the second atan2. This form needs
 // no division by h and loses no digits where an arc cosine is steep.
 //
-// Orientation. The turret's frame is Ry(-q1), as (0,0,1) goes to (-s1, 0, c1); the shin's Ry(-q1) Rx(-q3), as
-// (0,-1,0) goes to (0, -c3, s3). Then the wrist: R = Ry(-q1) Rx(-q3) Ry(q4) Rx(-q5) Rz(-q6). So the joints
-// turn the stylus about -y, nothing (the linkage keeps the shin's direction), -Ry(-q1) x, and the wrist's
-// three axes: the lower half of the 6 x 6 Jacobian, and a torque at the stylus loads the turret and the shin
-// too, not the wrist alone. A published J^T F without these two terms is right for forces only.
+// (0,-1,0) goes to (0, -c3, s3). Then the wrist: R = Ry(-q1) Rx(-q3) Ry(q4) Rx(-q5) Rz(-q6). The joints
+// rotate the stylus about -y (q1), not at all (q2: the linkage keeps the shin's direction), about -Ry(-q1) x (q3)
+// and about the wrist's three axes. These are the lower half of the 6 x 6 Jacobian, so a torque at the stylus also
+// loads the turret and the shin. A published J^T F without these two terms is right for forces only.
 //
 // Virtual work: with v = J q', tau = J^T w does tau . q' = w . v. J^T needs no inverse, so nothing grows near
-// a singular configuration: |tau_1| <= A |F| + |T|, |tau_2| <= l1 |F|, |tau_3| <= l2 |F| + |T|, the wrist's <= |T|.
-// What is lost there is the force along the direction in which the tip cannot move: it is carried by the
-// arm's links and the hand does not feel it. So nothing has to be faded or cut out, and no other direction
-// suffers.
+// At a singular configuration, the links carry the force along the direction in which the tip cannot move, and the
+// hand does not feel it. So no force has to be faded out, and every other direction stays exact.
 //
-// Weight. Potential energy U = k2 sin q2 - k3 cos q3 + m g y, so the joints push (0, (k2 + m g l1) cos q2,
+// Weight. Potential energy U = k2 sin q2 - k3 cos q3 + m g y, so the joints exert (0, (k2 + m g l1) cos q2,
 // (k3 + m g l2) sin q3) to hold it. With the masses of the links as published for a Premium 1.5
 //     k2 = g (l1 (2 m_a + m_c) + 2 l5 m_be) / 2 = -0.0163,   k3 = g (l2 m_a + 2 l3 m_c - 2 l6 m_df) / 2 =
 //     -0.0738 N m:
-// the counterweights are a little too heavy for the bare arm; a gimbal at the tip makes that up.
+// the counterweights are a little too heavy for the bare arm; a gimbal at the tip balances them.
 #include "hal/arm/arm_kinematics.hpp"
 
 #include <algorithm>
@@ -149,10 +146,10 @@ bool ArmKinematics::inverse(const Pose& T_dev_tool, Joint6& q) const noexcept {
         if (cos_b > 1e-9) {
             q[3] = std::atan2(m(0, 2), m(2, 2));
             q[5] = std::atan2(-m(1, 0), m(1, 1));
-        } else {  // yaw and roll are one: all of it is given to the yaw
+        } else {  // yaw and roll share one axis; the yaw takes the whole angle
             q[3] = std::atan2(-m(2, 0), m(0, 0));
         }
-        // The same turn with the pitch beyond 90 degrees.
+        // The same rotation with the pitch beyond 90 degrees.
         const Vec3 other(wrapped(q[3] + std::numbers::pi), wrapped(std::numbers::pi - q[4]),
                          wrapped(q[5] + std::numbers::pi));
         const auto worst = [this](const Vec3& w) {

@@ -11,7 +11,7 @@ namespace tact {
 
 namespace {
 
-// In SI units; 0 where a figure is not known.
+// In SI units; 0 for an unknown value.
 template <std::size_t N>
 Eigen::Matrix<double, static_cast<int>(N), 1> in_si(const std::array<Figure, N>& metrics, double unit) {
     Eigen::Matrix<double, static_cast<int>(N), 1> v = Eigen::Matrix<double, static_cast<int>(N), 1>::Zero();
@@ -23,7 +23,7 @@ Eigen::Matrix<double, static_cast<int>(N), 1> in_si(const std::array<Figure, N>&
 
 double or_zero(const Figure& f) { return f.known() ? f.value : 0.0; }
 
-// Keys of what has to be there and is not.
+// Keys of required parameters without a value.
 class Missing {
 public:
     void need(const char* key, std::span<const Figure> metrics) {
@@ -66,10 +66,10 @@ void require_complete(const ArmParameterSet& f) {
         m.need("torque_mn_m_continuous", f.torque_mn_m_continuous);
     }
     if (!m.text().empty()) {
-        throw StartupError("arm \"" + f.model + "\" (" + f.name + ")",
-                           "no published figure is known for: " + m.text(),
-                           "measure them, or take them from the device's papers, and set them under [arm]; "
-                           "hal/arm/README.md says what each means");
+        throw StartupError(
+            "arm \"" + f.model + "\" (" + f.name + ")", "no published value is known for: " + m.text(),
+            "measure them, or take them from the device's data sheet, and set them under [arm]; "
+            "hal/arm/README.md explains each key");
     }
 }
 
@@ -113,7 +113,7 @@ ArmParameters arm_parameters(const ArmParameterSet& f) {
     const Joint6 ratio = in_si(f.drive_ratio, 1.0), counts = in_si(f.counts_per_turn, 1.0);
     const Eigen::Index sensed = f.wrist == Wrist::none ? 3 : 6, driven = f.wrist == Wrist::driven ? 6 : 3;
     for (Eigen::Index i = 0; i < sensed; ++i) {
-        // A count of zero is no encoder at all; the check below refuses what is then infinite.
+        // Counts of 0 would give an infinite step, which the check below rejects.
         p.rad_per_count[i] = 2.0 * std::numbers::pi / (counts[i] * ratio[i]);
     }
     p.low_rad = in_si(f.low_deg, kDegreeRad);

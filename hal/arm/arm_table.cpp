@@ -1,16 +1,17 @@
-// The table. Sources: (verified) read in a public source, (derived) computed from such, (remembered) as the
-// makers' data sheets are remembered: prefer what the device reports, or measure and configure.
+// The arm table. Sources: (verified) read in a public source, (derived) computed from verified values, (remembered)
+// from memory of the manufacturers' data sheets: prefer the value that the device reports, or measure and configure.
 //
+// Derivations:
 // Worked out here:
-// - Origin of the Omni. Its maker's software reported, in the inkwell, the joints (0, 0.26889, -0.370813)
+// - Origin of the Omni. The manufacturer's software reported, in the inkwell, the joints (0, 0.26889, -0.370813)
 //   rad, the gimbal (0.000108, 0.797273, -1.94046) rad and the tip (0, -65.5107, -88.1142) mm. The
-//   formula gives the tip (0, 44.489, -53.114) mm from the reset pose, so its origin is at (0, 110, 35)
+//   kinematics give the tip (0, 44.489, -53.114) mm from the reset pose, so its origin is at (0, 110, 35)
 //   mm, to 0.01 mm; and the three angles give the reported rotation to 1e-5 (hal_arm_kinematics_test).
-//   This is also the inkwell's configuration that calibration uses.
-// - Origins of the Premiums: where the makers' box lies whole within reach and farthest from the
+//   This is also the inkwell configuration for the calibration.
+// - Origins of the Premiums: chosen so that the manufacturer's whole box is within reach and farthest from the
 //   stretched and the folded arm: on a grid of 10 mm, cos(elbow) is nowhere below 0.44 (1.5) and 0.58
 //   (1.0). With the reset pose in the middle, a fifth of the box would be out of reach. Joint limits:
-//   what that box needs and 10 degrees more.
+//   the range that the box needs plus 10 degrees.
 // - Gimbal of the 6DOF: its data sheet gives 0.0023 degrees for yaw and pitch, 0.0080 for roll.
 #include "hal/arm/arm_table.hpp"
 
@@ -31,7 +32,7 @@ void fill(std::array<Figure, N>& to, FigureSource source, std::initializer_list<
     for (const double v : values) to[i++] = {v, source};
 }
 
-// Sources of whole rows.
+// Sources of complete rows.
 constexpr FigureSource V = FigureSource::verified, D = FigureSource::derived, M = FigureSource::remembered;
 
 // Calibrated where every joint is at 0.
@@ -45,12 +46,12 @@ ArmParameterSet omni() {
     f.thigh_mm = f.shin_mm = verified(133.35);
     fill(f.origin_mm, D, {0.0, 110.0, 35.0});
     fill(f.workspace_mm, M, {160.0, 120.0, 70.0});
-    fill(f.counts_per_turn, V, {15000.0, 15000.0, 15000.0});  // as seen at the joint
+    fill(f.counts_per_turn, V, {15000.0, 15000.0, 15000.0});  // at the joint
     fill(f.drive_ratio, V, {1.0, 1.0, 1.0});
     constexpr double deg = 1.0 / kDegreeRad;
     fill(f.low_deg, V, {-0.98 * deg, 0.0, -0.81 * deg, -2.5 * deg, -1.49 * deg, -2.58 * deg});
     fill(f.high_deg, V, {0.98 * deg, 1.75 * deg, 2.2 * deg, 2.5 * deg, 0.91 * deg, 2.58 * deg});
-    f.high_deg[2] = derived(2.2 * deg);  // thigh and elbow cannot both be at their highest
+    f.high_deg[2] = derived(2.2 * deg);  // thigh and elbow cannot both be at their upper limits
     fill(f.elbow_deg, V, {-0.81 * deg, 1.25 * deg});
     fill(f.calibration_deg, V, {0.0, 0.26889 * deg, -0.370813 * deg, 0.0, 0.797273 * deg, -1.94046 * deg});
     f.force_n_max = remembered(3.3);
@@ -72,7 +73,7 @@ ArmParameterSet desktop() {
     return f;
 }
 
-// What both sizes have in common.
+// Parameters common to both sizes.
 ArmParameterSet premium() {
     ArmParameterSet f;
     calibrated_at_zero(f);
@@ -165,7 +166,7 @@ ArmParameterSet arm_parameter_set(const std::string& model) {
         }
         known += (known.empty() ? "" : ", ") + std::string(m.name);
     }
-    throw StartupError("arm \"" + model + "\"", "there is no arm of this name in the table",
+    throw StartupError("arm \"" + model + "\"", "the table has no arm of this name",
                        "set arm.model to one of: " + known);
 }
 
@@ -174,33 +175,37 @@ std::vector<ArmKey> arm_keys(ArmParameterSet& f) {
     return {
         {"thigh_mm", one(f.thigh_mm), 10, 2000, "length from shoulder to elbow"},
         {"shin_mm", one(f.shin_mm), 10, 2000, "length from elbow to tip"},
-        {"origin_mm", f.origin_mm, -2000, 2000, "middle of the workspace, from the tip in the reset pose"},
+        {"origin_mm", f.origin_mm, -2000, 2000,
+         "middle of the workspace, relative to the tip in the reset pose"},
         {"workspace_mm", f.workspace_mm, 10, 4000, "full widths of the workspace"},
         {"counts_per_turn", f.counts_per_turn, -1e7, 1e7,
-         "of the encoder's shaft; negative: other way round"},
-        {"drive_ratio", f.drive_ratio, 0.1, 1000, "turns of motor and encoder a turn of the joint"},
+         "encoder counts per turn of its shaft; negative: reversed"},
+        {"drive_ratio", f.drive_ratio, 0.1, 1000, "turns of motor and encoder per turn of the joint"},
         {"low_deg", f.low_deg, -360, 360, "lowest joint angles"},
         {"high_deg", f.high_deg, -360, 360, "highest joint angles"},
-        {"elbow_deg", f.elbow_deg, -89, 89, "lowest and highest of shin less thigh"},
-        {"calibration_deg", f.calibration_deg, -360, 360, "joint angles in the calibrating pose"},
-        {"force_n_max", one(f.force_n_max), 0.01, 100, "for a moment"},
-        {"force_n_continuous", one(f.force_n_continuous), 0.01, 100, "for ever"},
-        {"stiffness_n_mm_max", one(f.stiffness_n_mm_max), 0.01, 100, "that its maker promises to be stable"},
-        {"torque_mn_m_max", f.torque_mn_m_max, 1, 10000, "of the gimbal's joints, for a moment"},
-        {"torque_mn_m_continuous", f.torque_mn_m_continuous, 1, 10000, "of the gimbal's joints, for ever"},
+        {"elbow_deg", f.elbow_deg, -89, 89, "lowest and highest angle of shin minus thigh"},
+        {"calibration_deg", f.calibration_deg, -360, 360, "joint angles in the calibration pose"},
+        {"force_n_max", one(f.force_n_max), 0.01, 100, "peak force"},
+        {"force_n_continuous", one(f.force_n_continuous), 0.01, 100, "continuous force"},
+        {"stiffness_n_mm_max", one(f.stiffness_n_mm_max), 0.01, 100,
+         "largest stable stiffness, from the manufacturer"},
+        {"torque_mn_m_max", f.torque_mn_m_max, 1, 10000, "peak torque of the gimbal's joints"},
+        {"torque_mn_m_continuous", f.torque_mn_m_continuous, 1, 10000,
+         "continuous torque of the gimbal's joints"},
         {"torque_constant_mn_m_a", f.torque_constant_mn_m_a, -1000, 1000,
-         "of the motors; negative: other way round"},
-        {"current_a_max", f.current_a_max, 0.01, 50, "of the motors, for a moment"},
-        {"current_a_continuous", f.current_a_continuous, 0.01, 50, "of the motors, for ever"},
-        {"motor_ohm", one(f.motor_ohm), 0.01, 1000, "winding of the arm's motors, at 25 degrees C"},
+         "torque constant of the motors; negative: reversed"},
+        {"current_a_max", f.current_a_max, 0.01, 50, "peak current of the motors"},
+        {"current_a_continuous", f.current_a_continuous, 0.01, 50, "continuous current of the motors"},
+        {"motor_ohm", one(f.motor_ohm), 0.01, 1000, "winding resistance of the arm's motors at 25 degrees C"},
         {"motor_k_w", f.motor_k_w, 0.01, 1000, "thermal resistances winding to housing, housing to ambient"},
         {"motor_tau_s", f.motor_tau_s, 0.1, 1e5, "thermal time constants of winding, housing"},
-        {"winding_c_max", one(f.winding_c_max), 40, 200, "what the winding stands"},
-        {"gravity_mn_m", f.gravity_mn_m, -500, 500, "to hold it: times cos(thigh) and times sin(shin)"},
-        {"tip_mass_g", one(f.tip_mass_g), 0, 500, "hung on at the tip besides, as handle or gimbal"},
-        {"viscous_n_m_s", one(f.viscous_n_m_s), 0, 1, "friction of a joint"},
-        {"coulomb_n_m", one(f.coulomb_n_m), 0, 1, "friction of a joint"},
-        {"apparent_mass_g", one(f.apparent_mass_g), 1, 5000, "felt at the tip"},
+        {"winding_c_max", one(f.winding_c_max), 40, 200, "highest permitted winding temperature"},
+        {"gravity_mn_m", f.gravity_mn_m, -500, 500,
+         "gravity torques: factor of cos(thigh), factor of sin(shin)"},
+        {"tip_mass_g", one(f.tip_mass_g), 0, 500, "additional mass at the tip, such as a handle or gimbal"},
+        {"viscous_n_m_s", one(f.viscous_n_m_s), 0, 1, "viscous friction of a joint"},
+        {"coulomb_n_m", one(f.coulomb_n_m), 0, 1, "Coulomb friction of a joint"},
+        {"apparent_mass_g", one(f.apparent_mass_g), 1, 5000, "apparent mass at the tip"},
     };
 }
 

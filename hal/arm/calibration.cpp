@@ -58,7 +58,7 @@ CalibrationState Calibration::step(const CalibrationInput& input, Instant now) n
         const bool left = style_ == CalibrationStyle::inkwell && !input.inkwell;
         const bool moved = !still(input.counts);
         if (left || ((moved || silent) && style_ == CalibrationStyle::reset_pose)) {
-            state_ = CalibrationState::waiting;  // the person confirms again
+            state_ = CalibrationState::waiting;  // the person must confirm again
             return state_;
         }
         if (moved || silent) hold(input, now);

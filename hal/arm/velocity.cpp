@@ -1,21 +1,21 @@
-// A position x shown in steps s is within s/2 of x, so the difference of two samples, D_i = x_k - x_i over
+// A position x quantized in steps s is within s/2 of x, so the difference of two samples, D_i = x_k - x_i over
 // the time t_i, is within s of the true one. A hand at constant speed v has |D_i - v t_i| <= s for every i: v
-// lies in all of
+// lies in all intervals
 //     [(D_i - s) / t_i, (D_i + s) / t_i].
-// The window grows backwards while these intervals share a speed. The speed of least squares over it, held to
-// the shared interval, is the answer. At constant speed the window is as long as it may be, and the answer
-// and v are in one interval of width 2 s / t.
+// The window grows backwards while these intervals intersect. The estimate is the least-squares speed over the window,
+// clamped to the intersection. At constant speed the window reaches its full length, and the estimate and v lie in
+// one interval of width 2 s / t.
 //
-// When the hand speeds up by a, a speed is shared as long as a parabola fits between two lines: v - v' = u =
-// sqrt(2 a s) on the one side, u t - a t^2 / 2 >= -s on the other, so to t = (2 + sqrt 2) sqrt(s / a). By
-// then the answer is late by far more than the steps blur it, so of a window that was cut only the newer half
-// is used. A hand at 2 cm and 2 Hz on steps of 0.03 mm, 1 kHz (2026-11-21): 5.8 mm/s root mean square from
-// the truth with the newer half, 9.6 with all, 4.9 with a third but worse when time is uneven; plain
-// differences and a low pass of 30 Hz 11.8 each. At 0.5 Hz: 1.9, differences 11.5, low pass 1.7.
+// Under an acceleration a, the intervals intersect as long as a parabola fits between two lines: v - v' = u =
+// sqrt(2 a s) on the one side, u t - a t^2 / 2 >= -s on the other, so up to t = (2 + sqrt 2) sqrt(s / a). At
+// that length the lag far exceeds the quantization error, so only the newer half of a window that was cut is used.
+// Root mean square error for a hand at 2 cm and 2 Hz, steps of 0.03 mm, 1 kHz (2026-11-21): 5.8 mm/s with the newer
+// half, 9.6 with the whole window, 4.9 with a third but worse at uneven times; plain
+// differences and a 30 Hz low-pass 11.8 each. At 0.5 Hz: 1.9, differences 11.5, low-pass 1.7.
 //
-// The window as published stops when the straight line to the oldest sample leaves one by more than s. Both
-// ends of that line are wrong by half a step, so that also happens at constant speed, and windows are then
-// shorter and noisier than they need to be.
+// The published window stops when the straight line to the oldest sample misses another sample by more than s. Both
+// ends of that line have an error of up to half a step, so this also happens at constant speed, and windows become
+// shorter and noisier than necessary.
 #include "hal/arm/velocity.hpp"
 
 #include <algorithm>
@@ -24,7 +24,7 @@
 
 namespace tact {
 
-// A hair more than the step, against rounding.
+// A little more than the step, against rounding errors.
 VelocityWindow::VelocityWindow(double step, const VelocitySettings& settings)
     : step_(std::max(std::abs(step), std::numeric_limits<double>::min()) * (1.0 + 1e-9)),
       settings_(settings) {}
@@ -35,7 +35,7 @@ void VelocityWindow::reset() noexcept {
     window_ = Duration(0);
 }
 
-// At rates above kSamples a window, the sample before gives way, so that the ring still spans it.
+// At sample rates above kSamples per window, replaces the previous sample so that the ring still spans the window.
 void VelocityWindow::keep(double position, Instant at) noexcept {
     const Duration spacing = settings_.span_max / static_cast<std::int64_t>(kSamples);
     const bool crowded = count_ >= 2 && at - back(1).at < spacing;

@@ -1,13 +1,12 @@
-// Speed from positions that come in steps, at whatever times they come.
+// Velocity from quantized positions at arbitrary times.
 //
-// Method   adaptive window: the longest stretch of newest samples that one straight line explains, each
+// Method   adaptive window: the longest run of newest samples that one straight line explains, each
 //          within a step (after Janabi-Sharifi, Hayward and Chen 2000); derivation in the .cpp
 // At rest  exactly 0
-// Slow     at constant speed, and at rest on the edge between two steps, never wrong by more than 2 steps
-//          a window
-// Moving   when the hand speeds up, the window shortens by itself: late by about
-//          0.9 sqrt(step / acceleration)
-// Time     samples without progress of time are left out; a gap starts anew
+// Slow     at constant speed, and at rest on the edge between two steps, the error is at most 2 steps per
+//          window
+// Moving   under acceleration the window shortens; the lag is about 0.9 sqrt(step / acceleration)
+// Time     samples with a time stamp that did not advance are ignored; a gap restarts the window
 // Thread   one; TACT_RT, fixed memory
 #pragma once
 
@@ -20,21 +19,20 @@
 namespace tact {
 
 struct VelocitySettings {
-    Duration span_max = std::chrono::milliseconds(30);  // longest window: noise at rest against delay
-    Duration gap_max =
-        std::chrono::milliseconds(50);  // longer without a sample: what was before is forgotten
+    Duration span_max = std::chrono::milliseconds(30);  // longest window: trades noise at rest against lag
+    Duration gap_max = std::chrono::milliseconds(50);   // a longer gap discards the earlier samples
 };
 
 class VelocityWindow {
 public:
-    // step: of the positions, in their unit; 0 is taken as the smallest there is.
+    // step: quantization step, in the unit of the positions; 0 counts as the smallest positive number.
     explicit VelocityWindow(double step = 1.0, const VelocitySettings& settings = {});
 
-    // Takes a position and gives the speed in its unit a second. What is not finite is left out.
+    // Adds a position and returns the speed in its unit per second. Non-finite positions are ignored.
     double push(double position, Instant at) noexcept TACT_RT;
     void reset() noexcept TACT_RT;
     [[nodiscard]] double per_s() const noexcept { return per_s_; }
-    [[nodiscard]] Duration window() const noexcept { return window_; }  // that the newest speed comes from
+    [[nodiscard]] Duration window() const noexcept { return window_; }  // of the newest speed
 
 private:
     static constexpr std::size_t kSamples = 40;
@@ -48,11 +46,11 @@ private:
     struct Fit {
         double per_s = 0.0;
         Duration window{};
-        std::size_t samples = 0;  // besides the newest
-        bool cut = false;         // one line does not explain the sample before these
+        std::size_t samples = 0;  // without the newest
+        bool cut = false;         // one line does not fit the sample before these
     };
     void keep(double position, Instant at) noexcept;
-    // Of the newest sample and at most so many before it.
+    // Fits a line to the newest sample and up to `most` samples before it.
     [[nodiscard]] Fit line(double position, Instant at, std::size_t most) const noexcept;
 
     double step_;
@@ -63,13 +61,13 @@ private:
     Duration window_{};
 };
 
-// The tip's velocity and its turning, from the encoders: one estimator a joint, where the steps are, then J
-// q'.
+// Linear and angular velocity of the tip from the encoders: one estimator per joint, where the quantization occurs,
+// then J q'.
 class ArmVelocity {
 public:
     explicit ArmVelocity(const ArmKinematics& arm, const VelocitySettings& settings = {});
 
-    // q belongs to these counts.
+    // q must belong to these counts.
     [[nodiscard]] Twist push(const Counts6& counts, const Joint6& q, Instant at) noexcept TACT_RT;
     void reset() noexcept TACT_RT;
     [[nodiscard]] const Joint6& joint_rad_s() const noexcept { return rad_s_; }

@@ -22,35 +22,36 @@ const char* boot_fault_text(BootFault fault) noexcept {
         case BootFault::none:
             return "nothing";
         case BootFault::no_firmware:
-            return "it runs no firmware, and none is configured";
+            return "the device runs no firmware, and none is configured";
         case BootFault::line:
-            return "its serial converter does not take its settings";
+            return "the serial converter does not accept its settings";
         case BootFault::no_hello:
-            return "its loader does not answer";
+            return "the boot loader does not answer";
         case BootFault::no_wake:
-            return "its loader does not go to full speed";
+            return "the boot loader does not switch to full speed";
         case BootFault::no_echo:
-            return "its loader stopped in the middle of the firmware";
+            return "the boot loader stopped in the middle of the firmware";
         case BootFault::wrong_echo:
-            return "its loader gives the firmware's bytes back wrong";
+            return "the boot loader echoes wrong firmware bytes";
         case BootFault::silent:
-            return "it took the firmware, which then does not answer";
+            return "the device accepted the firmware, but the firmware does not answer";
     }
     return "unknown";
 }
 
 std::vector<std::byte> read_firmware(const std::string& path) {
     const std::string what = "reading the Falcon's firmware " + path;
-    const std::string fix = "device.firmware has to name the file that came with the device's own software";
+    const std::string fix = "set device.firmware to the file that came with the device's own software";
     errno = 0;
     std::ifstream file(path, std::ios::binary);
     if (!file) throw StartupError(what, std::strerror(errno != 0 ? errno : ENOENT), fix);
     std::vector<char> bytes(kFirmwareBytesMax + 1);
     file.read(bytes.data(), static_cast<std::streamsize>(bytes.size()));
-    if (file.bad() || file.gcount() == 0) throw StartupError(what, "there is nothing in it", fix);
+    if (file.bad() || file.gcount() == 0) throw StartupError(what, "the file is empty", fix);
     bytes.resize(static_cast<std::size_t>(file.gcount()));
     if (bytes.size() > kFirmwareBytesMax)
-        throw StartupError(what, "it has more than " + std::to_string(kFirmwareBytesMax) + " bytes", fix);
+        throw StartupError(what, "the file has more than " + std::to_string(kFirmwareBytesMax) + " bytes",
+                           fix);
     std::vector<std::byte> out(bytes.size());
     std::transform(bytes.begin(), bytes.end(), out.begin(), [](char c) { return static_cast<std::byte>(c); });
     return out;
@@ -92,7 +93,7 @@ void Boot::load(Instant now) noexcept {
     tries_ = kHellos;
 }
 
-// The converter's settings are not tried again: where it does not take one it is gone, or no converter.
+// The converter's settings are not retried: a converter that refuses one is gone or of another kind.
 void Boot::fail(BootFault fault, Instant now) noexcept {
     fault_ = fault;
     const bool over = fault == BootFault::line || fault == BootFault::no_firmware || attempts_ >= kAttempts;
@@ -102,7 +103,7 @@ void Boot::fail(BootFault fault, Instant now) noexcept {
 }
 
 void Boot::say(std::span<const std::byte> bytes, Instant now) noexcept {
-    if (!bus_->send(bytes)) return;  // one is still on its way: the next round
+    if (!bus_->send(bytes)) return;  // the previous message is still being sent; retry in the next round
     said_ = true;
     since_ = now;
 }
@@ -159,7 +160,7 @@ void Boot::take(std::span<const std::byte> bytes, Instant now) noexcept {
             case BootState::hello:
                 if (heard_ != kHelloBack) break;
                 if (set(ftdi::kLoadLine, now)) enter(BootState::waking, now);
-                return;  // what came after it came at another speed
+                return;  // bytes after the reply have the wrong speed
             case BootState::waking:
                 if (!said_ || byte != kWake[0]) break;
                 echoed_ = 0;

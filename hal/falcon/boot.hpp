@@ -1,13 +1,13 @@
-// Brings a Falcon to the point where it answers packets: asks whether its firmware runs, and if not gives it the
-// owner's file through the loader that it starts with.
+// Brings a Falcon to the state in which it answers packets: checks whether its firmware runs, and otherwise
+// loads the user's file through the boot loader.
 //
-// asking   an empty request at full speed; whatever runs already is left as it is, with its marks found
-// hello    DTR restarts the device; 9600 baud, 0A 43 0D is answered by 0A 44 2C 0D
-// waking   143 kbaud, 'A' is answered by 'A'
-// writing  62 bytes at a time, each answered by the same bytes; a wrong one begins again with hello
+// asking   an empty request at full speed; firmware that already runs is kept, with its marks found
+// hello    DTR restarts the device; at 9600 baud it answers 0A 43 0D with 0A 44 2C 0D
+// waking   at 143 kbaud it answers 'A' with 'A'
+// writing  62 bytes at a time, echoed by the device; a wrong byte restarts at hello
 // Then     asking again, for as long as the firmware takes to start
-// Limits   every step has a time, the whole kAttempts; then failed, until start()
-// Thread   the pump's; it moves the bus, and waits for nothing but the converter's settings
+// Limits   every step has a time limit, all loads together kAttempts; then failed, until start()
+// Thread   the pump's; it drives the bus and blocks only for the converter's settings
 #pragma once
 
 #include <string>
@@ -33,7 +33,7 @@ enum class BootFault : std::uint8_t {
 
 inline constexpr std::size_t kFirmwareBytesMax = std::size_t{128} * 1024;  // the device has 36 KiB of memory
 
-// The owner's file; StartupError where it is not there, empty or too large.
+// The user's file; StartupError if it is missing, empty or too large.
 [[nodiscard]] std::vector<std::byte> read_firmware(const std::string& path);
 
 class Boot {
@@ -44,10 +44,10 @@ public:
 
     explicit Boot(usb::Bus& bus) : bus_(&bus) {}
 
-    // Before the first start().
+    // Sets the firmware; before the first start().
     void give(std::vector<std::byte> firmware) { firmware_ = std::move(firmware); }
 
-    // After every connect. anew: not asked first, so that the device starts without its marks.
+    // Call after every connect. anew: loads without asking first, so that the device restarts without its marks.
     void start(Instant now, bool anew = false) noexcept;
     void take(std::span<const std::byte> bytes, Instant now) noexcept;
     void round(Instant now) noexcept;

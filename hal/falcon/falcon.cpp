@@ -11,7 +11,7 @@ namespace {
 
 constexpr Duration kLostAfter = std::chrono::milliseconds(100);
 
-// The clutch is bit 0 of a sample: the grip's middle button, bit 2 of a reply.
+// The clutch is bit 0 of a sample: the middle button of the grip, bit 2 of a reply.
 std::uint32_t buttons_of(const falcon::Reply& reply) noexcept {
     const std::uint32_t b = reply.buttons;
     return (b >> 2U & 1U) | (b & 3U) << 1U | (b & 8U);
@@ -41,7 +41,7 @@ void Falcon::begin_generation() noexcept {
     forget_position();
 }
 
-// Where the counts have the grip. Counts that no grip can have are lost ones.
+// Grip position from the counts. Counts that no grip position can have are lost counts.
 void Falcon::locate() noexcept {
     const Vec3 leg_rad = legs_.angles_rad(news_.reply.counts);
     Vec3 grip_m;
@@ -62,7 +62,7 @@ void Falcon::locate() noexcept {
     sample_.twist_dev.linear_m_s = configuration_.jacobian * rad_s;
 }
 
-// A reply that was not seen before.
+// Handles a new reply.
 void Falcon::take() noexcept {
     replies_ = news_.replies;
     ++sample_.sequence;

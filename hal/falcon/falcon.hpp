@@ -1,18 +1,18 @@
-// Novint's Falcon: three degrees of freedom, through the firmware that its owner has, over its serial converter
-// (PROTOCOL.md). Untried on hardware.
+// Novint's Falcon: three degrees of freedom, with the firmware that the user supplies, over its serial
+// converter (PROTOCOL.md). Not yet tested on hardware.
 //
-// open()    waits for the device for up to kFindMax, gives it its firmware if it does not run yet (some ten seconds), waits for its first
-//           reply; then a pump thread owns the bus
-// read()    newest state: position, speed, buttons (bit 0, the clutch: the middle one); no orientation. Until all
-//           three encoders have found their marks it stands at the origin, nobody's hand is on it, and the
-//           notice says what the person has to do: pull the grip out, and push it in all the way.
-// write()   force to motor steps. None before the marks are found, with a fault, where the legs cannot show
-//           it, and not before enable was low after these. Torques are not shown. The grip's weight is not
-//           carried.
+// open()    waits for the device for up to kFindMax, loads the firmware if none runs (about ten seconds),
+//           waits for the first reply; then a pump thread owns the bus
+// read()    newest state: position, velocity, buttons (bit 0, the clutch: the middle one); no orientation.
+//           Until all three encoders have found their marks, the position is the origin, hand_present is
+//           false, and the notice tells the user to pull the grip out and push it in all the way.
+// write()   force to motor steps. None before the marks are found, during a fault, where the legs cannot
+//           exert it, or before enable was low after these. Torques are ignored. The grip's weight is not
+//           compensated.
 // relax()   any thread, any state: no torque from the next packet on, until enable was low
-// Replug    found again by its serial, marks anew; never armed by itself
-// Fails by  lost: no device, or 100 ms without a reply; fault: as latched; StartupError in open()
-// Thread    open() and destruction on the main one; read() and write() on the servo's, memory only
+// Replug    found again by its serial number, marks searched again; never re-armed automatically
+// Errors    lost: no device, or 100 ms without a reply; fault: as latched; StartupError in open()
+// Thread    open() and destruction on the main thread; read() and write() on the servo thread, memory only
 #pragma once
 
 #include <memory>
@@ -27,22 +27,22 @@
 namespace tact {
 
 struct FalconSettings {
-    std::string serial;    // empty: the only one there is
-    std::string firmware;  // file; empty: it has to run already
+    std::string serial;    // empty: the only Falcon on the bus
+    std::string firmware;  // file; empty: the firmware must already run
     falcon::Geometry geometry;
-    Duration hold_max = std::chrono::milliseconds(3);  // the newest state is good for so long
+    Duration hold_max = std::chrono::milliseconds(3);  // validity of the newest state
     int pump_priority = kPumpPriority;                 // FIFO; 0: ordinary scheduling
     bool thread = true;                                // false: the caller runs pump().round(), for tests
     void (*say)(const char* text) =
-        nullptr;  // while open() waits or goes on with less; null: on standard error
+        nullptr;  // reports progress and reduced operation in open(); null: standard error
 };
 
 class Falcon final : public HapticDevice {
 public:
-    // What its maker does not tell: low, and to be raised by who has measured it.
+    // The manufacturer states neither: low values, to be raised after a measurement.
     static constexpr double kForceContinuousN = 2.5;
     static constexpr double kStiffnessNM = 1000.0;
-    static constexpr Duration kFindMax = std::chrono::seconds(5);  // it is just being plugged or switched on
+    static constexpr Duration kFindMax = std::chrono::seconds(5);  // a device that was just connected
 
     explicit Falcon(const FalconSettings& settings);
     Falcon(const FalconSettings& settings, std::unique_ptr<usb::Bus> bus);
@@ -78,7 +78,7 @@ private:
     usb::PumpThread thread_;
     bool opened_ = false;
 
-    // Of the servo's thread.
+    // Used by the servo thread only.
     falcon::PumpNews news_;
     DeviceSample sample_;
     falcon::ArmConfiguration configuration_;
@@ -86,9 +86,9 @@ private:
     std::uint64_t replies_ = 0;
     std::uint32_t generation_ = 0, jumps_ = 0;
     DeviceNotice fault_ = DeviceNotice::none, cause_ = DeviceNotice::none;
-    bool located_ = false;  // marks found, and the legs are where a Falcon's can be
+    bool located_ = false;  // marks found, and the leg angles are possible
     bool lowered_ = false;  // enable was low since the fault
-    bool gate_ = false;     // enable may go to the pump
+    bool gate_ = false;     // enable may be passed to the pump
     std::uint32_t relaxed_ = 0;
 };
 

@@ -1,4 +1,4 @@
-// What happens on the main thread: finding the device, its firmware, the pump's thread.
+// The part on the main thread: finds the device, loads its firmware, starts the pump's thread.
 #include <cstdio>
 
 #include "hal/falcon/falcon.hpp"
@@ -14,22 +14,22 @@ using usb::BusFinding;
 
 namespace {
 
-constexpr Duration kFirstMax = std::chrono::seconds(90);  // with its firmware, written up to three times
+constexpr Duration kFirstMax = std::chrono::seconds(90);  // with the firmware written up to three times
 
 [[noreturn]] void refuse(const BusFinding& found, const std::string& serial) {
     const std::string what = "opening the Falcon" + (serial.empty() ? "" : " " + serial);
-    const std::string there = found.detail.empty() ? "" : "; there are: " + found.detail;
+    const std::string there = found.detail.empty() ? "" : "; connected: " + found.detail;
     switch (found.fault) {
         case BusFault::missing:
             throw StartupError(
-                what, "no such device is on the bus" + there,
-                "plug it in, with its own power supply too, or correct device.serial; lsusb shows "
+                what, "no such device is connected" + there,
+                "plug in its USB cable and power supply, or correct device.serial; lsusb lists "
                 "it as 0403:cb48");
         case BusFault::several:
-            throw StartupError(what, "there are several" + there,
-                               "say which one by device.serial in the configuration");
+            throw StartupError(what, "several are connected" + there,
+                               "set device.serial in the configuration to the one to use");
         case BusFault::twins:
-            throw StartupError(what, "two have this serial", "plug in one of them");
+            throw StartupError(what, "two devices have this serial number", "unplug one of them");
         default:
             usb::refuse_open(what, found);
     }
@@ -38,12 +38,12 @@ constexpr Duration kFirstMax = std::chrono::seconds(90);  // with its firmware, 
 [[noreturn]] void refuse(BootFault fault, const std::string& serial) {
     const std::string what = "starting the Falcon" + (serial.empty() ? "" : " " + serial);
     if (fault == BootFault::no_firmware)
-        throw StartupError(
-            what, boot_fault_text(fault),
-            "set device.firmware to the file that came with the device's own software; Tact has none");
+        throw StartupError(what, boot_fault_text(fault),
+                           "set device.firmware to the file that came with the device's own software; Tact "
+                           "does not include it");
     throw StartupError(what, boot_fault_text(fault),
-                       "see that its power supply is plugged in; take it off USB and power for a moment; "
-                       "hal/falcon/PROTOCOL.md says what it has to answer");
+                       "check that its power supply is plugged in; unplug USB and power for a moment; "
+                       "hal/falcon/PROTOCOL.md lists the expected replies");
 }
 
 }  // namespace
@@ -89,7 +89,7 @@ void Falcon::find() {
         serial_ = found.serial;
         if (found.fault == BusFault::none) return;
         if (!usb::may_pass(found.fault) || bus_->now() >= end) refuse(found, settings_.serial);
-        if (!said) say("waiting a few seconds for the Falcon: it is not there, or not ready yet");
+        if (!said) say("waiting up to 5 s for the Falcon: it is not connected or not ready yet");
         said = true;
         static_cast<void>(bus_->wait({}, std::chrono::milliseconds(50)));
     }
@@ -104,12 +104,12 @@ void Falcon::wait_for_first_reply() {
         if (news_.link == Link::refused) refuse(news_.boot_fault, serial_);
         if (news_.link == Link::open && news_.replies > 0) return;
         if (!said && bus_->now() - start > std::chrono::seconds(1)) {
-            say("giving the Falcon its firmware: some ten seconds");
+            say("loading the Falcon's firmware: about ten seconds");
             said = true;
         }
     }
-    throw StartupError("the Falcon " + serial_, "it does not answer (" + summary(news_.counts) + ")",
-                       "take it off USB and power for a moment, and plug it in again");
+    throw StartupError("the Falcon " + serial_, "the device does not answer (" + summary(news_.counts) + ")",
+                       "unplug USB and power for a moment, then plug them in again");
 }
 
 DeviceInfo Falcon::describe() const {

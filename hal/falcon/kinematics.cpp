@@ -1,18 +1,19 @@
-// A leg, seen along its own axes: u from the middle of the base to its hip, v across, w to the user. The hip
-// is the origin; the grip's middle is moved there by what is fixed at both ends,
+// A leg in its own axes: u from the middle of the base to its hip, v across, w to the user. The hip is the
+// origin; the fixed lengths at both ends shift the middle of the grip to
 //     u = p . radial - r + c,   v = p . across - s + f,   w = p . z + middle_z.
-// The thigh turns in the plane of u and w and has the knee at a (cos t, sin t). From there the short pieces and
-// the parallelogram lead to the grip: the short pieces stay in that plane and together are h = d + e, the
-// parallelogram leans across by v. With
+// The thigh rotates in the plane of u and w and has its knee at a (cos t, sin t). From there, the short links and
+// the parallelogram lead to the grip: the short links stay in that plane, with the total length h = d + e; the
+// parallelogram tilts across by v. With
 //     rho = |(u - a cos t, w - a sin t)|,
 //     G(p, t) = (rho - h)^2 + v^2 - b^2 = 0
-// is what holds a leg together: a torus about the knee.
+// is the closure condition of a leg: a torus about the knee.
 //
-// Inverse   L = h + sqrt(b^2 - v^2) is rho; the law of cosines gives cos(t - atan2(w, u)), and the knee that
-//           points outwards is the smaller t.
-// Forward   Newton on the three G from a near position, steps held to kStepM. From any place of the workspace
-//           to any other it takes at most eight steps, from 2 mm beside at most four (200000 pairs at random);
-//           what is not solved then, or is solved out of reach, is no configuration of a Falcon.
+// Inverse   L = h + sqrt(b^2 - v^2) is rho; the law of cosines gives cos(t - atan2(w, u)), and the knee
+//           that points outwards has the smaller t.
+// Forward   Newton's method on the three G from a nearby position, with steps limited to kStepM. Between
+//           any two places of the workspace it takes at most eight steps, from 2 mm away at most four
+//           (200000 random pairs); angles that are not solved then, or only out of reach, are no
+//           configuration of a Falcon.
 // Jacobian  G_p dp + G_t dt = 0, so dp/dt = -M^-1 D with the rows of M the gradients G_p and D = diag(G_t).
 // Virtual   work: torque = J^T F.
 #include "hal/falcon/kinematics.hpp"
@@ -113,7 +114,7 @@ bool Kinematics::forward(const Vec3& leg_rad, const Vec3& near_m, Vec3& grip_m) 
         if (far > kStepM) way *= kStepM / far;
         p -= way;
         if (far > kSolvedM) continue;
-        // The three tori meet in other places too: behind the base, and with knees turned in.
+        // The three tori also intersect elsewhere: behind the base, and with knees turned in.
         Vec3 again;
         if (p.norm() > kReachM || !inverse(p, again) || (again - leg_rad).cwiseAbs().maxCoeff() > 1e-9)
             return false;
@@ -143,7 +144,7 @@ ArmConfiguration Kinematics::configuration(const Vec3& grip_m) const noexcept {
     return out;
 }
 
-// The motors' way is against the encoders': both sources above have the sign.
+// The motors turn against the encoders: both sources above have the sign.
 Drive Kinematics::drive(const ArmConfiguration& configuration, const Vec3& force_n) const noexcept {
     Drive out;
     if (!configuration.good || !force_n.allFinite()) return out;

@@ -8,7 +8,7 @@ constexpr std::byte kHead{'<'}, kTail{'>'};
 constexpr unsigned kBase = 'A';
 constexpr std::size_t kBitsAt = 13, kUnknownAt = 14;
 
-// The bits of a byte that is kBase plus at most `most`; false beyond.
+// The bits of a byte from kBase to kBase + most; false for any other byte.
 bool value(std::byte byte, unsigned most, unsigned& out) noexcept {
     const auto b = static_cast<unsigned>(byte);
     if (b < kBase || b - kBase > most) return false;
@@ -79,7 +79,7 @@ PacketFault decode(std::span<const std::byte> bytes, Reply& out) noexcept {
     return PacketFault::none;
 }
 
-// Neither '<' nor '>' is a digit, so within one both mean that a packet was cut: the first begins another one.
+// Neither '<' nor '>' is a digit, so inside a packet both mean that it was cut; '<' starts a new packet.
 bool ReplyStream::push(std::byte byte, Reply& out) noexcept {
     const bool inside = size_ > 0;
     const bool cut = inside && size_ < kUnknownAt && (byte == kHead || byte == kTail);

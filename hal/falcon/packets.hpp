@@ -1,10 +1,11 @@
-// The packets between the PC and the Falcon's own firmware, as PROTOCOL.md has them: driver, tests and fuzzing
-// share this.
+// Packets between the PC and the Falcon's own firmware, see PROTOCOL.md. Shared by driver, tests and
+// fuzzing.
 //
-// Bytes    16 each way: '<', twelve digits, one byte of bits, one unknown, '>'; a digit is four bits plus 'A'
-// Units    integers as on the wire: steps of torque, counts of the encoders
-// Fails by a fault, counted; there is no checksum and no sequence, so a byte outside its range is all that
-//          gives a bad packet away here. What is refused is not written to `out`.
+// Bytes    16 each way: '<', twelve digits, one byte of bits, one unknown, '>'; a digit is four bits plus
+//          'A'
+// Units    integers as in the packet: steps of torque, counts of the encoders
+// Errors   a counted fault; without checksum and sequence number, a byte outside its range is the only sign
+//          of a bad packet. A refused packet does not change `out`.
 // Thread   any; TACT_RT
 #pragma once
 
@@ -29,11 +30,11 @@ inline constexpr std::uint8_t kAll = kGreen | kBlue | kRed;
 
 inline constexpr std::uint8_t kHomedAll = 7;
 
-// PC to device. It answers each with one reply.
+// PC to device. The device answers each with one reply.
 struct Request {
     std::array<std::int16_t, 3> torque{};
     std::uint8_t leds = 0;  // bits of led
-    bool homing = false;    // the encoders are to find their marks
+    bool homing = false;    // requests that the encoders search their marks
     bool operator==(const Request&) const = default;
 };
 
@@ -41,7 +42,7 @@ struct Request {
 struct Reply {
     std::array<std::int16_t, 3> counts{};
     std::uint8_t buttons = 0;  // four bits
-    std::uint8_t homed = 0;    // three bits: an encoder whose counts mean something
+    std::uint8_t homed = 0;    // three bits, one per encoder whose counts are valid
     bool operator==(const Reply&) const = default;
 };
 
@@ -50,10 +51,10 @@ struct Reply {
 [[nodiscard]] PacketFault decode(std::span<const std::byte> bytes, Request& out) noexcept TACT_RT;
 [[nodiscard]] PacketFault decode(std::span<const std::byte> bytes, Reply& out) noexcept TACT_RT;
 
-// Replies from a stream of bytes, which come in pieces of any size. After a fault it goes on with the next '<'.
+// Decodes replies from a stream of bytes in pieces of any size. After a fault it continues at the next '<'.
 class ReplyStream {
 public:
-    // True: this byte ended a good reply, which is in `out`.
+    // True: this byte completed a good reply, now in `out`.
     bool push(std::byte byte, Reply& out) noexcept TACT_RT;
     void reset() noexcept TACT_RT { size_ = 0; }
 

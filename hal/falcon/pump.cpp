@@ -20,13 +20,12 @@ std::uint64_t PumpCounts::bad() const noexcept {
 }
 
 std::string summary(const PumpCounts& c) {
-    return "asked " + std::to_string(c.asked) + " times, answered " + std::to_string(c.taken) + ", late " +
-           std::to_string(c.late) + ", not asked for " + std::to_string(c.unasked) +
-           "; refused for their frame " + std::to_string(c.refused[1]) + ", digits " +
-           std::to_string(c.refused[2]) + ", bits " + std::to_string(c.refused[3]) + ", counts too far " +
-           std::to_string(c.far) + "; jumps " + std::to_string(c.jumps) + ", transfers failed " +
-           std::to_string(c.transfers_failed) + ", stalls " + std::to_string(c.stalls) +
-           ", connected again " + std::to_string(c.reconnects);
+    return "requests " + std::to_string(c.asked) + ", replies " + std::to_string(c.taken) + ", late " +
+           std::to_string(c.late) + ", unrequested " + std::to_string(c.unasked) + "; refused: frame " +
+           std::to_string(c.refused[1]) + ", digits " + std::to_string(c.refused[2]) + ", bits " +
+           std::to_string(c.refused[3]) + ", counts too far " + std::to_string(c.far) + "; jumps " +
+           std::to_string(c.jumps) + ", transfers failed " + std::to_string(c.transfers_failed) +
+           ", stalls " + std::to_string(c.stalls) + ", connected again " + std::to_string(c.reconnects);
 }
 
 Pump::Pump(usb::Bus& bus, std::string serial, double rad_per_count)
@@ -52,7 +51,7 @@ void Pump::connected(Instant now, bool anew) noexcept {
     news_.on = news_.tripped = false;
     sending_ = due_ = known_ = moved_ = false;
     owed_ = unanswered_ = far_ = 0;
-    amplifier_ = phantom::Amplifier(0, kMost);  // off: enable has to be seen low first
+    amplifier_ = phantom::Amplifier(0, kMost);  // off: enable must first be low
     sequence_ = 0;
     boot_.start(now, anew);
     publish(news_);
@@ -69,7 +68,7 @@ void Pump::lose(Instant now) noexcept {
 bool Pump::quiet() const noexcept { return news_.link != Link::open || (!moved_ && !sending_); }
 
 Duration Pump::patience() const noexcept {
-    constexpr Duration kLong = std::chrono::milliseconds(1);  // the watchdog is looked at that often
+    constexpr Duration kLong = std::chrono::milliseconds(1);  // period of the watchdog check
     if (news_.link != Link::open || owed_ > 0) return kLong;
     const Instant now = link_.bus().now();
     const Duration since = now - ordered_at(), idle = asked_at_ + kIdle - now;
@@ -82,7 +81,7 @@ void Pump::follow_boot(Instant now) noexcept {
     news_.boot_fault = boot_.fault();
     if (boot_.state() == BootState::failed) {
         news_.link = Link::refused;
-        restart_at_ = now + 10 * kReopenEvery;  // then all of it again
+        restart_at_ = now + 10 * kReopenEvery;  // then the whole boot starts again
         return;
     }
     if (boot_.state() != BootState::done) return;
@@ -152,11 +151,11 @@ void Pump::look_at_replies(Instant now) noexcept {
     owed_ = 0;
     stream_.reset();
     sent_answers_ns_ = last_answers_ns_ = 0;
-    // What comes now was asked for too long ago.
+    // Replies that arrive now belong to requests that are too old.
     if (!link_.bus().control(ftdi::kForgetIn) || ++unanswered_ >= kUnansweredMax) lose(now);
 }
 
-// Before they are homed counts mean nothing, and jump when they begin to.
+// Before homing, counts are meaningless; they jump when homing completes.
 bool Pump::possible(const Reply& reply, Instant at) const noexcept {
     if (reply.homed != kHomedAll) return true;
     const double dt_s = std::clamp(to_s(at - taken_at_), 0.0, 0.1);
@@ -208,7 +207,7 @@ void Pump::take_bytes(std::span<const std::byte> bytes, Instant at) noexcept {
     }
     if (stream_.counts().refused == news_.counts.refused) return;
     news_.counts.refused = stream_.counts().refused;
-    owed_ = 0;  // a bad reply is one too: asked again at once
+    owed_ = 0;  // a bad reply also answers the request: ask again at once
     sent_answers_ns_ = last_answers_ns_ = 0;
 }
 
@@ -224,7 +223,7 @@ void Pump::take(const usb::BusEvent& event) noexcept {
             return;
         case usb::BusEventKind::send_failed:
             sending_ = false;
-            moved_ = true;  // what the motors have is not known: the next zero is said again
+            moved_ = true;  // the motors' torque is unknown: send the next zero again
             ++news_.counts.transfers_failed;
             return;
         case usb::BusEventKind::receive_failed:

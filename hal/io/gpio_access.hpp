@@ -1,10 +1,10 @@
-// The lines of a GPIO chip through libgpiod, whose two generations share no call: this header hides which
-// one. gpio_access_v1.cpp is for 1.6 (Debian 12), gpio_access_v2.cpp for 2.x (Debian 13); CMake takes the one
-// that fits.
+// The lines of a GPIO chip through libgpiod, whose two generations have no call in common: this header
+// hides the difference. gpio_access_v1.cpp is for 1.6 (Debian 12), gpio_access_v2.cpp for 2.x (Debian 13);
+// CMake selects the right one.
 //
 // Values   bit i belongs to the i-th line of the request, 1 is active
-// Fails by GpioRefusal at the request; by false afterwards. set() may say true though the adapter was
-//          pulled out: only a look at the inputs and at the device node tells
+// Errors   GpioRefusal at the request; false afterwards. set() may return true although the adapter was
+//          unplugged: only a read of the inputs and a check of the device node detect that
 // Thread   one at a time
 #pragma once
 
@@ -24,7 +24,7 @@ struct GpioLine {
     std::string line;  // number or name
     bool output = false;
     bool active_low = false;
-    bool edges = false;  // of an input: wait() tells of them
+    bool edges = false;  // of an input: wait() reports them
     GpioBias bias = GpioBias::as_is;
 };
 
@@ -35,7 +35,7 @@ struct GpioChip {
 
 struct GpioRefusal {
     std::string line{};    // empty: the chip itself
-    int error = 0;         // errno; 0: there is no such line
+    int error = 0;         // errno; 0: no such line
     std::string detail{};  // for people
 };
 
@@ -50,7 +50,7 @@ class GpioAccess {
 public:
     static constexpr std::size_t kLinesMax = 16;
 
-    // Outputs begin inactive. Throws GpioRefusal.
+    // Outputs start inactive. Throws GpioRefusal.
     GpioAccess(const std::string& path, std::span<const GpioLine> lines);
     ~GpioAccess();
     GpioAccess(const GpioAccess&) = delete;
@@ -58,10 +58,10 @@ public:
 
     [[nodiscard]] bool get(std::uint32_t& active) noexcept;  // of the inputs
     [[nodiscard]] bool set(std::size_t i, bool active) noexcept;
-    // Until an edge or for so long; adds the lines that had edges to `touched`. False: the chip is gone.
+    // Waits for an edge, at most `longest`; adds the lines with edges to `touched`. False: the chip is gone.
     [[nodiscard]] bool wait(Duration longest, std::uint32_t& touched) noexcept;
 
-    // Whose device node this is; else errno in `error`.
+    // The chip of this device node; false with errno in `error`.
     static bool describe(const std::string& path, GpioChip& chip, int& error);
 
 private:

@@ -1,4 +1,4 @@
-// libgpiod 1.6: a request of its own for each line, because levels and bias are settings of a request there.
+// libgpiod 1.6: a separate request for each line, because level and bias are settings of a request there.
 #include <gpiod.h>
 #include <poll.h>
 
@@ -105,7 +105,7 @@ bool GpioAccess::wait(Duration longest, std::uint32_t& touched) noexcept {
         const pollfd& p = l.fds[fd++];
         if (p.revents == 0) continue;
         if ((p.revents & (POLLERR | POLLHUP | POLLNVAL)) != 0) return false;
-        std::array<gpiod_line_event, 16> events{};  // more wait for the next look
+        std::array<gpiod_line_event, 16> events{};  // the rest waits for the next poll
         if (gpiod_line_event_read_fd_multiple(p.fd, events.data(), events.size()) < 0) return false;
         touched |= 1U << i;
     }

@@ -1,4 +1,4 @@
-// libgpiod 2.x: one request for all lines, each with settings of its own.
+// libgpiod 2.x: one request for all lines, each with its own settings.
 #include <gpiod.h>
 #include <time.h>
 
@@ -14,7 +14,7 @@ namespace tact {
 namespace {
 
 constexpr const char* kConsumer = "tact-rt";
-constexpr std::size_t kEvents = 16;  // a look; more wait for the next
+constexpr std::size_t kEvents = 16;  // per poll; the rest waits for the next one
 
 template <auto kFree>
 struct Free {

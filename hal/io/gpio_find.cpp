@@ -36,7 +36,7 @@ GpioChip find_gpio_chip(const std::string& wanted, const std::string& folder) {
         int error = 0;
         if (!GpioAccess::describe(path, chip, error)) {
             refused += (refused.empty() ? "" : ", ") + path;
-            if (why != EACCES) why = error;  // rights are what a person can fix
+            if (why != EACCES) why = error;  // an access right is the cause that a person can fix
             continue;
         }
         seen += (seen.empty() ? "" : ", ") + words(chip);
@@ -44,30 +44,33 @@ GpioChip find_gpio_chip(const std::string& wanted, const std::string& folder) {
     }
     if (fitting.size() == 1) return fitting.front();
     if (fitting.size() > 1) {
-        throw StartupError(attempt, std::to_string(fitting.size()) + " chips are called so (" + seen + ")",
-                           "unplug one, or give the name of the right one as lines.chip");
+        throw StartupError(attempt, std::to_string(fitting.size()) + " chips have this name (" + seen + ")",
+                           "unplug one, or set lines.chip to the name of the right one");
     }
     if (!refused.empty()) {
-        throw StartupError(attempt, refused + ": " + std::strerror(why),
-                           why == EACCES || why == EPERM ? kRightsFix : "plug the adapter in anew");
+        throw StartupError(
+            attempt, refused + ": " + std::strerror(why),
+            why == EACCES || why == EPERM ? kRightsFix : "unplug the adapter and plug it in again");
     }
-    throw StartupError(attempt, seen.empty() ? "there is no GPIO chip at all" : "there are only " + seen,
-                       "plug the adapter in, or give the label or name of one that is there as lines.chip");
+    throw StartupError(attempt, seen.empty() ? "no GPIO chip is present" : "the chips present are " + seen,
+                       "plug in the adapter, or set lines.chip to the label or name of a present chip");
 }
 
 void throw_gpio_refusal(const GpioChip& chip, const GpioRefusal& r) {
     if (r.line.empty()) {
-        throw StartupError("opening the GPIO chip " + words(chip), std::strerror(r.error),
-                           r.error == EACCES || r.error == EPERM ? kRightsFix : "plug the adapter in anew");
+        throw StartupError(
+            "opening the GPIO chip " + words(chip), std::strerror(r.error),
+            r.error == EACCES || r.error == EPERM ? kRightsFix : "unplug the adapter and plug it in again");
     }
-    const std::string attempt = "taking line \"" + r.line + "\" of the GPIO chip " + words(chip);
+    const std::string attempt = "requesting line \"" + r.line + "\" of the GPIO chip " + words(chip);
     if (r.error == 0) {
-        throw StartupError(attempt, "there is no such line; it has " + std::to_string(chip.lines),
-                           "give a number from 0 to " + std::to_string(chip.lines == 0 ? 0 : chip.lines - 1) +
-                               " or a name that gpioinfo shows, in [lines]");
+        throw StartupError(
+            attempt, "the chip has no such line; its number of lines is " + std::to_string(chip.lines),
+            "in [lines], set a number from 0 to " + std::to_string(chip.lines == 0 ? 0 : chip.lines - 1) +
+                " or a name that gpioinfo lists");
     }
     if (r.error == EBUSY) {
-        throw StartupError(attempt, "it is in use" + (r.detail.empty() ? "" : " by " + r.detail),
+        throw StartupError(attempt, "the line is in use" + (r.detail.empty() ? "" : " by " + r.detail),
                            "end that program, or choose another line in [lines]");
     }
     throw StartupError(attempt, std::strerror(r.error),

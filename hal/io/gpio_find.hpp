@@ -1,7 +1,7 @@
-// Which GPIO chip a person means, and what to say where there is none.
+// Finds the GPIO chip that the configuration names, with error messages for a missing one.
 //
-// Fails by StartupError naming chip, line and fix
-// Thread   start-up, and a pump that looks for its adapter again
+// Errors   StartupError with chip, line and fix
+// Thread   start-up, and a pump that searches for its adapter again
 #pragma once
 
 #include <string>
@@ -11,11 +11,11 @@
 
 namespace tact {
 
-// The one chip of this label ("cp2112_gpio"), name ("gpiochip0") or path. Numbers change when an adapter is
-// plugged in anew, labels do not.
+// The one chip with this label ("cp2112_gpio"), name ("gpiochip0") or path. Numbers change when an adapter
+// is plugged in again, labels do not.
 [[nodiscard]] GpioChip find_gpio_chip(const std::string& wanted, const std::string& folder = "/dev");
 
-// What befell a request of lines of this chip, for people.
+// Throws the error of a line request on this chip as a text for people.
 [[noreturn]] void throw_gpio_refusal(const GpioChip& chip, const GpioRefusal& refusal);
 
 }  // namespace tact

@@ -49,8 +49,8 @@ LinePortInfo GpioPort::open() {
         for (std::size_t k = 0; k < i; ++k) {
             if (lines_[i].line != lines_[k].line) continue;
             throw StartupError("lines of the GPIO chip \"" + settings_.chip + "\"",
-                               "line \"" + lines_[i].line + "\" has two meanings",
-                               "give each key of [lines] a line of its own");
+                               "line \"" + lines_[i].line + "\" is assigned to two keys",
+                               "assign a different line to each key of [lines]");
         }
     }
     LinePortInfo info;
@@ -63,8 +63,8 @@ LinePortInfo GpioPort::open() {
     if ((info.inputs & (kLineStopA | kLineDeadMan)) == 0) {
         throw StartupError(
             "lines of the GPIO chip \"" + settings_.chip + "\"",
-            "neither an emergency stop nor a dead-man is named",
-            "give lines.emergency_stop_a or lines.dead_man a line, or set lines.driver to \"none\"");
+            "neither an emergency stop nor a dead-man pedal is configured",
+            "set lines.emergency_stop_a or lines.dead_man to a line, or lines.driver to \"none\"");
     }
     take();
     info.name = "lines on " + chip_.name + " [" + chip_.label + "]";
@@ -113,7 +113,7 @@ std::uint8_t GpioPort::inputs_of(std::uint32_t bits) const noexcept {
 
 LineReading GpioPort::read() noexcept {
     std::uint32_t active = 0;
-    // The node after the reading: it must have been of a chip that was there.
+    // Checks the node after the reading: a present chip must have delivered the reading.
     if (!access_ || failed_ || !access_->get(active) || !there()) {
         failed_ = true;
         return {};
@@ -124,7 +124,7 @@ LineReading GpioPort::read() noexcept {
 bool GpioPort::write(std::uint8_t outputs) noexcept {
     if (!access_) return false;
     bool ok = true;
-    // What stops comes first, and each line costs a transfer: only what changes is written.
+    // Each line costs a transfer, so only changes are written; outputs that stop come first.
     for (std::size_t i = 0; i < lines_.size(); ++i) {
         const std::uint8_t changed =
             written_ ? static_cast<std::uint8_t>(*written_ ^ outputs) : std::uint8_t{0xFF};
@@ -132,7 +132,7 @@ bool GpioPort::write(std::uint8_t outputs) noexcept {
         ok = access_->set(i, (outputs & meaning_[i]) != 0) && ok;
     }
     written_ = ok ? std::optional(outputs) : std::nullopt;
-    if (failed_) access_.reset();  // that was the last word to it
+    if (failed_) access_.reset();  // no further access after this write
     return ok;
 }
 

@@ -1,8 +1,8 @@
-// The safety lines on a GPIO chip: which line of which chip is what.
+// The safety lines on a GPIO chip: assigns each function to a line of the chip.
 //
-// Identity  the device node that was opened is looked at before each reading: an adapter that was pulled
-//           out may still say yes to every write, and another chip may get its number
-// Fails by  StartupError at open(), naming line, chip and fix; by a reading that is not good afterwards
+// Identity  each reading checks the opened device node: an unplugged adapter may still acknowledge every
+//           write, and another chip may get its number
+// Errors    StartupError at open(), with line, chip and fix; afterwards a reading that is not good
 #pragma once
 
 #include <sys/types.h>
@@ -17,7 +17,7 @@
 
 namespace tact {
 
-// Each line is a number or a name of the chip's, with a '!' before it where low is active; empty: not fitted.
+// Each line is a number or name of the chip, prefixed by '!' for active low; empty: not fitted.
 struct GpioPortSettings {
     std::string chip;  // label, name or path
     std::string emergency_stop_a, emergency_stop_b, dead_man, amplifier, burr_pedal, suction_pedal;

@@ -4,10 +4,10 @@ namespace tact {
 
 LinesCause LineLogic::judge(const LineReading& in, bool enable, Instant now) noexcept {
     if (!in.good) {
-        unfollowed_ = false;  // nobody knows since when
+        unfollowed_ = false;  // the start of the deviation is unknown
         return LinesCause::lost;
     }
-    // What is not fitted reads as it has to.
+    // A line that is not fitted reads as its permissive state.
     const auto closed = static_cast<std::uint8_t>((in.closed & ~in.touched) | ~settings_.fitted);
     const bool a = (closed & kLineStopA) != 0, b = (closed & kLineStopB) != 0;
     const bool both = (settings_.fitted & kLineStopA) != 0 && (settings_.fitted & kLineStopB) != 0;
@@ -17,7 +17,7 @@ LinesCause LineLogic::judge(const LineReading& in, bool enable, Instant now) noe
     if (differ && now - differ_since_ > settings_.discrepancy) disagreed_ = true;
     if (!a && !b) disagreed_ = false;
 
-    // Its own level, not touched(): a read-back may bounce while it follows.
+    // Uses the level without touched(): a read-back may bounce while it follows.
     const bool amplifier = (in.closed & kLineAmplifier) != 0;
     const bool unfollowed = (settings_.fitted & kLineAmplifier) != 0 && amplifier != enable;
     if (unfollowed && !unfollowed_) unfollowed_since_ = now;

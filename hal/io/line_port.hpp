@@ -1,4 +1,4 @@
-// Where the safety lines end: an adapter, or an emulated one. Only a LineWorker talks to it.
+// The port of the safety lines: an adapter, or an emulated one. Used by a LineWorker only.
 #pragma once
 
 #include <string>
@@ -16,11 +16,11 @@ struct LinePortInfo {
 class LinePort {
 public:
     virtual ~LinePort() = default;
-    virtual LinePortInfo open() = 0;          // outputs low; throws StartupError
-    virtual bool reopen() noexcept = 0;       // after a loss: the same adapter, wherever it is now
-    virtual LineReading read() noexcept = 0;  // not good: nothing of it counts
-    virtual bool write(std::uint8_t outputs) noexcept = 0;  // all of them; true is no promise
-    virtual void wait(Duration longest) noexcept = 0;       // until an edge, where the adapter tells of them
+    virtual LinePortInfo open() = 0;                        // outputs low; throws StartupError
+    virtual bool reopen() noexcept = 0;                     // after a loss: finds the same adapter again
+    virtual LineReading read() noexcept = 0;                // not good: ignore all its bits
+    virtual bool write(std::uint8_t outputs) noexcept = 0;  // all outputs; true is no guarantee
+    virtual void wait(Duration longest) noexcept = 0;       // until an edge, where the adapter reports them
 };
 
 }  // namespace tact

@@ -31,7 +31,7 @@ LineReading LineWorker::look(Instant now) noexcept {
     if (!counts_.up) return {};
     const LineReading in = port_.read();
     if (!in.good) {
-        static_cast<void>(port_.write(0));  // it may still drive what it cannot read
+        static_cast<void>(port_.write(0));  // outputs may still work although inputs fail
         lose(now);
     }
     return in;
@@ -61,7 +61,7 @@ void LineWorker::round(Instant now) noexcept {
         const std::uint8_t out = wanted(command, now);
         if (out != driven_) {
             driven_ = out;
-            if (!port_.write(out)) lose(now);  // the next look says so
+            if (!port_.write(out)) lose(now);  // the next reading reports it
         }
     }
     publish(in, now);

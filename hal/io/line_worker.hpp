@@ -1,10 +1,10 @@
-// Between the servo's mailboxes and an adapter: looks, judges, drives.
+// Connects the servo's seqlocks with an adapter: reads, evaluates, drives.
 //
-// Order    read, judge, drive, publish: what stops has lowered the enable line before the servo knows of it
-// Watchdog toggled once in a round in which the servo's heartbeat has moved; a servo that stands leaves it
-//          still
-// Lost     an adapter that fails in any way is looked for twice a second; its outputs begin low again
-// Thread   open() and round() on the pump's; write(), read() and drop() as hal/api/lines.hpp says
+// Order    read, evaluate, drive, publish: a stop lowers the enable line before the servo receives it
+// Watchdog toggled once in each round in which the servo's heartbeat has changed; when the servo hangs, the
+// line stays constant
+// Lost     a failing adapter is searched for twice a second; its outputs start low again
+// Thread   open() and round() on the pump's; write(), read() and drop() see hal/api/lines.hpp
 #pragma once
 
 #include <atomic>
@@ -44,7 +44,7 @@ private:
     Latest<LinesCommand> command_{};
     std::atomic<std::uint64_t> drops_{0};
 
-    // Of the pump alone.
+    // Used by the pump only.
     LinesHealth counts_;
     std::uint64_t heartbeat_ = 0, sequence_ = 0;
     std::uint8_t driven_ = 0;

@@ -29,11 +29,11 @@ void PumpedLines::live() noexcept {
     pthread_setname_np(pthread_self(), "lines");
     sched_param param{};
     param.sched_priority = kPriority;
-    pthread_setschedparam(pthread_self(), SCHED_FIFO, &param);  // where it is not permitted, ordinary
+    pthread_setschedparam(pthread_self(), SCHED_FIFO, &param);  // without the right: ordinary scheduling
     while (!leave_.load(std::memory_order_relaxed)) {
         const Instant begin = Monotonic::now();
         worker_.round(begin);
-        // A slow adapter is asked again at once, but never without a pause for whoever is below.
+        // A slow adapter is polled again at once, but never without a pause for threads of lower priority.
         port_->wait(std::max(begin + every_ - Monotonic::now(), Duration(std::chrono::microseconds(100))));
     }
     worker_.end();

@@ -1,8 +1,8 @@
-// The safety lines as Tact uses them: a LineWorker on a thread of its own.
+// The safety lines of the controller: a LineWorker on its own thread.
 //
-// Thread   "lines", FIFO 90 where that is permitted, else ordinary: above the servo, so that whatever
-//          hogs the servo's priority cannot keep the enable line up. It looks every `every`, or at an
-//          edge, and takes no signal.
+// Thread   "lines", FIFO 90 where permitted, else ordinary: above the servo, so that a thread that occupies
+//          the servo's priority cannot keep the enable line high. It polls every `every` or at an edge, and
+//          blocks all signals.
 #pragma once
 
 #include <atomic>

@@ -1,8 +1,7 @@
-// What of the vendor's library libHD.so is used: types, numbers and functions, without its header.
+// The part of the vendor's library libHD.so that is used: types, numbers and functions, without its header.
 //
-// Source   the library's published programming interface. The layout of HdErrorInfo and the kinds of the
-//          arguments are those of the 64-bit Linux library; the tests' own library is built against this
-//          file.
+// Source   the library's published programming interface. The layout of HdErrorInfo and the argument types
+//          are those of the 64-bit Linux library; the tests build their own library against this file.
 // Units    millimetres, newtons, millinewton metres, radians; forces go out when a frame ends
 // Errors   a global stack, the last one first; empty: code 0
 #pragma once
@@ -38,10 +37,10 @@ inline constexpr Enum kForceOutput = 0x4000, kMaxForceClamping = 0x4001, kForceR
 inline constexpr Enum kCalibrationOk = 0x5000, kCalibrationNeedsUpdate = 0x5001,
                       kCalibrationNeedsManualInput = 0x5002;
 
-// Bits of the styles that a device can be calibrated in.
+// Bits of the calibration styles that a device supports.
 inline constexpr int kStyleEncoderReset = 1, kStyleAutomatic = 2, kStyleInkwell = 4;
 
-// Codes of errors.
+// Error codes.
 inline constexpr unsigned kSuccess = 0, kInvalidEnum = 0x100, kInvalidValue = 0x101,
                           kInvalidOperation = 0x102, kInvalidInputType = 0x103, kBadHandle = 0x104,
                           kWarmMotors = 0x200, kExceededMaxForce = 0x201, kExceededImpulse = 0x202,
@@ -50,7 +49,7 @@ inline constexpr unsigned kSuccess = 0, kInvalidEnum = 0x100, kInvalidValue = 0x
                           kIllegalBegin = 0x400, kIllegalEnd = 0x401, kFrameError = 0x402,
                           kInvalidLicense = 0x600;
 
-// One row a function: X(type it returns, name, arguments). The only list there is.
+// One row per function: X(return type, name, arguments). The only list of them.
 #define TACT_HD_FUNCTIONS(X)                                                      \
     X(::tact::hd::Handle, hdInitDevice, (const char* name))                       \
     X(void, hdDisableDevice, (::tact::hd::Handle device))                         \
@@ -76,7 +75,7 @@ inline constexpr unsigned kSuccess = 0, kInvalidEnum = 0x100, kInvalidValue = 0x
     X(void, hdUnschedule, (::tact::hd::SchedulerHandle handle))
 
 struct Api {
-// NOLINTNEXTLINE(bugprone-macro-parentheses): a declaration takes none
+// NOLINTNEXTLINE(bugprone-macro-parentheses): a declaration has no parentheses here
 #define TACT_HD_POINTER(type, name, arguments) type(*name) arguments = nullptr;
     TACT_HD_FUNCTIONS(TACT_HD_POINTER)
 #undef TACT_HD_POINTER

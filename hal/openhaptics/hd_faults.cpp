@@ -6,24 +6,26 @@ namespace tact::hd {
 
 namespace {
 
-// By kind, in its order.
+// Indexed by FaultKind.
 constexpr std::array<FaultMeaning, kFaultKinds> kMeanings{{
     {FaultKind::none, false, DeviceNotice::none, "no error", ""},
-    {FaultKind::motors_warm, false, DeviceNotice::over_temperature, "its motors are too warm",
-     "let it cool for some minutes, then re-arm"},
-    {FaultKind::limit, false, DeviceNotice::over_current, "more force or speed than the device permits",
+    {FaultKind::motors_warm, false, DeviceNotice::over_temperature, "the motors are too warm",
+     "let the device cool for some minutes, then re-arm"},
+    {FaultKind::limit, false, DeviceNotice::over_current,
+     "the command exceeds the device's permitted force or speed",
      "lower safety.force_n_max or safety.force_slew_n_s, then re-arm"},
-    {FaultKind::device, false, DeviceNotice::amplifier_off, "the device reports a fault of its own",
+    {FaultKind::device, false, DeviceNotice::amplifier_off, "the device reports an internal fault",
      "switch it off and on, calibrate it, and start again"},
-    {FaultKind::link, true, DeviceNotice::gone, "the connection to the device broke",
-     "check cable and power, then start again; the maker's diagnostic program shows whether it answers"},
-    {FaultKind::timer, true, DeviceNotice::silent, "the library's scheduler broke off", "start again"},
+    {FaultKind::link, true, DeviceNotice::gone, "the connection to the device is broken",
+     "check cable and power, then start again; the manufacturer's diagnostic program shows whether the "
+     "device answers"},
+    {FaultKind::timer, true, DeviceNotice::silent, "the library's scheduler stopped", "start again"},
     {FaultKind::frame, false, DeviceNotice::commands_not_taken, "a frame did not reach the device",
-     "re-arm; again: check cable and power"},
-    {FaultKind::refused, false, DeviceNotice::commands_not_taken, "the library refuses what it was asked",
-     "name the libHD.so that belongs to the device (device.hd_library) and see to its licence"},
-    {FaultKind::calibration, false, DeviceNotice::count_lost, "it lost where its encoders count from",
-     "bring it to its calibration pose, then re-arm"},
+     "re-arm; if it happens again, check cable and power"},
+    {FaultKind::refused, false, DeviceNotice::commands_not_taken, "the library rejected a call",
+     "set device.hd_library to the libHD.so that belongs to the device, and check its licence"},
+    {FaultKind::calibration, false, DeviceNotice::count_lost, "the device lost the zero of its encoders",
+     "move the arm to its calibration pose, then re-arm"},
 }};
 
 }  // namespace

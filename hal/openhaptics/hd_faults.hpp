@@ -1,4 +1,4 @@
-// What an error of the vendor's library means for the force: one table, pure.
+// Maps errors of the vendor's library to their effect on the force.
 #pragma once
 
 #include <cstddef>
@@ -12,23 +12,23 @@ namespace tact::hd {
 
 enum class FaultKind : std::uint8_t {
     none,
-    motors_warm,  // 200: force zero until it is cool
+    motors_warm,  // 200: zero force until the motors are cool
     limit,        // 201 to 204: more force, impulse or speed than the device permits
-    device,       // 300, 301: its own fault
+    device,       // 300, 301: internal fault of the device
     link,         // 302: no communication; the library ends its scheduler
-    timer,        // 304, and 400, 401: its clock or its frames are broken; it ends its scheduler
-    frame,        // 402: the frame did not go out
-    refused,      // 100 to 104, 600 and what is unknown: a call that it does not understand
-    calibration,  // not an error of the library: it lost where its encoders count from
+    timer,        // 304, and 400, 401: clock or frames broken; the library ends its scheduler
+    frame,        // 402: the frame was not sent
+    refused,      // 100 to 104, 600 and unknown codes: the library rejected a call
+    calibration,  // not an error of the library: the device lost the zero of its encoders
 };
 inline constexpr std::size_t kFaultKinds = 9;
 
 struct FaultMeaning {
     FaultKind kind;
-    bool ends;            // nothing comes any more: lost until opened again
-    DeviceNotice notice;  // the nearest that every device can say
-    const char* says;     // for people
-    const char* fixes;    // what a person does about it
+    bool ends;            // no more samples: lost until opened again
+    DeviceNotice notice;  // the nearest of the notices common to all devices
+    const char* says;     // message for people
+    const char* fixes;    // remedy for people
 };
 
 [[nodiscard]] const FaultMeaning& meaning(unsigned code) noexcept TACT_RT;

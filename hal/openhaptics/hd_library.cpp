@@ -10,7 +10,8 @@ namespace tact::hd {
 namespace {
 
 constexpr const char* kFix =
-    "install the maker's OpenHaptics and device driver for Linux, or name the file (device.hd_library)";
+    "install the manufacturer's OpenHaptics and device driver for Linux, or set device.hd_library to the "
+    "file";
 
 void* load(const char* path, std::string& why) {
     dlerror();
@@ -23,11 +24,11 @@ void* load(const char* path, std::string& why) {
 
 template <class Function>
 void find(void* handle, const std::string& path, const char* name, Function& out) {
-    // POSIX gives functions as pointers to data.
+    // POSIX returns functions as pointers to data.
     out = reinterpret_cast<Function>(dlsym(handle, name));
     if (out == nullptr) {
-        throw StartupError("the haptic library " + path, std::string("it has no function ") + name,
-                           "name the libHD.so of OpenHaptics 3.4 or newer (device.hd_library)");
+        throw StartupError("the haptic library " + path, std::string("the library has no function ") + name,
+                           "set device.hd_library to the libHD.so of OpenHaptics 3.4 or newer");
     }
 }
 

@@ -1,8 +1,8 @@
-// The vendor's library, found and loaded at run time; nothing of it is needed to build Tact.
+// The vendor's library, found and loaded at run time; the build of Tact needs none of it.
 //
-// Fails by StartupError: not found (with every place that was looked in), not loadable (with the loader's
-//          words), or another library of that name (with the function that it lacks)
-// Thread   start-up; unloaded by the destructor, when nothing of it runs any more
+// Errors   StartupError: not found (with every place searched), not loadable (with the loader's message),
+//          or another library of that name (with the missing function)
+// Thread   start-up; the destructor unloads the library when none of its code runs any more
 #pragma once
 
 #include <string>
@@ -13,7 +13,7 @@ namespace tact::hd {
 
 class Library {
 public:
-    explicit Library(const std::string& path);  // empty: where the vendor's installers and links put it
+    explicit Library(const std::string& path);  // empty: searches the places used by the vendor's installers
     ~Library();
     Library(const Library&) = delete;
     Library& operator=(const Library&) = delete;

@@ -10,8 +10,8 @@ namespace tact::hd {
 namespace {
 
 constexpr int kErrorsMax =
-    16;  // taken from the stack in a tick; a stack that never empties is not waited for
-constexpr double kReachMm = 1000.0, kSpeedMmS = 20000.0, kTurnRadS = 500.0;  // no arm does more
+    16;  // taken from the stack per tick, so that a stack that never empties cannot block the tick
+constexpr double kReachMm = 1000.0, kSpeedMmS = 20000.0, kTurnRadS = 500.0;  // beyond any arm
 constexpr double kRotationError = 1e-3;
 constexpr std::uint64_t kCalibrationEvery = 64;  // ticks
 
@@ -33,7 +33,7 @@ Enum Pump::tick(Instant now) noexcept {
     api_->hdBeginFrame(device_);
     take_sample(now);
     calibrate(now);
-    take_errors(now);  // of this frame so far: its force is zero then
+    take_errors(now);  // of this frame so far: an error makes its force zero
     apply(now);
     show();
     api_->hdEndFrame(device_);
@@ -77,7 +77,7 @@ void Pump::take_sample(Instant now) noexcept {
     ++sample_.sequence;
 }
 
-// In the reset pose a person holds the arm still for half a second and presses its button.
+// In the reset pose, the user holds the arm still for half a second and presses its button.
 bool Pump::confirmed(Instant now) noexcept {
     const bool button = (sample_.buttons & 1U) != 0;
     const bool pressed = button && !button_before_;
@@ -133,14 +133,14 @@ void Pump::fail(FaultKind kind, bool ends, Instant now) noexcept {
     state_ = DeviceState::fault;
     failed_at_ = now;
     ended_ = ended_ || ends;
-    // The next frame carries a force of zero; the output is off at once.
+    // The next frame carries zero force; the output is off at once.
     if (output_on_) api_->hdDisable(kForceOutput);
     output_on_ = false;
 }
 
 void Pump::apply(Instant now) noexcept {
     if (!mailbox_->command.read(command_)) {
-        if (mailbox_->command.count() == 0) return;  // lapped: the last one stands, and its watchdog runs
+        if (mailbox_->command.count() == 0) return;  // lapped: the last command and its watchdog stay
     }
     if (command_.heartbeat != heartbeat_) {
         heartbeat_ = command_.heartbeat;
@@ -150,7 +150,7 @@ void Pump::apply(Instant now) noexcept {
     const bool on = command_.enable != 0;
     const bool edge = on && command_.edge != edge_;
     const bool relaxed = command_.relaxed != relaxed_;
-    // Before the calibration an edge waits for it, unless enable falls again.
+    // Before calibration, an edge is kept until calibration completes, unless enable falls again.
     if (calibrated_ || relaxed || state_ == DeviceState::fault) edge_ = command_.edge;
     relaxed_ = command_.relaxed;
     if (state_ == DeviceState::fault) {
@@ -196,7 +196,7 @@ DeviceNotice Pump::asked() const noexcept {
 }
 
 void Pump::publish() noexcept {
-    if (!calibrated_) {  // its pose is worth nothing yet
+    if (!calibrated_) {  // the pose is not valid yet
         std::fill_n(sample_.pos_m, 3, 0.0);
         std::fill_n(sample_.linear_m_s, 3, 0.0);
         std::fill_n(sample_.angular_rad_s, 3, 0.0);
@@ -263,10 +263,10 @@ IoStatus Pump::write(const DeviceCommand& command) noexcept {
 }
 
 void Pump::relax() noexcept {
-    low_seen_ = false;  // an enable that is still up is no edge
+    low_seen_ = false;  // an enable that is still high is no edge
     ++relaxed_sent_;
     CommandWords w{};
-    // A heartbeat that the loop does not use, so that this is not taken for silence.
+    // A heartbeat outside the servo loop's range, so that relax() does not count as silence.
     w.heartbeat = ++heartbeat_sent_ | 1ULL << 63U;
     w.edge = edges_sent_;
     w.relaxed = relaxed_sent_;

@@ -1,16 +1,19 @@
-// One tick of the vendor's scheduler: sample out, command in, errors seen to. Runs inside its servo loop.
+// One tick of the vendor's scheduler: reads the sample, sends the command, handles errors. Runs inside the
+// vendor's servo loop.
 //
-// Frame     as the device's in hal/api: the library's axes are the same; its origin is moved to the middle
-// Enable    force only after an enable edge, and only while heartbeats come: 10 ms without one trip it here,
-//           whatever the servo's thread does
-// Calibrate the device does it, when the person has done what the notice asks for. Before, and once it is lost,
-//           the arm stands at the origin with nobody's hand on it, and no force comes
-// Errors    force zero in the same tick, counted by kind, latched until enable was low for a whole tick and
-//           none came for 100 ms; what ends the scheduler, until the device is opened again. Nothing is
-//           re-armed by itself: the next enable edge is a person's.
-// Delay     from a sample's tick to the one after the tick that sent its answer, and what PumpSettings adds
-// Numbers   what is not finite, or a transform that is no rotation, is refused and counted; the last good
-//           sample stays and grows old
+// Frame     the device frame of hal/api: the library's axes are the same; its origin is shifted to the
+//           middle
+// Enable    force only after an enable edge, and only while heartbeats arrive: 10 ms without one trip the
+//           watchdog, independently of the servo thread
+// Calibrate done by the device after the user has completed the action in the notice. Before that, and
+// after calibration is lost, the arm reports the origin with hand_present false, and there is no force
+// Errors    zero force in the same tick, counted by kind, latched until enable was low for a whole tick and
+//           no error occurred for 100 ms; an error that ends the scheduler stays until the device is opened
+//           again. Nothing re-arms automatically: the next enable edge comes from a person.
+// Delay     from a sample's tick to the one after the tick that sent its answer, plus the transport of
+//           PumpSettings
+// Numbers   non-finite values and transforms that are no rotation are refused and counted; the last good
+//           sample stays and ages
 // Thread    tick() on the vendor's; read(), write() and relax() on the servo's: they only touch memory
 #pragma once
 
@@ -26,8 +29,8 @@ namespace tact::hd {
 struct Counts {
     std::array<std::uint64_t, kFaultKinds> faults{};  // by FaultKind
     std::uint64_t ticks = 0;
-    std::uint64_t refused_samples = 0;   // not a number, or no rotation
-    std::uint64_t refused_commands = 0;  // not a number
+    std::uint64_t refused_samples = 0;   // with NaN or without a rotation
+    std::uint64_t refused_commands = 0;  // with NaN
     std::uint64_t watchdog_trips = 0;
     std::uint64_t calibrations = 0;
     unsigned last_code = 0;  // of the library
@@ -35,10 +38,10 @@ struct Counts {
 };
 
 struct PumpSettings {
-    Vec3 centre_mm = Vec3::Zero();  // of the workspace, in the library's frame
+    Vec3 centre_mm = Vec3::Zero();  // middle of the workspace in the library's frame
     double force_n_max = 0.0, torque_n_m_max = 0.0;
-    int styles = 0;         // of calibration
-    Duration transport{0};  // of the counts to the library and of the force to the motors, which no tick sees
+    int styles = 0;         // calibration styles
+    Duration transport{0};  // of counts to the library and of force to the motors, not measurable in a tick
     Duration watchdog = std::chrono::milliseconds(10);
 };
 
@@ -46,23 +49,23 @@ class Pump {
 public:
     Pump(const Api& api, Handle device);
 
-    // On the thread that opens, before the first tick.
+    // Before the first tick, on the thread that opens.
     void set(const PumpSettings& settings) noexcept { settings_ = settings; }
 
-    Enum tick(Instant now) noexcept;  // what the callback returns
+    Enum tick(Instant now) noexcept;  // the return value of the callback
 
     IoStatus read(DeviceSample& newest, Instant now) noexcept TACT_RT;
     IoStatus write(const DeviceCommand& command) noexcept TACT_RT;
     void relax() noexcept;
     [[nodiscard]] Counts counts() const noexcept;
 
-    static constexpr Duration kQuiet = std::chrono::milliseconds(100);  // without error, to leave a fault
+    static constexpr Duration kQuiet = std::chrono::milliseconds(100);  // without errors, to end a fault
     static constexpr Duration kLostAfter = std::chrono::milliseconds(100);
-    static constexpr Duration kHold = std::chrono::milliseconds(500);  // still in the reset pose for so long
+    static constexpr Duration kHold = std::chrono::milliseconds(500);  // still in the reset pose
     static constexpr double kStillMm = 1.0;
 
 private:
-    // Plain words of sample and command, for Latest.
+    // Trivially copyable sample and command, for Latest.
     struct SampleWords {
         std::int64_t taken_at_ns, delay_ns;
         std::uint64_t sequence;
@@ -75,9 +78,9 @@ private:
         double force_n[3], torque_n_m[3];
         std::uint64_t heartbeat;
         std::int64_t answers_ns;  // taken_at_ns of the sample that it answers; 0: none
-        std::uint64_t edge;       // enable edges so far; the newest one counts once
+        std::uint64_t edge;       // enable edges so far; only the newest counts
         std::uint32_t enable;
-        std::uint32_t relaxed;  // calls of relax() so far: each drops the force, though overwritten at once
+        std::uint32_t relaxed;  // calls of relax(); each one removes the force
     };
     struct Mailbox {
         Latest<SampleWords> sample;
@@ -100,22 +103,22 @@ private:
     PumpSettings settings_;
     std::unique_ptr<Mailbox> mailbox_;
 
-    // On the vendor's thread.
+    // Used on the vendor's thread.
     SampleWords sample_{};
     CommandWords command_{};
     Counts counts_;
     DeviceState state_ = DeviceState::ready;
     std::uint64_t heartbeat_ = 0, edge_ = 0;
     std::uint32_t relaxed_ = 0;
-    std::int64_t answered_ns_ = 0;  // by the command that the last frame sent; 0: it was no new one
+    std::int64_t answered_ns_ = 0;  // by the command in the last frame; 0: no new command
     Instant heard_at_{}, failed_at_{}, held_since_{};
     Vec3 position_mm_ = Vec3::Zero(), held_mm_ = Vec3::Zero();
     bool ended_ = false, inkwell_ = false, output_on_ = false, calibrated_ = false;
-    bool button_before_ = true;  // one that is down from the start confirms nothing
+    bool button_before_ = true;  // a button that is already down at the start is no confirmation
 
-    // On the servo's.
+    // Used on the servo thread.
     std::uint64_t sequence_ = 0, heartbeat_sent_ = 0, edges_sent_ = 0;
-    std::int64_t taken_at_ns_ = 0;  // of the newest sample that was read
+    std::int64_t taken_at_ns_ = 0;  // of the newest sample read
     std::uint32_t relaxed_sent_ = 0;
     bool low_seen_ = true;  // enable was low since the last edge
     IoStatus status_ = IoStatus::ok;

@@ -1,6 +1,6 @@
-// Figures: force, stiffness and workspace are what the library reports. The step of a position it does not
-// report; 0.055 mm is what the maker prints for the Touch, the coarsest of these arms. Torque of an arm that
-// has six motors: 48 mN m, what the weakest of the Premium's three gimbal motors stands for ever.
+// Values: the library reports force, stiffness and workspace. It does not report the position step; 0.055
+// mm is the manufacturer's value for the Touch, the coarsest of these arms. Torque of an arm with six
+// motors: 48 mN m, the continuous limit of the weakest of the Premium's three gimbal motors.
 #include "hal/openhaptics/open_haptics.hpp"
 
 #include <algorithm>
@@ -18,11 +18,12 @@ constexpr double kPositionStepM = 5.5e-5;
 constexpr double kTorqueMaxNM = 0.048;
 constexpr unsigned long kRateHz = 1000;
 constexpr Duration kLook = std::chrono::milliseconds(5);
-// An estimate, since the library tells no times: the counts of a frame may have been read a period of
-// HD_UPDATE_RATE before it began, and its force reach the motors a period after it ended.
+// An estimate, since the library reports no times: the counts of a frame may be read one period of
+// HD_UPDATE_RATE before the frame begins, and the force may reach the motors one period after the frame
+// ends.
 constexpr double kTransportPeriods = 2.0;
 
-// What a device calls itself, fit for a terminal.
+// The device's name, in printable ASCII.
 std::string plain(const char* text, const char* otherwise) {
     std::string out;
     for (const char* c = text; c != nullptr && *c != '\0' && out.size() < 60; ++c)
@@ -69,17 +70,18 @@ void OpenHaptics::forget_errors() {
     }
 }
 
-// The newest error of the stack, which is emptied.
+// Throws the newest error of the stack, if any, and clears the stack.
 void OpenHaptics::check(const std::string& attempt) {
     const hd::Api& api = library_->api();
     const hd::ErrorInfo error = api.hdGetError();
     forget_errors();
     if (error.code == hd::kSuccess) return;
-    throw StartupError(attempt,
-                       plain(api.hdGetErrorString(error.code), "an error without a name") + " (" +
-                           hex(error.code) + ", " + std::to_string(error.internal) + " inside)",
-                       std::string(hd::meaning(error.code).fixes) +
-                           "; the maker's set-up program must know the device (device.hd_device)");
+    throw StartupError(
+        attempt,
+        plain(api.hdGetErrorString(error.code), "unknown error") + " (" + hex(error.code) + ", " +
+            std::to_string(error.internal) + " internal)",
+        std::string(hd::meaning(error.code).fixes) +
+            "; check that the manufacturer's set-up program lists the device (device.hd_device)");
 }
 
 DeviceInfo OpenHaptics::describe(hd::PumpSettings& settings) {
@@ -96,7 +98,7 @@ DeviceInfo OpenHaptics::describe(hd::PumpSettings& settings) {
     api.hdGetIntegerv(hd::kCalibrationStyle, &settings.styles);
     info.name = plain(api.hdGetString(hd::kModelType), "haptic device") + " by OpenHaptics";
     info.serial = plain(api.hdGetString(hd::kSerialNumber), "");
-    check("asking the haptic device what it is");
+    check("querying the haptic device");
 
     const Vec3 low = Eigen::Map<const Vec3>(box_mm.data()), high = Eigen::Map<const Vec3>(box_mm.data() + 3);
     const bool box = low.allFinite() && high.allFinite() && ((high - low).array() > 1.0).all() &&
@@ -105,10 +107,10 @@ DeviceInfo OpenHaptics::describe(hd::PumpSettings& settings) {
                        info.force_n_max <= 100.0 && std::isfinite(info.force_n_continuous) &&
                        info.force_n_continuous >= 0.0;
     if (!box || !force || !std::isfinite(stiffness_n_mm) || stiffness_n_mm < 0.0 || stiffness_n_mm > 100.0)
-        throw StartupError("asking the haptic device what it is",
-                           "workspace, force or stiffness it reports are of no arm there is",
-                           "try it in the maker's diagnostic program; name the library that belongs to it "
-                           "(device.hd_library)");
+        throw StartupError("querying the haptic device",
+                           "the reported workspace, force or stiffness is not plausible",
+                           "test the device in the manufacturer's diagnostic program; set device.hd_library "
+                           "to the library that belongs to it");
     settings.centre_mm = 0.5 * (low + high);
     info.workspace_half_m = 0.5e-3 * (high - low);
     info.force_n_continuous = std::min(info.force_n_continuous, info.force_n_max);
@@ -120,12 +122,12 @@ DeviceInfo OpenHaptics::describe(hd::PumpSettings& settings) {
     return info;
 }
 
-// The library's own figure before its scheduler runs, else the rate that it was asked for.
+// The library's own rate before its scheduler runs, else the requested rate.
 double OpenHaptics::rate_hz() {
     const hd::Api& api = library_->api();
     int rate = 0;
     api.hdGetIntegerv(hd::kUpdateRate, &rate);
-    forget_errors();  // one that does not tell it
+    forget_errors();  // a library that does not report the rate leaves one
     return rate >= 200 && rate <= 10000 ? rate : static_cast<double>(kRateHz);
 }
 
@@ -143,13 +145,13 @@ void OpenHaptics::wait_for_first_sample() {
         if (waited > settings_.first_sample_max) {
             const std::string s = std::to_string(static_cast<long>(to_s(waited)));
             if (c.ticks == 0)
-                throw StartupError("starting the haptic device",
-                                   "its library called for no cycle in " + s + " s",
-                                   "unplug and plug the device; free the processor");
+                throw StartupError(
+                    "starting the haptic device", "the library started no cycle in " + s + " s",
+                    "unplug the device and plug it in again; reduce the load of the processor");
             throw StartupError("starting the haptic device",
-                               "it gave no usable position in " + s + " s (" +
+                               "the device delivered no usable position in " + s + " s (" +
                                    std::to_string(c.refused_samples) + " refused)",
-                               "try it in the maker's diagnostic program");
+                               "test the device in the manufacturer's diagnostic program");
         }
         clock_->wait_until(clock_->now() + kLook);
     }
@@ -164,8 +166,8 @@ DeviceInfo OpenHaptics::open() {
     const hd::Handle device = api.hdInitDevice(settings_.device.empty() ? nullptr : settings_.device.c_str());
     check("opening " + which);
     if (device == hd::kInvalidDevice)
-        throw StartupError("opening " + which, "the library gives no device",
-                           "set it up in the maker's set-up program (device.hd_device)");
+        throw StartupError("opening " + which, "the library returned no device",
+                           "set it up in the manufacturer's set-up program (device.hd_device)");
     device_ = device;
     try {
         api.hdMakeCurrentDevice(device_);
@@ -177,7 +179,7 @@ DeviceInfo OpenHaptics::open() {
         check("setting up " + which);
         pump_ = std::make_unique<hd::Pump>(api, device_);
         api.hdSetSchedulerRate(kRateHz);
-        forget_errors();  // one that has a single rate keeps it
+        forget_errors();  // a library with a single rate keeps it
         settings.transport = Duration(std::llround(kTransportPeriods * 1e9 / rate_hz()));
         pump_->set(settings);
         scheduled_ = api.hdScheduleAsynchronous(&OpenHaptics::callback, this, hd::kPriorityMax);

@@ -1,10 +1,11 @@
-// A Touch, Omni, Desktop or Premium through its maker's library, where that is installed.
+// A Touch, Omni, Desktop or Premium through the manufacturer's library, where installed.
 //
 // Pump     the library's own scheduler thread, 1 kHz: it calls tick() of hd_pump.hpp, which owns the device
-// Home     open() waits for the first sample; calibration comes while it runs, with notices for the person
-// Ramp     the library's own is off: the force comes through Tact's output chain; its clamp stays on
-// Thread   open() and destruction at start-up and end; read(), write() and relax() as the contract says
-// Untried  on a real arm: the tests' library takes its place
+// Home     open() waits for the first sample; calibration follows during operation, with notices for the
+//          user
+// Ramp     the library's force ramp is off, since Tact's output chain has one; its clamp stays on
+// Thread   open() and destruction at start-up and end; read(), write() and relax() per the contract
+// Tested   with the tests' replacement library only, not on a real arm
 #pragma once
 
 #include <memory>
@@ -17,7 +18,7 @@ namespace tact {
 
 struct OpenHapticsSettings {
     std::string library;  // libHD.so; empty: searched
-    std::string device;   // as named in the maker's set-up program; empty: the default one
+    std::string device;   // as named in the manufacturer's set-up program; empty: the default one
     Duration first_sample_max = std::chrono::seconds(5);
 };
 

@@ -18,13 +18,13 @@ void Amplifier::tick(std::uint32_t now_us, std::uint16_t causes) noexcept {
 
 bool Amplifier::receive(std::span<const std::byte> bytes, std::uint32_t now_us) noexcept {
     Command c;
-    // A command for another boot is refused before its sequence can count.
+    // Refuse a command for another boot before its sequence counts.
     const bool good = decode(bytes, c) == PacketFault::none && c.boot == boot_;
     if (!good || gate_.check(c.boot, c.sequence) != Order::taken) {
         ++refused_;
         return false;
     }
-    tick(now_us, causes_);  // a command that comes too late does not undo the watchdog
+    tick(now_us, causes_);  // a late command does not cancel a watchdog trip
     seen_ = c.sequence;
     if (c.heartbeat != heartbeat_) {
         heartbeat_ = c.heartbeat;

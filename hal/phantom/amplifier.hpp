@@ -1,10 +1,11 @@
-// What an amplifier board does with the commands it gets: the state machine of PROTOCOL.md, as the emulator
-// runs it and as a board's firmware has to.
+// The state machine of an amplifier board from PROTOCOL.md, used by the emulator and required of a board's
+// firmware.
 //
 // Clock    of the device, microseconds, wrapping; tick() at least every millisecond
-// Current  zero in every state but on; held to the limits of the board
-// Watchdog no taken command with a new heartbeat for 10 ms: off, at that instant, until an enable edge 0 -> 1
-// Faults   latched; they leave when their cause is gone and enable was seen low
+// Current  zero in every state but on; clamped to the limits of the board
+// Watchdog trips exactly 10 ms after the last accepted command with a new heartbeat; off until an enable
+// edge 0 -> 1
+// Faults   latched; cleared when their cause is gone and enable was low
 // Thread   one; TACT_RT
 #pragma once
 
@@ -20,14 +21,14 @@ public:
               std::uint32_t watchdog_us = 10'000) noexcept
         : boot_(boot), max_ma_(current_ma_max), watchdog_us_(watchdog_us) {}
 
-    // Bytes as they came. True: taken. Refused ones are counted and feed nothing.
+    // Handles received bytes. True: accepted. Refused commands are counted and do not feed the watchdog.
     bool receive(std::span<const std::byte> bytes, std::uint32_t now_us) noexcept TACT_RT;
-    // causes: bits of status::kFaults that hold now.
+    // causes: bits of status::kFaults that are present.
     void tick(std::uint32_t now_us, std::uint16_t causes) noexcept TACT_RT;
 
     [[nodiscard]] AmplifierState state() const noexcept { return state_; }
     [[nodiscard]] const std::array<std::int16_t, 6>& current_ma() const noexcept { return current_ma_; }
-    [[nodiscard]] std::uint16_t status() const noexcept;  // of what it knows: on, tripped, faults
+    [[nodiscard]] std::uint16_t status() const noexcept;  // bits that it can determine: on, tripped, faults
     [[nodiscard]] std::uint32_t command_seen() const noexcept { return seen_; }
     [[nodiscard]] std::uint8_t refused() const noexcept { return refused_; }
 
@@ -43,7 +44,7 @@ private:
     std::uint32_t seen_ = 0, heartbeat_ = 0, fed_us_ = 0;
     std::uint16_t causes_ = 0, latched_ = 0;
     std::uint8_t refused_ = 0;
-    bool enable_before_ = true;  // an enable that is up from the start is no edge
+    bool enable_before_ = true;  // an enable that is high from the start is no edge
 };
 
 }  // namespace tact::phantom

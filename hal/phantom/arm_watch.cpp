@@ -51,7 +51,7 @@ bool ArmWatch::drive_broken(const PumpNews& news, const std::array<std::int16_t,
     for (std::size_t i = 0; i < 6; ++i) {
         const int limit = limit_ma[i];
         const int wanted = on && news.seen_known ? std::clamp<int>(news.seen_ma[i], -limit, limit) : 0;
-        // A command that is not known any more says nothing; with the amplifier off zero is known.
+        // Compares with a known command only; with the amplifier off, the current must be zero.
         const bool comparable = limit > 0 && (news.seen_known || !on);
         const bool off = comparable && 5 * std::abs(news.state.current_ma[i] - wanted) > limit;
         off_us_[i] = off ? std::min(off_us_[i] + dt_us, 2 * kDriveUs) : 0;
@@ -79,7 +79,7 @@ DeviceNotice ArmWatch::look(const PumpNews& news, const std::array<std::int16_t,
     if (still) return DeviceNotice::encoder_stuck;
     if (broken) return DeviceNotice::drive_broken;
     if (has(status::kWatchdogTripped)) return DeviceNotice::watchdog_tripped;
-    // The board has taken a command with enable, and is off all the same.
+    // The board has accepted a command with enable but is off.
     if (news.seen_known && news.seen_enable && !has(status::kAmplifierOn)) return DeviceNotice::amplifier_off;
     return DeviceNotice::none;
 }

@@ -11,7 +11,7 @@ namespace {
 enum class Kind : std::uint8_t { state = 1, command = 2, query = 3, info = 4 };
 constexpr std::uint8_t kFrozen = 0;  // the version byte of query and info
 
-// CRC-32 of IEEE 802.3: reflected 0xEDB88320, start and end inverted. It finds every error of up to 3 bits,
+// CRC-32 of IEEE 802.3: reflected 0xEDB88320, start and end inverted. It detects every error of up to 3 bits,
 // and every burst of up to 32, in packets this short.
 constexpr std::array<std::uint32_t, 256> kCrc = [] {
     std::array<std::uint32_t, 256> table{};
@@ -56,7 +56,7 @@ void seal(std::span<std::byte> bytes) noexcept {
     write(bytes, bytes.size() - 4, crc32(bytes.first(bytes.size() - 4)));
 }
 
-// The checksum comes before version and kind, so that a flipped bit there is not taken for another version.
+// Checks the CRC before version and kind, so that a bit error there does not count as another version.
 PacketFault check(std::span<const std::byte> bytes, std::size_t size, std::uint8_t version,
                   Kind kind) noexcept {
     if (bytes.size() != size) return PacketFault::size;
@@ -67,7 +67,7 @@ PacketFault check(std::span<const std::byte> bytes, std::size_t size, std::uint8
     return PacketFault::none;
 }
 
-// Printable up to the first zero, zeros from there on.
+// Printable up to the first zero, zeros after it.
 bool text(const std::array<char, 16>& chars) noexcept {
     bool ended = false;
     for (const char c : chars) {
@@ -77,7 +77,7 @@ bool text(const std::array<char, 16>& chars) noexcept {
     return true;
 }
 
-// One way each: the fields of a packet at their places, and the reserved bytes between them.
+// Writer and Reader handle the fields of a packet at their offsets, and the reserved bytes between them.
 class Writer {
 public:
     explicit Writer(std::span<std::byte> bytes) noexcept : bytes_(bytes) {}
@@ -93,7 +93,7 @@ public:
     void operator()(std::size_t at, bool value) noexcept {
         write(bytes_, at, static_cast<std::uint16_t>(value ? 1 : 0));
     }
-    void reserved(std::size_t /*at*/, std::size_t /*size*/) noexcept {}  // zero from the start
+    void reserved(std::size_t /*at*/, std::size_t /*size*/) noexcept {}  // already zero
 
 private:
     std::span<std::byte> bytes_;
@@ -119,14 +119,14 @@ public:
     void reserved(std::size_t at, std::size_t size) noexcept {
         for (const std::byte b : bytes_.subspan(at, size)) clean_ = clean_ && b == std::byte{0};
     }
-    [[nodiscard]] bool clean() const noexcept { return clean_; }  // what is reserved is zero
+    [[nodiscard]] bool clean() const noexcept { return clean_; }  // all reserved bytes are zero
 
 private:
     std::span<const std::byte> bytes_;
     bool clean_ = true;
 };
 
-// PROTOCOL.md's tables. `Of` is the packet, const on the way out.
+// The tables of PROTOCOL.md. `Of` is the packet type, const when writing.
 template <class Way, class Of>
 requires std::same_as<std::remove_const_t<Of>, State>
 void fields(Way& way, Of& s) noexcept {
@@ -174,7 +174,7 @@ void fields(Way& way, Of& i) noexcept {
     way.reserved(56, 4);
 }
 
-// What the values themselves must keep to.
+// Constraints on the values.
 PacketFault complaint(const State& s) noexcept {
     const bool reserved = (s.status & ~status::kAll) != 0 || (s.inputs & ~input::kAll) != 0;
     return reserved ? PacketFault::reserved : PacketFault::none;

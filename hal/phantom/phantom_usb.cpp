@@ -14,9 +14,9 @@ using phantom::PumpOrder;
 namespace {
 
 constexpr Duration kLostAfter = std::chrono::milliseconds(100);
-constexpr Duration kBehindMax = std::chrono::milliseconds(10);  // or as long as a state may be old
+constexpr Duration kBehindMax = std::chrono::milliseconds(10);  // or the longest permitted age of a state
 
-// The counts themselves are worth nothing after these.
+// Faults after which the counts are invalid.
 bool loses_count(DeviceNotice n) noexcept {
     return n == DeviceNotice::count_lost || n == DeviceNotice::encoder_jumped ||
            n == DeviceNotice::encoder_stuck || n == DeviceNotice::brown_out || n == DeviceNotice::gone ||
@@ -44,7 +44,7 @@ Joint6 PhantomUsb::limits_a() const noexcept {
     Joint6 limit;
     for (Eigen::Index i = 0; i < 6; ++i) {
         const double most = limit_ma_[static_cast<std::size_t>(i)] * 1e-3;
-        const bool warms = p.heat_known && i < 3;  // the figures are of the arm's three motors
+        const bool warms = p.heat_known && i < 3;  // thermal parameters exist for the arm's three motors
         limit[i] = warms ? current_limit_a(p.heat, heat_[static_cast<std::size_t>(i)], most)
                          : std::min(most, p.current_a_continuous[i]);
     }
@@ -78,7 +78,7 @@ void PhantomUsb::calibrate(Instant now) noexcept {
     if (was_done && !calibration_.force_allowed()) latch(DeviceNotice::count_lost);
 }
 
-// A state that was not seen before.
+// Handles a new state.
 void PhantomUsb::take(Instant now) noexcept {
     const phantom::State& s = news_.state;
     const bool known = calibration_.force_allowed();

@@ -1,16 +1,17 @@
-// A Phantom arm on an amplifier board of PROTOCOL.md, over USB.
+// A Phantom arm on an amplifier board with the protocol of PROTOCOL.md, over USB.
 //
-// open()    waits for the board for up to kFindMax, agrees on a version, waits for its first state; then a pump
-//           thread owns the bus
-// read()    newest state: pose, speed, buttons; what PROTOCOL.md's table says is latched here, with its cause
-//           as a notice. Before the arm is calibrated it stands at the origin, nobody's hand is on it, and
-//           the notice says what the person has to do.
-// write()   wrench to currents: the arm's weight while the amplifier is on, motors' heat, limits of arm and
-//           board. No current before the calibration, with a fault, and not before enable was low after it.
+// open()    waits for the board for up to kFindMax, agrees on a version, waits for the first state; then a
+//           pump thread owns the bus
+// read()    newest state: pose, velocity, buttons; faults of PROTOCOL.md's table are latched here, with
+//           their cause as a notice. Before calibration the pose is the origin, hand_present is false, and
+//           the notice gives the required action.
+// write()   wrench to currents: gravity compensation while the amplifier is on, thermal limits, limits of
+//           arm and board. No current before calibration, during a fault, or before enable was low after
+//           it.
 // relax()   any thread, any state: no current from the next packet on, until enable was low
-// Replug    found again by its serial, calibrated anew; never armed by itself
-// Fails by  lost: no board, or 100 ms without a state; fault: as latched; StartupError in open()
-// Thread    open() and destruction on the main one; read() and write() on the servo's, memory only
+// Replug    found again by its serial number, calibrated again; never re-armed automatically
+// Errors    lost: no board, or 100 ms without a state; fault: as latched; StartupError in open()
+// Thread    open() and destruction on the main thread; read() and write() on the servo thread, memory only
 #pragma once
 
 #include <memory>
@@ -28,21 +29,21 @@
 namespace tact {
 
 struct PhantomUsbSettings {
-    std::string serial;  // empty: the only board there is
+    std::string serial;  // empty: the only board on the bus
     ArmParameterSet arm = arm_parameter_set("premium-1.5");
-    Duration hold_max = std::chrono::milliseconds(3);        // the newest state is good for so long
+    Duration hold_max = std::chrono::milliseconds(3);        // validity of the newest state
     Duration watchdog_max = phantom::UsbPump::kWatchdogMax;  // of the board; a longer one is refused
     int pump_priority = kPumpPriority;                       // FIFO; 0: ordinary scheduling
     bool thread = true;  // false: the caller runs pump().round(), for tests
     void (*say)(const char* text) =
-        nullptr;  // while open() waits or goes on with less; null: on standard error
+        nullptr;  // reports progress and reduced operation in open(); null: standard error
 };
 
 class PhantomUsb final : public HapticDevice {
 public:
-    static constexpr Duration kFindMax = std::chrono::seconds(5);  // it is just being plugged or switched on
+    static constexpr Duration kFindMax = std::chrono::seconds(5);  // for a board that was just connected
 
-    // The board on the bus of this machine, through libusb.
+    // The board on this computer's bus, through libusb.
     explicit PhantomUsb(const PhantomUsbSettings& settings);
     PhantomUsb(const PhantomUsbSettings& settings, std::unique_ptr<usb::Bus> bus);
     ~PhantomUsb() override;
@@ -82,7 +83,7 @@ private:
     usb::PumpThread thread_;
     bool opened_ = false;
 
-    // Of the servo's thread.
+    // Used by the servo thread only.
     phantom::PumpNews news_;
     DeviceSample sample_;
     std::uint64_t states_ = 0;
@@ -92,7 +93,7 @@ private:
     std::array<std::int16_t, 6> limit_ma_{};
     DeviceNotice fault_ = DeviceNotice::none, cause_ = DeviceNotice::none;
     bool lowered_ = false;  // enable was low since the fault
-    bool gate_ = false;     // enable may go to the board
+    bool gate_ = false;     // enable may be passed to the board
     std::uint32_t relaxed_ = 0;
 };
 

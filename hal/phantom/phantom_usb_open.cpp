@@ -1,4 +1,4 @@
-// What happens on the main thread: finding the board, the first words with it, the pump's thread.
+// The part on the main thread: finds the board, exchanges the first packets, starts the pump's thread.
 #include <algorithm>
 #include <cstdio>
 
@@ -18,7 +18,7 @@ using usb::BusFinding;
 namespace {
 
 constexpr Duration kFirstMax =
-    std::chrono::seconds(2);  // until its first state, or for ten states that are just not too old
+    std::chrono::seconds(2);  // until the first state, or for ten states of the longest permitted age
 
 std::string name_of(const std::string& serial) {
     return serial.empty() ? "the arm's USB board" : "the arm's USB board " + serial;
@@ -27,29 +27,30 @@ std::string name_of(const std::string& serial) {
 std::string awaited(const BusFinding& found, const std::string& serial) {
     const std::string most =
         std::to_string(std::chrono::duration_cast<std::chrono::seconds>(PhantomUsb::kFindMax).count());
-    const char* const why = found.fault == BusFault::missing  ? "it is not on the bus"
-                            : found.fault == BusFault::denied ? "this user may not open it"
-                            : found.fault == BusFault::busy   ? "another program has it"
-                                                              : "it is not set up yet";
+    const char* const why = found.fault == BusFault::missing  ? "it is not connected"
+                            : found.fault == BusFault::denied ? "this user has no access right"
+                            : found.fault == BusFault::busy   ? "another program uses it"
+                                                              : "it is not ready yet";
     return "waiting up to " + most + " s for " + name_of(serial) + ": " + why;
 }
 
 [[noreturn]] void refuse(const BusFinding& found, const std::string& serial) {
     const std::string what = "opening " + name_of(serial);
-    const std::string there = found.detail.empty() ? "" : "; there are: " + found.detail;
+    const std::string there = found.detail.empty() ? "" : "; connected: " + found.detail;
     switch (found.fault) {
         case BusFault::missing:
-            throw StartupError(what, "no such board is on the bus" + there,
-                               "plug it in and switch it on, or correct device.serial; lsusb lists the bus");
+            throw StartupError(
+                what, "no such board is connected" + there,
+                "plug it in and switch it on, or correct device.serial; lsusb lists the connected devices");
         case BusFault::several:
-            throw StartupError(what, "there are several boards" + there,
-                               "say which one by device.serial in the configuration");
+            throw StartupError(what, "several boards are connected" + there,
+                               "set device.serial in the configuration to the one to use");
         case BusFault::twins:
-            throw StartupError(what, "two boards have this serial",
-                               "give each board a serial of its own; until then plug in one of them");
+            throw StartupError(what, "two boards have this serial number",
+                               "give each board its own serial number; until then, plug in only one of them");
         case BusFault::slow:
-            throw StartupError(what, "it is at full speed, whose frames are a millisecond long",
-                               "plug it into a port of USB 2 high speed, without a slow hub between");
+            throw StartupError(what, "it runs at full speed, with frames of 1 ms",
+                               "plug it into a high-speed USB 2 port, without a slow hub in between");
         default:
             usb::refuse_open(what, found);
     }
@@ -122,24 +123,26 @@ void PhantomUsb::wait_for_first_state() {
                 "the arm's USB board " + std::string(phantom::text_of(news_.info.serial));
             if (news_.refusal == LinkRefusal::version) {
                 throw StartupError(what,
-                                   "it speaks versions " + versions() + " of the protocol, this program " +
+                                   "it supports versions " + versions() + " of the protocol, this program " +
                                        std::to_string(phantom::kVersion),
-                                   "bring firmware and program to a common version");
+                                   "update the firmware or the program to a common version");
             }
-            const std::string fix = "fix its firmware; hal/phantom/PROTOCOL.md says what it has to send";
+            const std::string fix = "fix the board's firmware; hal/phantom/PROTOCOL.md specifies its packets";
             if (news_.refusal == LinkRefusal::serial)
-                throw StartupError(what, "it gives another serial than its USB descriptor", fix);
+                throw StartupError(what, "its serial number differs from its USB descriptor", fix);
             throw StartupError(what,
-                               "it may not have a rate of " + std::to_string(news_.info.rate_hz) +
-                                   " Hz with a watchdog of " + std::to_string(news_.info.watchdog_ms) + " ms",
+                               "it reports values that are not permitted: a rate of " +
+                                   std::to_string(news_.info.rate_hz) + " Hz with a watchdog of " +
+                                   std::to_string(news_.info.watchdog_ms) + " ms",
                                fix + "; device.watchdog_us allows a watchdog of more than 100 ms");
         }
         if (news_.link == Link::open && news_.states > 0) return;
     }
-    throw StartupError("the arm's USB board",
-                       (news_.link == Link::open ? "it sends no states (" : "it does not answer (") +
-                           summary(news_.counts) + ")",
-                       "switch it off and on; hal/phantom/PROTOCOL.md says what it has to send");
+    throw StartupError(
+        "the arm's USB board",
+        (news_.link == Link::open ? "the board sends no states (" : "the board does not answer (") +
+            summary(news_.counts) + ")",
+        "switch the board off and on; hal/phantom/PROTOCOL.md specifies its packets");
 }
 
 DeviceInfo PhantomUsb::describe() const {

@@ -32,14 +32,13 @@ std::string summary(const PumpCounts& c) {
     std::string refused;
     for (std::size_t i = 1; i < kPacketFaults; ++i) {
         if (c.refused[i] > 0)
-            refused +=
-                (refused.empty() ? "" : ", ") + std::to_string(c.refused[i]) + " for their " + kNames[i];
+            refused += (refused.empty() ? "" : ", ") + std::to_string(c.refused[i]) + " " + kNames[i];
     }
-    return "asked " + std::to_string(c.asked) + " times, answered " + std::to_string(c.answered) +
-           "; states taken " + std::to_string(c.taken) + ", before an answer " + std::to_string(c.early) +
-           "; packets refused: " + (refused.empty() ? "none" : refused) + "; transfers failed " +
-           std::to_string(c.transfers_failed) + ", stalls " + std::to_string(c.stalls) +
-           ", connected again " + std::to_string(c.reconnects);
+    return "queries " + std::to_string(c.asked) + ", answers " + std::to_string(c.answered) +
+           "; states accepted " + std::to_string(c.taken) + ", before the first answer " +
+           std::to_string(c.early) + "; packets refused: " + (refused.empty() ? "none" : refused) +
+           "; transfers failed " + std::to_string(c.transfers_failed) + ", stalls " +
+           std::to_string(c.stalls) + ", connected again " + std::to_string(c.reconnects);
 }
 
 }  // namespace tact::phantom

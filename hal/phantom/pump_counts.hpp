@@ -1,4 +1,4 @@
-// What came over the bus since the start of the program, and what of it was refused.
+// Packets received over the bus since the start of the program, and the refused ones.
 #pragma once
 
 #include <array>
@@ -19,11 +19,11 @@ struct PumpCounts {
     std::uint64_t refused_by_board = 0;               // commands
     std::uint64_t bad_seconds = 0;                    // with more than 5 % refused or lost
     [[nodiscard]] std::uint64_t bad() const noexcept;
-    // The same for topic and screen.
+    // The same counters for topic and display.
     [[nodiscard]] BusCounts shown() const noexcept TACT_RT;
 };
 
-// For people: what came over the bus and what of it was refused. Not for the servo's thread.
+// Text for people: received and refused packets. Not for the servo thread.
 [[nodiscard]] std::string summary(const PumpCounts& counts);
 
 }  // namespace tact::phantom

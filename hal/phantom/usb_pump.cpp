@@ -1,4 +1,4 @@
-// The link to the board, what is sent over it and when. What comes in is taken in usb_pump_take.cpp.
+// The link to the board and the sending of packets. usb_pump_take.cpp handles received packets.
 #include "hal/phantom/usb_pump.hpp"
 
 #include <algorithm>
@@ -24,7 +24,7 @@ void UsbPump::connected(Instant now) noexcept {
     query_due_ = true;
     unanswered_ = 0;
     heard_at_ = asked_at_ = now;
-    relaxed_sent_ = relaxed();  // whatever was on is off: the board lost its link or is new
+    relaxed_sent_ = relaxed();  // everything is off: the board lost its link or is new
     publish(news_);
 }
 
@@ -43,7 +43,7 @@ Duration UsbPump::patience() const noexcept {
     constexpr Duration kLong = std::chrono::milliseconds(5);
     if (news_.link != Link::open) return kLong;
     const Duration since = link_.bus().now() - ordered_at();
-    if (since > 20 * interval()) return std::chrono::milliseconds(1);  // the servo stands still
+    if (since > 20 * interval()) return std::chrono::milliseconds(1);  // the servo hangs
     return std::clamp(interval() - since, kPoll, kLong);
 }
 

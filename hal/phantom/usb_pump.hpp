@@ -1,14 +1,14 @@
 // Moves packets between the bus and the servo: bounded rounds, counters of everything refused, the newest
-// value each way. It decides nothing about forces; what it cannot trust it does not pass on.
+// value in each direction. It makes no decision about forces and passes on accepted packets only.
 //
-// States    taken as PROTOCOL.md says, stamped in the machine's time, newest wins
-// Commands  newest wins, one on its way at a time; only for the connection that the servo knows (generation),
-//           and never one from before the last relax()
-// Link      Query and Info after every connect, and again when the board falls silent or starts anew; a board
-//           that is gone is looked for every kReopenEvery by the serial that it had
-// Delay     from a state to the first one that shows its command as taken, by the board's own clock: the time
-//           from the encoders to the motors, rounded up to whole states
-// Thread    round() on one; read(), write() on the servo's; relax() on any
+// States    accepted by the rules of PROTOCOL.md, stamped in machine time; the newest replaces older ones
+// Commands  the newest replaces older ones, one transfer at a time; only for the connection that the servo
+//           knows (generation), and never one from before the last relax()
+// Link      Query and Info after every connect, and again when the board falls silent or restarts; a
+//           missing board is searched by its serial number every kReopenEvery
+// Delay     from a state to the first one that shows its command as accepted, by the board's own clock: the
+//           time from the encoders to the motors, rounded up to whole states
+// Thread    round() on one; read(), write() on the servo thread; relax() on any
 #pragma once
 
 #include <array>
@@ -24,7 +24,7 @@ namespace tact::phantom {
 
 enum class Link : std::uint8_t { closed, asking, refused, open };
 
-// Why the newest connection was refused.
+// Reason for which the newest connection was refused.
 enum class LinkRefusal : std::uint8_t { none, version, serial, metrics };
 
 // From the pump to the servo.
@@ -32,14 +32,14 @@ struct PumpNews {
     State state;
     Info info;
     PumpCounts counts;
-    std::uint64_t states = 0;          // taken since the start of the program; 0: none
-    std::int64_t taken_at_ns = 0;      // when the counts were latched, machine's time
-    std::int64_t behind_since_ns = 0;  // the board has been more than 5 commands behind since; 0: it is not
+    std::uint64_t states = 0;          // accepted since the start of the program
+    std::int64_t taken_at_ns = 0;      // time at which the counts were latched, machine time
+    std::int64_t behind_since_ns = 0;  // the board is more than 5 commands behind since; 0: it is not
     std::int64_t delay_ns = 0;         // newest; 0: unknown
-    std::uint32_t generation = 0;      // another one after every connect and every start of the board
+    std::uint32_t generation = 0;      // changes with every connect and every start of the board
     Link link = Link::closed;
     LinkRefusal refusal = LinkRefusal::none;
-    bool seen_known = false, seen_enable = false;  // of the command that the state has seen
+    bool seen_known = false, seen_enable = false;  // of the newest command that the state acknowledges
     std::array<std::int16_t, 6> seen_ma{};
     bool last_second_bad = false;
 };
@@ -49,7 +49,7 @@ struct PumpOrder {
     std::array<std::int16_t, 6> current_ma{};
     bool enable = false;
     std::uint32_t heartbeat = 0;
-    std::uint32_t generation = 0, relaxed = 0;  // that it is for
+    std::uint32_t generation = 0, relaxed = 0;  // that the order is for
     std::uint32_t state_us = 0;                 // board's clock in the state that it answers
     std::int64_t written_at_ns = 0;
 };
@@ -58,24 +58,25 @@ class UsbPump : public usb::PumpMail<PumpNews, PumpOrder> {
 public:
     static constexpr Duration kReopenEvery = usb::PumpLink::kReopenEvery;
     static constexpr Duration kAskEvery = std::chrono::milliseconds(100);
-    static constexpr Duration kSilence = std::chrono::milliseconds(50);  // or longer: see below
-    static constexpr Duration kPoll = std::chrono::microseconds(50);     // for a command that is due
+    static constexpr Duration kSilence = std::chrono::milliseconds(50);  // or longer, see below
+    static constexpr Duration kPoll = std::chrono::microseconds(50);     // when a command is due
     static constexpr Duration kWatchdogMax = std::chrono::milliseconds(100);
     static constexpr std::uint32_t kBehindMax = 5;
 
-    // A board that lets the force stand for longer than watchdog_max without a servo is refused. One that sent no
-    // state for `silence` is asked again: not sooner than its states are too old, since questions displace commands.
+    // A board whose watchdog is longer than watchdog_max is refused. One that sent no state for `silence`
+    // is queried again; `silence` is not shorter than the permitted age of a state, since queries displace
+    // commands.
     UsbPump(usb::Bus& bus, std::string serial, Duration watchdog_max = kWatchdogMax,
             Duration silence = kSilence)
         : link_(bus, std::move(serial)), watchdog_max_(watchdog_max), silence_(silence) {}
 
-    // Start-up: one try to open the bus. From then on round() keeps it open.
+    // Start-up: one attempt to open the bus. After that, round() keeps it open.
     [[nodiscard]] usb::BusFinding open();
-    // What is due, then what comes within about `patience`.
+    // Sends due packets, then receives for about `patience`.
     void round(Duration patience) noexcept;
-    // How long the next round may wait: until a command is due.
+    // Longest wait of the next round: until a command is due.
     [[nodiscard]] Duration patience() const noexcept;
-    // The motors are off on the wire, or there is no wire.
+    // True: the last command sent has zero currents, or there is no link.
     [[nodiscard]] bool quiet() const noexcept;
     void close() noexcept { link_.bus().close(); }
 
@@ -103,13 +104,13 @@ private:
 
     PumpNews news_;
     SequenceGate gate_;
-    SequenceGate::Counts before_;  // of the connections before this one
+    SequenceGate::Counts before_;  // of the earlier connections
     TrackerClock board_clock_{std::chrono::milliseconds(50)};
     Instant taken_at_{}, heard_at_{}, asked_at_{};
     std::uint32_t sequence_ = 0, relaxed_sent_ = 0, heartbeat_ = 0;
     std::uint8_t board_refused_ = 0;
     unsigned unanswered_ = 0;
-    bool sending_ = false, known_ = false;  // known: Info came over this connection
+    bool sending_ = false, known_ = false;  // known: Info arrived over this connection
     bool query_due_ = false, relax_sending_ = false;
     std::uint32_t relax_wanted_ = 0;
     static constexpr std::size_t kRing = 64;

@@ -1,4 +1,4 @@
-// What comes from the board: which packets are believed, and what they say.
+// Reception from the board: acceptance and evaluation of packets.
 #include <algorithm>
 
 #include "hal/phantom/usb_pump.hpp"
@@ -7,7 +7,7 @@ namespace tact::phantom {
 
 namespace {
 
-// What no board can mean: rates that no bus carries, a watchdog that is none.
+// False for impossible values: rates that no bus carries, a useless watchdog.
 bool possible(const Info& i, Duration watchdog_max) noexcept {
     return i.rate_hz >= 100 && i.rate_hz <= 8000 && i.watchdog_ms >= 1 &&
            std::chrono::milliseconds(i.watchdog_ms) <= watchdog_max;
@@ -17,7 +17,7 @@ bool possible(const Info& i, Duration watchdog_max) noexcept {
 
 void UsbPump::take_info(const Info& info, Instant at) noexcept {
     ++news_.counts.answered;
-    if (news_.link != Link::asking) return;  // an answer to a question asked twice
+    if (news_.link != Link::asking) return;  // answer to a repeated query
     heard_at_ = at;
     unanswered_ = 0;
     const bool same_serial = link_.serial().empty() || text_of(info.serial) == link_.serial();
@@ -46,7 +46,7 @@ void UsbPump::take_info(const Info& info, Instant at) noexcept {
     board_refused_ = 0;
 }
 
-// What the board says of the commands: which it has, and how far it is behind.
+// Evaluates the board's acknowledgement of commands: the newest accepted one and the backlog.
 void UsbPump::look_at_seen(Instant at) noexcept {
     const State& s = news_.state;
     const Sent& command = sent_[s.command_seen % kRing];
@@ -70,7 +70,7 @@ void UsbPump::look_at_seen(Instant at) noexcept {
 }
 
 void UsbPump::take_state(const State& state, Instant at) noexcept {
-    if (!known_) {  // from before this program: who it is comes first
+    if (!known_) {  // states from before this program: identify the board first
         ++news_.counts.early;
         return;
     }
@@ -111,7 +111,7 @@ void UsbPump::take_packet(const usb::BusEvent& event) noexcept {
     Info info;
     const PacketFault other = decode(bytes, info);
     if (other == PacketFault::none) return take_info(info, event.at);
-    // Info speaks version 0: what was refused for that was refused as a state.
+    // Info has version 0: a packet refused as a state for its version may be an Info.
     const bool was_info = fault == PacketFault::version && other != PacketFault::version;
     ++news_.counts.refused[static_cast<std::size_t>(was_info ? other : fault)];
 }

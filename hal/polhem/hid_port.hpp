@@ -1,4 +1,4 @@
-// Where the reports come from and go to: the kernel's hidraw, or what a test makes up.
+// Source and sink of the reports: the kernel's hidraw, or a test.
 #pragma once
 
 #include <cstddef>
@@ -9,15 +9,15 @@
 
 namespace tact::polhem {
 
-inline constexpr int kPortGone = -1;  // unplugged, or it fails: nothing more until open()
+inline constexpr int kPortGone = -1;  // unplugged or failed: no data until open()
 
 class HidPort {
 public:
     virtual ~HidPort() = default;
-    // Empty serial: the only board there is. Anything but `none` leaves it closed.
+    // Empty serial: the only board connected. On any result but `none` the port stays closed.
     virtual usb::BusFinding open(const std::string& serial) = 0;
     virtual void close() noexcept = 0;
-    // Waits for at most so long for a report: its size, 0 where none came, or kPortGone. Closed, it only waits.
+    // Waits at most `patience` for a report; returns its size, 0 without one, or kPortGone. When closed, only waits.
     virtual int read(std::span<std::byte> into, Duration patience) noexcept = 0;
     virtual bool write(std::span<const std::byte> report) noexcept = 0;
     virtual Instant now() noexcept = 0;

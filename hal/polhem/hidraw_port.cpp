@@ -20,7 +20,7 @@ using usb::BusFinding;
 
 namespace {
 
-// Fit for a packet of hal/phantom: printable, at most 16 characters. One without a serial has this.
+// Printable and at most 16 characters, to fit a packet of hal/phantom; "no serial" for a board without one.
 std::string serial_of(const probe::UsbDevice& d) {
     return d.serial.empty() ? "no serial" : d.serial.substr(0, 16);
 }
@@ -39,14 +39,14 @@ BusFinding find_board(const probe::Bus<probe::UsbDevice>& usb, const std::string
         ++fitting;
     }
     if (found == nullptr)
-        return {BusFault::missing, {}, usb.visible ? all : "nothing: this kernel shows no USB"};
+        return {BusFault::missing, {}, usb.visible ? all : "nothing: this kernel reports no USB bus"};
     if (fitting > 1) return {serial.empty() ? BusFault::several : BusFault::twins, {}, all};
     for (const probe::Node& n : found->nodes) {
         if (n.path.find("hidraw") == std::string::npos) continue;
         node = n.path;
         return {BusFault::none, serial_of(*found), {}};
     }
-    return {BusFault::not_ready, {}, "it has no hidraw node (yet)"};
+    return {BusFault::not_ready, {}, "the board has no hidraw node yet"};
 }
 
 BusFinding HidrawPort::open(const std::string& serial) {
@@ -87,7 +87,7 @@ int HidrawPort::read(std::span<std::byte> into, Duration patience) noexcept {
 }
 
 bool HidrawPort::write(std::span<const std::byte> report) noexcept {
-    // The number of the report first: 0, as they have none.
+    // The report number comes first: 0, as these reports have none.
     std::array<std::byte, 1 + kReportBytesMax> bytes{};
     const std::size_t size = std::min(report.size(), kReportBytesMax);
     std::copy_n(report.begin(), size, bytes.begin() + 1);

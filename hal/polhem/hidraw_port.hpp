@@ -1,8 +1,8 @@
 // Reports through /dev/hidraw*: a kernel interface, no library. A board with several interfaces has its
 // reports on the first.
 //
-// Fails by  BusFault as open() says; kPortGone once the node fails
-// Thread    open() may look through /sys; one thread
+// Errors    a BusFault from open(); kPortGone once the node fails
+// Thread    one thread; open() may search through /sys
 #pragma once
 
 #include <filesystem>
@@ -14,14 +14,14 @@ namespace tact::polhem {
 
 inline constexpr std::uint16_t kVendor = 0x16c0, kProduct = 0x0486;
 
-// The board of that serial (empty: the only one) and its node; pure, for tests.
+// The board with that serial number (empty: the only one) and its node; a pure function, for tests.
 [[nodiscard]] usb::BusFinding find_board(const probe::Bus<probe::UsbDevice>& usb, const std::string& serial,
                                          std::string& node);
 
 class HidrawPort final : public HidPort {
 public:
     explicit HidrawPort(std::filesystem::path root = "/") : root_(std::move(root)) {}
-    explicit HidrawPort(int fd) : fd_(fd) {}  // of a test: takes it over
+    explicit HidrawPort(int fd) : fd_(fd) {}  // for tests; takes ownership of fd
     ~HidrawPort() override { close(); }
     HidrawPort(const HidrawPort&) = delete;
     HidrawPort& operator=(const HidrawPort&) = delete;

@@ -38,7 +38,7 @@ BusFinding PolhemBus::open(const std::string& serial) {
     const BusFinding found = port_->open(serial);
     if (found.fault != BusFault::none) return found;
     serial_ = found.serial;
-    ++boot_;  // its counts are worth nothing across a connect: it may have lost its power meanwhile
+    ++boot_;  // the counts are not valid across a connect: the board may have lost its power
     amplifier_ = phantom::Amplifier(boot_, kMaxMa);
     counts32_.reset();
     sequence_ = 0;
@@ -78,7 +78,7 @@ bool PolhemBus::tell() noexcept {
     return told;
 }
 
-// The watchdog, and zero currents on the wire as soon as it or anything else switched the amplifier off.
+// The watchdog, and zero currents as soon as the amplifier is off for any reason.
 void PolhemBus::guard() noexcept {
     amplifier_.tick(us(), 0);
     if (moved_ && amplifier_.state() != phantom::AmplifierState::on) static_cast<void>(tell());
@@ -110,7 +110,7 @@ void PolhemBus::take(std::span<const std::byte> bytes) noexcept {
     ++counts_.reports;
     phantom::State s;
     s.sequence = ++sequence_;
-    // Two that lay in the queue are still one after the other.
+    // Two reports from the queue still get increasing times.
     const std::uint32_t now_us = us();
     s.time_us = sequence_ > 1 && static_cast<std::int32_t>(now_us - time_us_) <= 0 ? time_us_ + 1 : now_us;
     time_us_ = s.time_us;
@@ -126,7 +126,7 @@ void PolhemBus::take(std::span<const std::byte> bytes) noexcept {
 
 std::size_t PolhemBus::wait(std::span<BusEvent> events, Duration patience) noexcept {
     if (open_) guard();
-    // The watchdog is looked at every millisecond, however long the caller would wait.
+    // The watchdog is checked every millisecond, however long the caller would wait.
     Duration left =
         !events_.empty() ? Duration{0} : std::min<Duration>(patience, std::chrono::milliseconds(1));
     std::array<std::byte, kReportBytesMax + 1> bytes{};

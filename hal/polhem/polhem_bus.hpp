@@ -1,14 +1,15 @@
-// Makes a Haptikfabriken or Polhem board look like the amplifier board of hal/phantom/PROTOCOL.md, so that the
-// driver for that one, with its calibration, watches and limits, drives this one too.
+// Adapts a Haptikfabriken or Polhem board to the interface of the amplifier board in
+// hal/phantom/PROTOCOL.md, so that its driver, with calibration, monitoring and limits, also drives this
+// board.
 //
-// Missing   what the board does not do is done here, on the pump's thread: sequence and time of a state,
+// Missing   functions that the board lacks run here, on the pump's thread: sequence and time of a state,
 //           enable edges, latched faults and a watchdog of 10 ms (hal/phantom/amplifier.hpp). While the
-//           amplifier is off the board is told zero currents.
-// Left      the board's own watchdog takes half a second and lets the force back by itself. The latter is
-//           harmless here: after silence the currents stay zero. The former is what remains when the whole
-//           process stands still: a force may stand for half a second. Wire an emergency stop.
-// Currents  of a state are those that were commanded, since the board measures none
-// Thread    as usb::Bus says
+//           amplifier is off, the board receives zero currents.
+// Risk      the board's own watchdog takes half a second and restores the force automatically. The restored
+//           force is harmless here: after silence the currents stay zero. When the whole process hangs, a
+//           force may persist for half a second. Wire an emergency stop.
+// Currents  of a state are the commanded ones, since the board measures none
+// Thread    see usb::Bus
 #pragma once
 
 #include <array>
@@ -29,7 +30,7 @@ struct PolhemCounts {
 class PolhemBus final : public usb::Bus {
 public:
     static constexpr std::uint16_t kCurrentMaxMa = 3000;  // the smaller of the boards' two sizes
-    static constexpr unsigned kWriteFailsMax = 20;        // in a row: it is as good as gone
+    static constexpr unsigned kWriteFailsMax = 20;        // in a row: the board counts as disconnected
 
     explicit PolhemBus(std::unique_ptr<HidPort> port);
     ~PolhemBus() override;
@@ -64,7 +65,7 @@ private:
     std::uint32_t sequence_ = 0, time_us_ = 0;
     std::uint16_t boot_ = 0;
     unsigned fails_ = 0;
-    bool open_ = false, moved_ = false;  // moved_: the board was told a current other than zero
+    bool open_ = false, moved_ = false;  // moved_: a non-zero current was sent
 };
 
 }  // namespace tact::polhem

@@ -65,7 +65,7 @@ bool decode(std::span<const std::byte> bytes, InReport& out) noexcept {
 const std::array<std::int32_t, 6>& Unwrapped::push(const std::array<std::int16_t, 6>& encoder) noexcept {
     for (std::size_t i = 0; i < 6; ++i) {
         const auto now = static_cast<std::uint16_t>(encoder[i]);
-        // Unsigned, so that a joint that is turned for ever wraps instead of overflowing.
+        // Unsigned arithmetic, so that a joint that turns without end wraps instead of overflowing.
         const auto way = static_cast<std::int16_t>(static_cast<std::uint16_t>(now - last_[i]));
         counts_[i] = started_ ? static_cast<std::int32_t>(static_cast<std::uint32_t>(counts_[i]) +
                                                           static_cast<std::uint32_t>(way))

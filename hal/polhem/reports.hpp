@@ -1,11 +1,11 @@
-// The reports of Haptikfabriken and Polhem boards: 14 bytes each way, 16-bit integers, little endian.
+// Reports of Haptikfabriken and Polhem boards: 14 bytes each way, 16-bit integers, little endian.
 //
-// There is no checksum, sequence or time in them: USB's own checksum is all that protects a report, and what
-// a number means is judged by who uses it.
+// They have no checksum, sequence number or time: only USB's own checksum protects a report, and the
+// receiver must check the plausibility of each value.
 //
 // Out     currents of three motors in mA, a command (0: currents as given), three words for it
-// In      six encoders, which wrap, and a word of which the low bits are taken for buttons
-// Source  the boards' published interface; the word `info` is not told there
+// In      six encoders, which wrap, and a word whose low bits are used as buttons
+// Source  the boards' published interface, which does not document the word `info`
 // Thread  any; TACT_RT
 #pragma once
 
@@ -19,7 +19,7 @@
 namespace tact::polhem {
 
 inline constexpr std::size_t kReportBytes = 14;
-inline constexpr std::size_t kReportBytesMax = 64;  // some boards fill up to a whole packet
+inline constexpr std::size_t kReportBytesMax = 64;  // some boards pad a report to a whole packet
 
 struct OutReport {
     std::array<std::int16_t, 3> current_ma{};
@@ -36,12 +36,12 @@ struct InReport {
 
 [[nodiscard]] std::array<std::byte, kReportBytes> encode(const OutReport& report) noexcept TACT_RT;
 [[nodiscard]] std::array<std::byte, kReportBytes> encode(const InReport& report) noexcept TACT_RT;
-// False: not a report's size; `out` is left as it was.
+// False: wrong size of a report; `out` is unchanged.
 [[nodiscard]] bool decode(std::span<const std::byte> bytes, OutReport& out) noexcept TACT_RT;
 [[nodiscard]] bool decode(std::span<const std::byte> bytes, InReport& out) noexcept TACT_RT;
 
-// Encoders of 16 bits as counts of 32: the nearest way from the last ones, so half a wrap (8 turns of a motor
-// with 4096 counts) between two reports is the most that is followed.
+// Extends 16-bit encoders to 32-bit counts by the shortest way from the last ones; correct up to half a
+// wrap (8 turns of a motor with 4096 counts) between two reports.
 class Unwrapped {
 public:
     const std::array<std::int32_t, 6>& push(const std::array<std::int16_t, 6>& encoder) noexcept TACT_RT;

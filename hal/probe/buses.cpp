@@ -1,8 +1,8 @@
-// USB      /sys/bus/usb/devices: entries with ':' are interfaces, the others devices; numbers are hexadecimal
-//          but for busnum and devnum
+// USB      /sys/bus/usb/devices: entries with ':' are interfaces, the others devices; numbers are
+//          hexadecimal except for busnum and devnum
 // CAN      /sys/class/net: a type of 280 (ARPHRD_CAN); an MTU of 72 holds CAN FD
-// GPIO     /sys/bus/gpio/devices; the label is asked of the chip where it may be opened (one ioctl that changes
-//          nothing), else read from the older class gpio beside it
+// GPIO     /sys/bus/gpio/devices; the label comes from the chip if it may be opened (one ioctl that changes
+//          nothing), otherwise from the older gpio class beside it
 #include "hal/probe/buses.hpp"
 
 #include <fcntl.h>
@@ -32,7 +32,7 @@ std::string plain(std::string text) {
     return text;
 }
 
-// The first bytes of a file; "" where it cannot be read. A pipe or a device is not waited for.
+// The first bytes of a file; "" if unreadable. Does not wait for a pipe or a device.
 std::string text_of(const fs::path& path) {
     const int fd = ::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK | O_NOCTTY);
     if (fd < 0) return "";
@@ -51,7 +51,7 @@ bool number(const std::string& text, int base, std::uint32_t most, std::uint32_t
     return true;
 }
 
-// Names in a folder, sorted. False: there is no such folder.
+// Names in a folder, sorted. False: no such folder.
 bool names_in(const fs::path& folder, std::vector<std::string>& names, bool& more) {
     std::error_code error;
     fs::directory_iterator at(folder, error);
@@ -94,7 +94,7 @@ std::string link_name(const fs::path& link) {
     return error ? "" : plain(to.filename().string());
 }
 
-// hidraw nodes and serial ports lie below the interface: hidraw/hidrawN in a folder of it, ttyUSBn in it,
+// hidraw nodes and serial ports are below the interface: hidraw/hidrawN in a subfolder, ttyUSBn in it,
 // tty/ttyACMn in it.
 void add_nodes(const fs::path& root, const fs::path& interface, std::vector<Node>& nodes) {
     constexpr std::size_t kNodesMax = 16;
@@ -216,7 +216,7 @@ Bus<GpioChip> gpio_chips(const fs::path& root) {
 Buses read_buses(const fs::path& root) {
     Buses b{usb_devices(root), can_interfaces(root), gpio_chips(root)};
     if (root == "/" && !b.can.visible) {
-        // The files are there once a module is; the kernel loads it for whoever asks.
+        // The files exist once a module is loaded; creating a socket makes the kernel load it.
         const int fd = socket(PF_CAN, SOCK_RAW | SOCK_CLOEXEC, 1);
         b.can.visible = fd >= 0;
         if (fd >= 0) ::close(fd);

@@ -1,10 +1,11 @@
-// What devices there are, as the kernel's files tell it, without opening one and without a library.
+// Lists the connected devices from the kernel's files, without opening one and without a library.
 //
-// Root     of the tree that is read: "/" but in tests
-// Hostile  names and texts come from devices: every list, text and number is bounded, and what is not
-//          printable becomes '?'
-// Honest   `visible` is false where the kernel shows no such bus at all: then nothing can be said about devices
-// Thread   any; may be slow. Nothing here throws but for want of memory.
+// Root     of the tree to read: "/" except in tests
+// Input    names and texts come from devices and are not trusted: every list, text and number is bounded,
+//          and each non-printable character becomes '?'
+// Visible  `visible` is false when the kernel shows no such bus at all: then the presence of devices is
+//          unknown
+// Thread   any; may be slow. Throws only when memory is exhausted.
 #pragma once
 
 #include <cstdint>
@@ -19,11 +20,11 @@ namespace tact::probe {
 inline constexpr std::size_t kEntriesMax = 512;  // of a folder
 inline constexpr std::size_t kTextMax = 120;
 
-// Whether the calling user may read and write a node, and whose it is.
+// A device node, with the calling user's access right and the owning group.
 struct Node {
-    std::string path;  // "" where there is none
+    std::string path;  // "" without a node
     bool usable = false;
-    std::string group;  // "" where it cannot be told
+    std::string group;  // "" if unknown
     unsigned mode = 0;  // rwxrwxrwx
 };
 
@@ -45,18 +46,18 @@ struct UsbDevice {
 struct CanInterface {
     std::string name;
     bool up = false;
-    bool fd = false;  // its MTU holds CAN FD frames
+    bool fd = false;  // its MTU allows CAN FD frames
 };
 
 struct GpioChip {
-    std::string name, label;  // label "" where it cannot be told
+    std::string name, label;  // label "" if unknown
     Node node;
 };
 
 template <class T>
 struct Bus {
     bool visible = false;
-    bool more = false;  // than kEntriesMax: the rest was not looked at
+    bool more = false;  // more than kEntriesMax: the rest is ignored
     std::vector<T> there;
 };
 

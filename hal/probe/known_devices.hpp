@@ -1,5 +1,5 @@
-// USB devices that Tact knows by their numbers: one table for `tact probe`, for error texts and for the udev
-// rules, which a test holds to it.
+// USB devices that Tact knows by their IDs: one table for `tact probe`, error texts and the udev rules; a
+// test compares the rules with it.
 #pragma once
 
 #include <array>
@@ -11,13 +11,13 @@ enum class Use : std::uint8_t { arm, lines, tracker_bus };
 
 struct KnownDevice {
     Use use;
-    const char* driver;  // of Tact, as in hal/registry.cpp; "": none yet
+    const char* driver;  // driver name in hal/registry.cpp; "": none yet
     const char* what;
-    std::uint16_t vendor = 0, product = 0;  // 0, 0: found by the class of an interface instead
+    std::uint16_t vendor = 0, product = 0;  // 0, 0: identified by the class of an interface instead
     std::uint32_t interface = 0;            // class, subclass, protocol, one byte each
 };
 
-// The interface that hal/phantom/PROTOCOL.md gives an amplifier board.
+// The interface of an amplifier board in hal/phantom/PROTOCOL.md.
 inline constexpr std::uint32_t kPhantomInterface = 0xFF5401;
 
 inline constexpr std::array kKnownDevices{
@@ -29,7 +29,7 @@ inline constexpr std::array kKnownDevices{
     KnownDevice{Use::lines, "gpio", "FT232H, 4 lines", 0x0403, 0x6014},
 };
 
-// Where libHD.so is looked for. The loader's own search (with LD_LIBRARY_PATH) first, by the names of its links.
+// Places searched for libHD.so: first the loader's own search (with LD_LIBRARY_PATH) by the names of its links.
 inline constexpr std::array kHdPlaces{"libHD.so",
                                       "libHD.so.3",
                                       "/usr/lib/libHD.so",

@@ -1,7 +1,8 @@
-// A device that was recorded: gives back the samples that it is given, and keeps what it is sent. Nobody's hand is on it.
+// A recorded device: read() returns the samples set by give(), and write() keeps the commands. No person
+// holds it.
 //
-// Thread  that of the loop, in lockstep; give() before each of its cycles
-// Fails   as the recorded device did
+// Thread  that of the loop, in lockstep; give() before each cycle
+// Errors  those of the recorded device
 #pragma once
 
 #include "hal/api/haptic_device.hpp"
@@ -13,7 +14,7 @@ class ReplayDevice final : public HapticDevice {
 public:
     explicit ReplayDevice(DeviceInfo info) : info_(std::move(info)) {}
 
-    // What the next read() and write() give.
+    // Sets the results of the next read() and write().
     void give(const DeviceSample& sample, IoStatus read_status, IoStatus write_status) noexcept {
         sample_ = sample;
         read_status_ = read_status;
@@ -39,7 +40,7 @@ private:
     DeviceCommand sent_;
 };
 
-// Safety lines that were recorded. What is driven goes nowhere.
+// Recorded safety lines. Outputs are discarded.
 class ReplayLines final : public Lines {
 public:
     void give(const LinesSample& sample) noexcept { sample_ = sample; }

@@ -25,10 +25,10 @@ namespace {
 
 constexpr Duration kStep = std::chrono::milliseconds(1);
 constexpr Duration kLostAfter = std::chrono::milliseconds(100);
-constexpr Duration kStartMax = std::chrono::seconds(30);    // of a busy machine
-constexpr Duration kOrphanLives = std::chrono::seconds(1);  // long enough for its watchdog to be seen
+constexpr Duration kStartMax = std::chrono::seconds(30);    // also on a busy machine
+constexpr Duration kOrphanLives = std::chrono::seconds(1);  // long enough to observe its watchdog
 
-// Plain words of sample and command, for Latest.
+// Trivially copyable sample and command, for Latest.
 struct SampleWords {
     std::int64_t taken_at_ns;
     std::uint64_t sequence;
@@ -109,12 +109,12 @@ ProcessDevice::~ProcessDevice() {
 }
 
 DeviceInfo ProcessDevice::open() {
-    const DeviceInfo info = SimDevice(settings_).open();  // the same figures; also checks the script's name
+    const DeviceInfo info = SimDevice(settings_).open();  // the same values; also checks the script's name
     if (shared_ != nullptr) return info;
     void* const memory =
         mmap(nullptr, sizeof(Shared), PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
     if (memory == MAP_FAILED)
-        throw StartupError("memory shared with the emulated device", std::strerror(errno),
+        throw StartupError("allocating memory shared with the emulated device", std::strerror(errno),
                            "free some memory");
     shared_ = new (memory) Shared{};
     const pid_t parent = getpid();
@@ -131,7 +131,7 @@ DeviceInfo ProcessDevice::open() {
     return info;
 }
 
-// The first sample says that it lives.
+// The first sample proves that the child runs.
 void ProcessDevice::wait_for_life() {
     SampleWords first{};
     const Instant end = Monotonic::now() + kStartMax;
@@ -139,23 +139,24 @@ void ProcessDevice::wait_for_life() {
         int status = 0;
         if (waitpid(child_, &status, WNOHANG) == child_) {
             child_ = -1;
-            throw StartupError("starting the emulated device's process",
-                               WIFSIGNALED(status)
-                                   ? std::string("it died at once: ") + sigdescr_np(WTERMSIG(status))
-                                   : "it ended at once with code " + std::to_string(WEXITSTATUS(status)),
-                               "see the kernel's log (dmesg); memory may have run out");
+            throw StartupError(
+                "starting the emulated device's process",
+                WIFSIGNALED(status)
+                    ? std::string("the process died at once: ") + sigdescr_np(WTERMSIG(status))
+                    : "the process ended at once with code " + std::to_string(WEXITSTATUS(status)),
+                "check the kernel's log (dmesg); memory may have run out");
         }
         if (Monotonic::now() >= end) {
-            kill(child_, SIGKILL);  // it may be halted, and would be waited for
-            throw StartupError("starting the emulated device's process", "it gave no sample within 30 s",
-                               "free the processor");
+            kill(child_, SIGKILL);  // it may be stopped; waitpid() would then block
+            throw StartupError("starting the emulated device's process",
+                               "the process gave no sample within 30 s", "reduce the load of the processor");
         }
         usleep(1000);
     }
 }
 
-// In the child. It keeps nothing of its parent's: above all not the lock file of the session, which would
-// stay locked after the parent's death.
+// In the child. It keeps no descriptor of its parent, above all not the session's lock file, which would
+// otherwise stay locked after the parent's death.
 void ProcessDevice::live(const SimSettings& settings, pid_t parent) noexcept {
     const int log =
         log_path_.empty() ? -1 : ::open(log_path_.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644);
@@ -163,10 +164,10 @@ void ProcessDevice::live(const SimSettings& settings, pid_t parent) noexcept {
     for (int fd = 0; fd < 3; ++fd) dup2(quiet, fd);
     const int kept = log >= 0 ? dup2(log, 3) : 2;
     close_range(static_cast<unsigned>(kept) + 1, ~0U, 0);
-    signal(SIGINT, SIG_IGN);  // a key pressed in the terminal is for the controller, which then relaxes this
+    signal(SIGINT, SIG_IGN);  // Ctrl-C in the terminal is for the controller, which then relaxes this device
     signal(SIGTERM, SIG_DFL);
     sched_param param{};
-    param.sched_priority = 85;  // as a bus pump, above the servo; where it is not permitted, ordinary
+    param.sched_priority = 85;  // above the servo, like a bus pump; without the right: ordinary
     sched_setscheduler(0, SCHED_FIFO, &param);
 
     SimDevice device(settings);
@@ -180,7 +181,7 @@ void ProcessDevice::live(const SimSettings& settings, pid_t parent) noexcept {
     while (shared_->leave.load(std::memory_order_relaxed) == 0) {
         clock.wait_until(pacer.planned());
         const Instant now = clock.now();
-        const Duration silence = now - heard_at;  // where this process stood still too, up to a late command
+        const Duration silence = now - heard_at;  // includes hangs of this process, before a late command
         CommandWords c{};
         if (shared_->command.read(c) && c.heartbeat != heartbeat) {
             heartbeat = c.heartbeat;
@@ -218,7 +219,7 @@ IoStatus ProcessDevice::read(DeviceSample& newest, Instant now) noexcept {
     newest = from_words(w);
     if (now - newest.taken_at > kLostAfter) return IoStatus::lost;
     newest.taken_at =
-        std::min(newest.taken_at, now);  // it may have come after the loop's stamp of this cycle
+        std::min(newest.taken_at, now);  // it may be newer than the loop's time stamp of this cycle
     const bool fresh = w.sequence != sequence_;
     sequence_ = w.sequence;
     if (newest.state == DeviceState::fault) return IoStatus::fault;
@@ -241,7 +242,7 @@ IoStatus ProcessDevice::write(const DeviceCommand& command, Instant /*now*/) noe
 void ProcessDevice::relax() noexcept {
     if (shared_ == nullptr) return;
     CommandWords w{};
-    // A heartbeat that the loop does not use, so that the child takes the command, and so does the next one.
+    // A heartbeat outside the loop's range, so that the child accepts this command and the next one.
     w.heartbeat = ++heartbeat_ | 1ULL << 63U;
     shared_->command.publish(w);
 }

@@ -1,11 +1,13 @@
-// The emulated Phantom and hand in a process of their own, as a real device is: it outlives the controller.
+// The emulated Phantom and hand in a separate process that outlives the controller, like a real device.
 //
-// Why       sudden death of tact-rt can be tried: the child's watchdog drops the amplifier, its log shows it
-// Child     forked in open(); steps at 1 kHz on the machine's clock, takes the newest command and gives the
-//           newest sample through shared memory; ends by itself when its parent is gone
-// Log       one line a change of state: monotonic ns, state, force in N, silence of the controller in ms
-// Thread    open() and destruction on the main thread before there are others; read and write on the servo's
-// Fails by  lost when the child gave no sample for 100 ms
+// Purpose   tests of a sudden death of tact-rt: the child's watchdog switches the amplifier off, its log
+//           records it
+// Child     forked in open(); steps at 1 kHz on the machine's clock, exchanges the newest command and
+//           sample through shared memory; ends when its parent is gone
+// Log       one line per change of state: monotonic ns, state, force in N, silence of the controller in ms
+// Thread    open() and destruction on the main thread before other threads exist; read and write on the
+//           servo's
+// Errors    lost when the child gave no sample for 100 ms
 #pragma once
 
 #include <sys/types.h>

@@ -1,5 +1,5 @@
-// Figures of a Premium 1.5 with six degrees of freedom in and out, as its maker prints them: workspace
-// 381 x 267 x 191 mm, 8.5 N for a moment and 1.4 N for ever, 0.515 N m, 0.03 mm at the tip, 3.5 N/mm.
+// Data of a Premium 1.5 with six degrees of freedom in and out, from the manufacturer: workspace 381 x 267
+// x 191 mm, 8.5 N peak and 1.4 N continuous, 0.515 N m, 0.03 mm at the tip, 3.5 N/mm.
 #include "hal/sim/sim_device.hpp"
 
 #include <cmath>
@@ -14,7 +14,7 @@ namespace {
 
 constexpr double kTurnStepRad = 1e-4;
 constexpr double kVelocityCutHz =
-    30.0;  // of the driver's differentiator: one step of 0.03 mm must not be 30 mm/s
+    30.0;  // of the driver's differentiator: one step of 0.03 mm must not give 30 mm/s
 
 Vec3 stepped(const Vec3& v, double step) noexcept {
     return {std::round(v.x() / step) * step, std::round(v.y() / step) * step,
@@ -36,7 +36,7 @@ DeviceInfo premium() {
 
 }  // namespace
 
-// The arm reaches a little beyond the workspace that its maker promises.
+// The arm reaches slightly beyond the workspace stated by the manufacturer.
 SimDevice::SimDevice(const SimSettings& settings)
     : settings_(settings), info_(premium()), hand_(settings.hand, 1.1 * info_.workspace_half_m) {}
 
@@ -71,7 +71,7 @@ void SimDevice::sample(Instant now) noexcept {
     const Vec3 p = stepped(hand_.pose().p_m, info_.position_step_m);
     const Quat q = quat_from_rotation_vector(stepped(rotation_vector_rad(hand_.pose().q), kTurnStepRad));
     if (newest_.sequence > 0 && now > newest_.taken_at) {
-        newest_.delay = now - newest_.taken_at;  // the command of one cycle has moved the sample of the next
+        newest_.delay = now - newest_.taken_at;  // the command of one cycle moves the sample of the next
         const double dt_s = to_s(newest_.delay);
         const double share = 1.0 - std::exp(-2.0 * std::numbers::pi * kVelocityCutHz * dt_s);
         const Vec3 turned = rotation_vector_rad(q * newest_.T_dev_tool.q.conjugate());
@@ -131,7 +131,7 @@ IoStatus SimDevice::write(const DeviceCommand& command, Instant now) noexcept {
 }
 
 void SimDevice::relax() noexcept {
-    enable_before_ = true;  // an enable that is still up is no edge
+    enable_before_ = true;  // an enable that is still high is no edge
     if (state_ != DeviceState::closed) drop(DeviceState::ready);
 }
 

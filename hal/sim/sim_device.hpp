@@ -1,10 +1,12 @@
-// An emulated Phantom with an emulated hand on it: the default device, and the one that tests use.
+// An emulated Phantom with an emulated hand: the default device, also used by tests.
 //
-// Lockstep   its time is the `now` that it is given, so the same calls give the same motion, on any clock
-// Encoders   the position comes in steps of the encoder at the tip, the orientation in steps of the gimbal's
+// Lockstep   its only time source is the `now` argument, so the same calls give the same motion, on any
+//            clock
+// Encoders   the position is quantized to encoder steps at the tip, the orientation to steps of the gimbal
 // Amplifier  on only after an enable edge 0 -> 1; off at once when enable falls
-// Watchdog   no new heartbeat for 10 ms: the amplifier drops, at that very instant, and needs a new edge
-// Saturation what is asked beyond the motors is shortened, direction kept
+// Watchdog   trips exactly 10 ms after the last new heartbeat: the amplifier switches off and needs a new
+//            edge
+// Saturation a wrench beyond the motors' limits is scaled down; the direction is kept
 #pragma once
 
 #include "hal/api/haptic_device.hpp"
@@ -17,15 +19,15 @@ struct SimSettings {
     Duration watchdog = std::chrono::milliseconds(10);
 };
 
-// What can be made to go wrong, at any instant, for tests.
+// Faults that tests can inject at any time.
 enum class SimFault : std::uint8_t {
     none,
-    unplugged,  // read and write say lost
-    frozen,     // the newest sample stays the newest
+    unplugged,  // read and write return lost
+    frozen,     // no new samples
     amplifier,  // over-temperature: amplifier off, state fault
-    watchdog,   // its watchdog trips although it was fed
-    wild_pose,  // a pose that is not a number
-    hand_off,   // nobody holds it
+    watchdog,   // the watchdog trips although it was fed
+    wild_pose,  // a pose with NaN
+    hand_off,   // no person holds it
 };
 
 class SimDevice final : public HapticDevice {
@@ -38,9 +40,9 @@ public:
     void relax() noexcept override;
 
     void inject(SimFault fault) noexcept { fault_ = fault; }
-    // The hand goes there, device frame, and rests; see SimHand.
+    // Moves the hand to this place in the device frame and keeps it there; see SimHand.
     void hold(const std::optional<Vec3>& at_dev_m) noexcept { hand_.hold(at_dev_m); }
-    // What the motors do now, as someone at the device would measure it.
+    // The present output of the motors, as measured at the device.
     [[nodiscard]] const Wrench& shown_dev() const noexcept { return shown_; }
     [[nodiscard]] const Pose& hand_pose() const noexcept { return hand_.pose(); }
     [[nodiscard]] DeviceState state() const noexcept { return state_; }

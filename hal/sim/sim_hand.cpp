@@ -13,7 +13,7 @@ namespace tact {
 
 namespace {
 
-// Velocity and way of one damped step.
+// Velocity and displacement of one damped step.
 struct Glide {
     Vec3 velocity, way;
 };
@@ -25,14 +25,14 @@ Glide glide(const Vec3& velocity, const Vec3& force, double inertia, double damp
     return {terminal + rest * excess, terminal * h_s + excess * (inertia / damping * (1.0 - rest))};
 }
 
-// Pull of the wandering hand on the tool: soft, so that rendered forces still show.
+// Pull of the wandering hand on the tool: soft, so that rendered forces still have an effect.
 constexpr double kPullStiffness = 60.0;      // N/m
 constexpr double kPullTurnStiffness = 0.05;  // N m/rad
 constexpr double kSubstepS = 1e-3;           // the pull changes with the position; 1 ms keeps K h < b
-constexpr double kStrokedUp = 0.2;           // of a wandering hand's ups and downs
-constexpr double kDrilledAside = 0.2;        // of a wandering hand's way
+constexpr double kStrokedUp = 0.2;           // "stroke": fraction of the vertical wandering
+constexpr double kDrilledAside = 0.2;        // "drill": fraction of the lateral wandering
 constexpr double kLoweredS = 0.5;
-constexpr double kPauseMaxS = 0.05;  // after a longer pause the hand has not moved for the rest
+constexpr double kPauseMaxS = 0.05;  // after a longer pause, the hand counts as still for the rest
 
 }  // namespace
 
@@ -47,9 +47,9 @@ SimHand::SimHand(const SimHandSettings& settings, const Vec3& reach_m)
             .suction_tube = settings.script == "suction-tube", .seed = settings.seed, .at_m = settings.at_m});
         pose_ = surgeon_->begin();
     } else if (settings.script != "passive" && !wanders_) {
-        throw StartupError("emulated hand", "there is no script \"" + settings.script + "\"",
-                           "use \"passive\", \"wander\", \"stroke\", \"drill\", \"surgeon\" or \"suction "
-                           "tube\" (device.hand)");
+        throw StartupError("emulated hand", "no script has the name \"" + settings.script + "\"",
+                           "use \"passive\", \"wander\", \"stroke\", \"drill\", \"surgeon\" or "
+                           "\"suction-tube\" (device.hand)");
     }
     std::mt19937_64 random(settings.seed);
     const auto uniform = [&random](double low, double high) {
@@ -69,7 +69,7 @@ SimHand::SimHand(const SimHandSettings& settings, const Vec3& reach_m)
 double SimHand::wave(std::size_t axis) const noexcept {
     double sum = 0.0;
     for (const Wave& w : waves_[axis]) {
-        // The difference starts at zero, so that the hand does not leap at the start.
+        // The difference starts at zero, so that the hand does not jump at the start.
         sum += w.weight * (std::sin(w.frequency_rad_s * time_s_ + w.phase_rad) - std::sin(w.phase_rad));
     }
     return 0.5 * sum;
@@ -115,7 +115,7 @@ void SimHand::step(Duration dt, const Wrench& wrench_dev, bool powered) noexcept
         pose_.p_m += move.way;
         pose_.q = (quat_from_rotation_vector(turn.way) * pose_.q).normalized();
         twist_ = {move.velocity, turn.velocity};
-        // The mechanical stops of the arm: it stays there and has no speed left along that axis.
+        // The mechanical stops of the arm: the position stays there, and the velocity along that axis is zero.
         for (int axis = 0; axis < 3; ++axis) {
             if (std::abs(pose_.p_m[axis]) <= reach_m_[axis]) continue;
             pose_.p_m[axis] = std::copysign(reach_m_[axis], pose_.p_m[axis]);

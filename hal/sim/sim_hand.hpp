@@ -1,10 +1,10 @@
 // An emulated hand on an emulated arm: one rigid body of six degrees of freedom with viscous damping.
 //
 // Frame     device
-// Step      exact for a force that is constant over it, so stable at any step and any servo rate
-// Scripts   passive: only what the motors do moves it. wander: a seeded smooth motion pulls it about. stroke: the
-//           same, mostly sideways, and down, so that it rests on what is there. drill: the same, away from the user, slowly.
-//           surgeon, suction tube: sim_surgeon.hpp.
+// Step      exact for a force that is constant over the step, so stable at any step and any servo rate
+// Scripts   passive: moved only by the motors. wander: moved by a smooth random motion. stroke: the same,
+//           mostly sideways, and pressed down onto the surface. drill: the same, slowly away from the user.
+//           surgeon, suction-tube: sim_surgeon.hpp.
 #pragma once
 
 #include <array>
@@ -25,10 +25,10 @@ inline std::string current_hand_name(const std::string& name) {
     return name == "sucker" ? "suction-tube" : name;  // former name
 }
 
-// A relaxed hand in pen grip together with the arm of the device. Mass: 0.136 kg of the arm (maker's figure
-// for a Premium 1.5) and about as much of fingers. Damping: the grip's 3 to 10 N s/m, as measured for pen
-// grips in the literature; the middle. Rotation: a hand-held gimbal of 0.1 kg and 3 cm radius, and damping
-// such that 0.05 N m turns it by 150 degrees a second.
+// A relaxed hand in pen grip together with the arm of the device. Mass: 0.136 kg of the arm (manufacturer's
+// value for a Premium 1.5) and about as much for the fingers. Damping: the middle of 3 to 10 N s/m,
+// measured for pen grips in the literature. Rotation: a hand-held gimbal of 0.1 kg and 3 cm radius, with
+// damping such that 0.05 N m turns it by 150 degrees per second.
 struct SimHandSettings {
     std::string script = "passive";  // or "wander", "stroke", "drill", "surgeon", "suction-tube"
     std::uint64_t seed = 1;
@@ -38,8 +38,8 @@ struct SimHandSettings {
     double damping_n_m_s = 0.02;
     double wander_m = 0.03;  // amplitude
     double wander_rad = 0.3;
-    double press_m = 0.03;     // how far down a stroking hand means to be, and away a drilling one
-    Vec3 at_m = Vec3::Zero();  // where surgeon and suction tube begin
+    double press_m = 0.03;     // target depth: down for stroke, away from the user for drill
+    Vec3 at_m = Vec3::Zero();  // start position of surgeon and suction tube
 };
 
 class SimHand {
@@ -48,7 +48,7 @@ public:
 
     // powered: the device's motors are on.
     void step(Duration dt, const Wrench& wrench_dev, bool powered = true) noexcept TACT_RT;
-    // From now on it goes to this place and rests there, whatever its script; none: the script again.
+    // Moves the hand to this place and keeps it there, whatever its script; none: the script again.
     void hold(const std::optional<Vec3>& at_m) noexcept { held_m_ = at_m; }
     [[nodiscard]] std::uint32_t buttons() const noexcept { return surgeon_ ? surgeon_->buttons() : 0; }
     [[nodiscard]] const Pose& pose() const noexcept { return pose_; }
@@ -58,7 +58,8 @@ private:
     struct Wave {
         double frequency_rad_s, phase_rad, weight;
     };
-    static constexpr std::size_t kWaves = 3;  // a sum of three sines with incommensurate rates never repeats
+    static constexpr std::size_t kWaves =
+        3;  // sum of three sines; their incommensurate frequencies never repeat
     using Waves = std::array<std::array<Wave, kWaves>, 6>;
 
     [[nodiscard]] double wave(std::size_t axis) const noexcept;

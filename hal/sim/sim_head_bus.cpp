@@ -84,7 +84,7 @@ Vec3 SimHeadBus::noise(double deviation) noexcept {
 
 void SimHeadBus::measure(TrackerFault fault) noexcept {
     const Instant measured_at = due_ - settings_.can.latency;
-    // A clock of its own, that began somewhere.
+    // An independent clock with an arbitrary start.
     const auto time_us = static_cast<std::uint32_t>((due_ - start_).count() / 1000) + 0xFFF00000U;
     const bool fd = settings_.can.fix.format == CanFormat::fd;
     ++counter_;
@@ -112,7 +112,7 @@ void SimHeadBus::measure(TrackerFault fault) noexcept {
     due_ += period_;
 }
 
-// What the kernel and the controller say of the link, once for each change. True: no frames now.
+// Reports the state of link and controller, once per change. True: no frames now.
 bool SimHeadBus::tell_of(TrackerFault fault, CanBatch& batch) noexcept {
     if (fault == TrackerFault::gone || !open_) {
         batch.fault = CanFault::gone;

@@ -1,9 +1,10 @@
-// An emulated head with a tracker on it, as the frames that the tracker's gateway puts on the CAN bus.
+// An emulated head with a tracker, as the frames that the tracker's gateway sends on the CAN bus.
 //
-// Head     a seeded sum of sines about its place in front of the screen; the sensors sit 0.1 m apart
-// Noise    as an electromagnetic tracker's: stated at kNoiseAt from its origin, growing with distance^3.5
-// Time     that of the clock it is given: one period's frames go out when they are due, `latency` after the
-//          measurement. A pause longer than kBacklog periods loses the older ones, as a kernel's queue does.
+// Head     a random sum of sines about its place in front of the screen; the sensors are 0.1 m apart
+// Noise    that of an electromagnetic tracker: stated at kNoiseAtM from its origin, growing with
+//          distance^3.5
+// Time     from the given clock: the frames of a period are sent when due, `latency` after the measurement.
+//          A pause longer than kBacklog periods loses the older ones, as a kernel's queue does.
 // Thread   receive() and reopen() on one; inject(), hold() and let_go() on any: a sample may mix two places
 #pragma once
 
@@ -22,18 +23,18 @@ struct SimHeadSettings {
     Vec3 rest_m{0.0, 0.1, 0.6};  // in the tracker's frame
     double sway_m = 0.05;        // amplitude
     double turn_rad = 0.3;
-    double noise_m = 0.8e-3;    // standard deviation an axis
+    double noise_m = 0.8e-3;    // standard deviation per axis
     double noise_rad = 2.6e-3;  // 0.15 degrees
 };
 
-// What can be made to go wrong, at any instant, for tests.
+// Faults that tests can inject at any time.
 enum class TrackerFault : std::uint8_t {
     none,
     silent,
-    corrupt,       // a bit of every frame is wrong
-    not_a_number,  // the tracker's own pose is not a number
-    out_of_range,  // it jumps to the end of what the layout can say
-    flood,         // the newest frame comes again and again, as fast as it is taken
+    corrupt,       // every frame has a bit error
+    not_a_number,  // the tracker's own pose is NaN
+    out_of_range,  // the pose jumps to the end of the layout's range
+    flood,         // the newest frame repeats as fast as it is received
     bus_off,
     down,
     gone,
@@ -64,7 +65,7 @@ public:
     bool reopen() noexcept override;
     CanBatch receive(std::span<CanFrame> into, Duration patience) noexcept override;
 
-    // A hand carries sensor 0 there and rests, in the tracker's frame, as at the marks of a screen; the others beside it.
+    // Holds sensor 0 at this place in the tracker's frame, as at the marks of a screen; the other sensors beside it.
     void hold(const Vec3& at_m) noexcept;
     void let_go() noexcept { held_.store(false, std::memory_order_relaxed); }
     void inject(TrackerFault fault) noexcept { fault_.store(fault, std::memory_order_relaxed); }
@@ -90,7 +91,7 @@ private:
     Instant start_{}, due_{};
     std::uint32_t counter_ = 0;
     std::array<CanFrame, 2 + 2 * kTrackerSensorsMax>
-        frames_{};  // of one period, and what the controller says
+        frames_{};  // of one period, plus error frames of the controller
     std::size_t queued_ = 0, given_ = 0;
 };
 

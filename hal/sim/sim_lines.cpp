@@ -7,7 +7,7 @@ namespace tact {
 
 namespace {
 
-// Of the process and not of a board: a signal may come after a board went.
+// Per process, not per board: a signal may arrive after a board's end.
 std::atomic<bool> stop_by_signal{false};
 static_assert(std::atomic<bool>::is_always_lock_free);
 

@@ -1,8 +1,10 @@
-// Emulated safety lines: contacts that tests open, an amplifier whose read-back follows the enable line.
+// Emulated safety lines: contacts that tests can open, an amplifier whose read-back follows the enable
+// line.
 //
-// SimBoard  the adapter with its wiring; faults may come from any thread, and an emergency stop from another process
-// SimLines  the board behind the same LineWorker as a real adapter's, in lockstep: each read() is a look
-//           at its `now`, so the same calls give the same states, on any clock
+// SimBoard  the adapter with its wiring; faults may come from any thread, and an emergency stop from
+//           another process
+// SimLines  the board behind the same LineWorker as a real adapter, in lockstep: each read() polls at its
+//           `now`, so the same calls give the same states, on any clock
 #pragma once
 
 #include <atomic>
@@ -17,7 +19,7 @@ enum class LinesFault : std::uint8_t {
     stop_a_open,   // one channel alone, or its wire broken
     stop_b_open,
     pedal_released,
-    amplifier_off,  // whatever the enable line says
+    amplifier_off,  // regardless of the enable line
     amplifier_on,
     read_error,
     unplugged,  // writes still seem to work
@@ -36,12 +38,12 @@ public:
     void wait(Duration longest) noexcept override;
 
     void inject(LinesFault fault) noexcept { fault_.store(fault); }
-    // A contact that opened and closed again between two looks.
+    // Emulates a contact that opened and closed again between two polls.
     void touch(std::uint8_t inputs) noexcept { touched_.fetch_or(inputs); }
-    // Pedals of tools that are down: kLineBurr, kLineSuction.
+    // Sets the pressed tool pedals: kLineBurr, kLineSuction.
     void press(std::uint8_t pedals) noexcept { pressed_.store(pedals); }
     [[nodiscard]] std::uint8_t driven() const noexcept { return driven_.load(); }  // LineOutput
-    // From now on SIGUSR1 presses the emergency stop and SIGUSR2 lets it go. Start-up.
+    // Makes SIGUSR1 press the emergency stop and SIGUSR2 release it. Start-up.
     void apply_signals();
 
 private:

@@ -10,7 +10,7 @@ namespace tact {
 namespace {
 
 constexpr double kWaitS = 0.7;    // until the force has faded in
-constexpr double kForgetS = 0.5;  // switched off
+constexpr double kForgetS = 0.5;  // without power
 constexpr double kSeekM_S = 0.04, kMoveM_S = 0.06;
 constexpr double kSeekPressN = 0.8, kFeltN = 0.3, kFeltS = 0.02;
 constexpr double kSuctionTubeContactN = 0.1, kSuctionTubePressN = 0.25, kSuctionTubeAboveM = 5e-4;
@@ -18,12 +18,12 @@ constexpr double kDownS = 0.8, kStrokesS = 4.4;                   // of a series
 constexpr double kStrokeHz = 0.9, kStroke = 0.55, kAside = 0.45;  // amplitudes in radii of the bowl
 constexpr double kLiftM = 6e-3;
 constexpr double kFeedM_S = 5e-4, kBowlFirstM = 3e-3, kWidenM_S = 3e-4;
-// How far the suction tube is from the middle: at the start, and in radii of the bowl while the burr comes nearer.
+// Distance of the suction tube from the middle: at the start, and in bowl radii while the burr approaches.
 constexpr double kBesideM = 5e-3, kBesideFrom = 0.95, kBesideTo = 1.4, kInTheMiddle = 0.3;
-constexpr double kAsideM = 8e-3;  // after a miss, times the root of how many there were
+constexpr double kAsideM = 8e-3;  // after a miss, times the root of the number of misses
 constexpr double kStiffnessN_M = 250.0, kDampingN_S_M = 8.0, kSidewaysMostN = 3.0, kUpMostN = 2.0;
 constexpr double kTurnStiffnessN_M = 0.3, kTurnDampingN_M_S = 0.01;
-// How instruments are held: the shaft, along +z of the tool, leans to the side of its hand.
+// Tool orientations: the shaft, along +z of the tool, leans to the side of its hand.
 const Vec3 kBurrLeanRad(0.12, 0.42, 0.0), kSuctionTubeLeanRad(0.15, -0.6, 0.0);
 
 double bowl_m(double worked_s) { return std::min(kBowlFirstM + kWidenM_S * worked_s, SimSurgeon::kBowlM); }
@@ -72,7 +72,7 @@ void SimSurgeon::seek(double h_s, const Vec3& at_m) noexcept {
     if (target_m_.z() > begin_m_.z() - kReachM) return;
     ++missed_;
     back_ = true;
-    const double turn = missed_ * std::numbers::pi * (3.0 - std::sqrt(5.0));  // a sunflower's
+    const double turn = missed_ * std::numbers::pi * (3.0 - std::sqrt(5.0));  // golden angle
     spot_m_ = begin_m_ + kAsideM * std::sqrt(missed_) * Vec3(std::cos(turn), std::sin(turn), 0.0);
 }
 
@@ -84,10 +84,10 @@ void SimSurgeon::work(double h_s) noexcept {
     const bool lifted = tau_s > kDownS + kStrokesS, strokes = !lifted && tau_s > kDownS;
     if (strokes) worked_s_ += h_s;
     const double bowl = bowl_m(worked_s_), deep_m = std::min(kFeedM_S * worked_s_, kDepthM);
-    Vec3 goal_m = Vec3::Zero();  // from where bone was met
+    Vec3 goal_m = Vec3::Zero();  // from the first contact with bone
     const double s = std::clamp((tau_s - kDownS) / kStrokesS, 0.0, 1.0);
     if (settings_.suction_tube) {
-        // The burr comes from the other side.
+        // The burr is on the opposite side.
         const double beside = lifted ? kInTheMiddle : std::lerp(kBesideFrom, kBesideTo, s);
         goal_m = std::max(beside * bowl, lifted ? 0.0 : kBesideM) * series_.across;
     } else {
@@ -113,7 +113,7 @@ void SimSurgeon::step(double h_s, const Vec3& at_m, const Vec3& contact_n, bool 
     contact_n_ += std::min(h_s / kFeltS, 1.0) * (contact_n.z() - contact_n_);
     if (!powered) {
         off_s_ += h_s;
-        if (off_s_ < kForgetS) return;  // a watchdog that dropped for a moment
+        if (off_s_ < kForgetS) return;  // a short watchdog drop
         on_s_ = worked_s_ = 0.0;
         met_ = works_ = back_ = false;
         spot_m_ = begin_m_;

@@ -1,15 +1,15 @@
-// An emulated surgeon's hand: one that leads a burr over bone, or one that follows it with a suction tube.
+// An emulated surgeon's hand that guides a burr over bone, or one that follows it with a suction tube.
 //
-// Knows    the force that it is shown, where it is, and the time since the device was switched on; nothing of the scene
-// Burr     goes away from the user until something holds it, and there works out a bowl: series of strokes to and fro, each
-//          in another direction, slowly wider and deeper. Between two series it lifts the burr and the pedal. Where nothing
-//          is met it tries again a little beside.
-// SuctionTube   feels its way in the same manner, keeps to the side of the bowl where the burr of a surgeon of the same
-//          seed is not, and goes into its middle while that has lifted it.
-// Pedal    the second button, held while it works
-// Switched off, or not on yet: the hand goes back to where it began.
+// Inputs   the rendered force, its own position, and the time since power-on; nothing of the scene
+// Burr     moves away from the user until contact, then works out a bowl there: series of strokes to and
+//          fro, each in another direction, slowly wider and deeper. Between two series it lifts the burr
+//          and the pedal. Without contact it tries again a little beside.
+// SuctionTube   searches in the same manner, stays on the side of the bowl opposite the burr of a surgeon
+//               with the same random seed, and moves into the middle while that burr is lifted.
+// Pedal    the second button, pressed while working
+// Power    while the device is off, the hand returns to its start
 // Frame    device
-// Repeats  the same seed, steps and forces give the same motion.
+// Repeats  the same random seed, steps and forces give the same motion
 // Thread   that of the device; no allocation
 #pragma once
 
@@ -23,19 +23,19 @@ namespace tact {
 struct SimSurgeonSettings {
     bool suction_tube = false;
     std::uint64_t seed = 1;
-    Vec3 at_m = Vec3::Zero();  // in front of the bone; the bowl is worked out straight behind it
+    Vec3 at_m = Vec3::Zero();  // in front of the bone; the bowl is straight behind this point
 };
 
 class SimSurgeon {
 public:
-    static constexpr double kDepthM = 10e-3, kBowlM = 6.5e-3;  // of the bowl when it is done
+    static constexpr double kDepthM = 10e-3, kBowlM = 6.5e-3;  // of the finished bowl
     static constexpr double kPressMostN = 1.6;
-    static constexpr double kReachM = 80e-3;  // how far it looks for bone
+    static constexpr double kReachM = 80e-3;  // maximum search distance for bone
     static constexpr double kSeriesS = 6.0;   // strokes and the lift after them
 
     explicit SimSurgeon(const SimSurgeonSettings& settings) noexcept;
 
-    // Before pull(): where the hand is and what it felt for a time h.
+    // Before pull(): hand position and contact force over a time h.
     void step(double h_s, const Vec3& at_m, const Vec3& contact_n, bool powered) noexcept TACT_RT;
     [[nodiscard]] Wrench pull(const Pose& pose, const Twist& twist) const noexcept TACT_RT;
 
@@ -44,8 +44,8 @@ public:
     [[nodiscard]] bool met() const noexcept { return met_; }
 
 private:
-    static constexpr double kOffAtFirstS = 1e3;  // off long since
-    // One series of strokes, by its number.
+    static constexpr double kOffAtFirstS = 1e3;  // the device starts as if off for a long time
+    // One series of strokes, computed from its number.
     struct Series {
         Vec3 along = Vec3::UnitX(), across = Vec3::UnitY();
         double press_n = 1.0;

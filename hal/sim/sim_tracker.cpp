@@ -21,7 +21,7 @@ TrackerInfo SimTracker::open() {
 TrackerState SimTracker::read(unsigned sensor, TrackerSample& newest, Instant now) noexcept {
     if (opened_) {
         clock_.set(std::max(now, clock_.now()));
-        if (!started_) bus_.open();  // its time begins with the first look
+        if (!started_) bus_.open();  // the bus's time starts with the first poll
         started_ = true;
         reader_.round(Duration{0});
     }

@@ -1,7 +1,8 @@
-// An emulated head tracker: the default one, and the one that tests use. The emulated bus goes through the
-// same reader as a real one.
+// An emulated head tracker: the default one, also used by tests. The emulated bus goes through the same
+// reader as a real one.
 //
-// Lockstep  its time is the `now` that read() is given, so the same calls give the same poses, on any clock
+// Lockstep  its only time source is the `now` argument of read(), so the same calls give the same poses, on
+//           any clock
 #pragma once
 
 #include "hal/sim/sim_head_bus.hpp"
@@ -23,7 +24,7 @@ public:
     [[nodiscard]] CanReaderCounts counts() const noexcept { return reader_.counts(); }
 
 private:
-    // Stands at the `now` of the last read.
+    // Returns the `now` of the last read.
     class GivenClock final : public Clock {
     public:
         Instant now() noexcept TACT_RT override { return now_; }

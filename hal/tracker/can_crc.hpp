@@ -1,9 +1,8 @@
-// Checksums of the tracker's frames, both with the message's own number in front of its bytes.
+// Checksums of the tracker's frames, both with the message's data id in front of its bytes.
 //
 // CRC-8   SAE J1850: polynomial 0x1D, start 0xFF, inverted at the end; "123456789" gives 0x4B
-// CRC-16  CCITT: polynomial 0x1021, start 0xFFFF, as it is at the end; "123456789" gives 0x29B1
-// Data id sixteen bits, low byte first, before the bytes and never sent: a frame that a gateway or a fault
-// puts
+// CRC-16  CCITT: polynomial 0x1021, start 0xFFFF, no final inversion; "123456789" gives 0x29B1
+// Data id sixteen bits, low byte first, before the bytes and never sent: a frame that a gateway or a fault puts
 //         under another identifier fails its check (AUTOSAR E2E calls it implicit)
 #pragma once
 

@@ -1,10 +1,10 @@
-// Where everything lies in the tracker's frames: the same as tact_tracker.dbc, and a test holds one to the
-// other.
+// Layout of the tracker's frames: the same as tact_tracker.dbc; a test compares the two.
 //
 // Bits     little endian ("Intel"): start is the lowest bit, bit 0 the lowest bit of byte 0
 // Units    of a signal as sent; physical value = raw * scale
 // Classic  1 Mbit/s: SYNC opens a period, then POS and QUAT of every sensor, which carry the low bits of
-//          its counter FD 1/5 Mbit/s: one POSE a sensor and period
+//          its counter
+// FD       1/5 Mbit/s: one POSE per sensor and period
 #pragma once
 
 #include <array>
@@ -22,7 +22,7 @@ inline constexpr std::uint32_t kPoseId = 0x200;
 inline constexpr std::uint8_t kClassicBytes = 8;
 inline constexpr std::uint8_t kPoseBytes = 24;
 
-// Number that goes into the checksum before the bytes.
+// Data id that enters the checksum before the bytes.
 [[nodiscard]] constexpr std::uint16_t can_data_id(std::uint32_t id) noexcept {
     return static_cast<std::uint16_t>(0x5400U + id);
 }
@@ -87,9 +87,9 @@ inline constexpr std::array kSignals{kCrc, kCounter, kSensor, kStatus, kTime, kX
 }  // namespace can_pose
 
 struct CanMessage {
-    const char* name;  // of the .dbc; those that every sensor has end in its number there
+    const char* name;  // in the .dbc, where the names of per-sensor messages end in the sensor number
     std::uint32_t id;  // of sensor 0
-    unsigned copies;   // one a sensor, or 1
+    unsigned copies;   // one per sensor, or 1
     std::uint8_t bytes;
     bool fd;
     std::span<const CanSignal> signals;
@@ -102,11 +102,11 @@ inline constexpr std::array kTrackerMessages{
     CanMessage{"TactPose", kPoseId, kTrackerSensorsMax, kPoseBytes, true, can_pose::kSignals},
 };
 
-// Status of a SYNC: what the tracker says of itself.
+// Status of a SYNC: the tracker's own state.
 enum class TrackerStatus : std::uint8_t { ok = 0, starting = 1, no_source = 2, fault = 3 };
 // Status bits of a sensor.
-inline constexpr std::uint8_t kSensorValid = 1;      // without it the pose means nothing
-inline constexpr std::uint8_t kSensorDistorted = 2;  // metal nearby: usable, but wrong by more than its noise
+inline constexpr std::uint8_t kSensorValid = 1;      // without it the pose is invalid
+inline constexpr std::uint8_t kSensorDistorted = 2;  // metal nearby: usable, but less accurate
 inline constexpr std::uint8_t kSensorFar = 4;        // at the edge of the field: noise grows with distance^4
 
 [[nodiscard]] constexpr std::uint32_t can_raw(const CanSignal& s,
@@ -124,7 +124,7 @@ inline constexpr std::uint8_t kSensorFar = 4;        // at the edge of the field
     return static_cast<std::int32_t>((raw ^ sign) - sign);
 }
 
-// The bits must still be zero.
+// The bits must be zero before the call.
 constexpr void can_put(const CanSignal& s, std::uint32_t raw, std::span<std::uint8_t> data) noexcept {
     const std::uint64_t word = (std::uint64_t{raw} & ((std::uint64_t{1} << s.bits) - 1)) << (s.start % 8);
     const unsigned first = s.start / 8, last = (s.start + s.bits - 1) / 8;

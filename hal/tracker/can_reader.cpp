@@ -23,14 +23,14 @@ const CanTrackerSettings& checked(const CanTrackerSettings& s) {
         throw StartupError("settings of the tracker", what, fix);
     };
     if (s.fix.sensors < 1 || s.fix.sensors > kTrackerSensorsMax)
-        refuse(std::to_string(s.fix.sensors) + " sensors", "give 1 to 4 (tracker.sensors)");
+        refuse(std::to_string(s.fix.sensors) + " sensors", "set tracker.sensors to 1 to 4");
     if (!(s.rate_hz >= 10.0 && s.rate_hz <= 2000.0))
-        refuse("a rate of " + std::to_string(s.rate_hz) + " Hz", "give 10 to 2000 (tracker.rate_hz)");
+        refuse("a rate of " + std::to_string(s.rate_hz) + " Hz", "set tracker.rate_hz to 10 to 2000");
     if (s.latency < Duration{0} || s.latency > std::chrono::milliseconds(100))
         refuse("a latency of " + std::to_string(to_us(s.latency) * 1e-3) + " ms",
-               "give 0 to 100 (tracker.latency_ms)");
+               "set tracker.latency_ms to 0 to 100");
     if (!(s.fix.reach_m >= 0.1 && s.fix.reach_m <= 3.0))
-        refuse("a reach of " + std::to_string(s.fix.reach_m) + " m", "give 0.1 to 3 (tracker.reach_m)");
+        refuse("a reach of " + std::to_string(s.fix.reach_m) + " m", "set tracker.reach_m to 0.1 to 3");
     return s;
 }
 
@@ -83,14 +83,13 @@ void CanReader::take_error(const CanFrame& frame) noexcept {
 void CanReader::take(const CanFrame& frame, Instant arrived) noexcept {
     ++health_.frames;
     if (frame.kind == CanKind::error) return take_error(frame);
-    // Whatever came, the bus works: the controller receives.
+    // Any received frame proves that the bus works.
     if (frame.kind != CanKind::malformed) link_is(TrackerLink::up);
     TrackerFix fix;
     if (!assembler_.take(frame, fix)) return;
     Instant taken_at{};
-    // The clocks are understood better with every frame that was on its way for a shorter time, so that a
-    // stamp can fall behind the last one, most likely just after the start: time never runs backwards for a
-    // reader.
+    // A frame with a shorter delay improves the clock estimate, so a stamp can fall behind the last one,
+    // most likely just after the start. Such a sample is refused: time never runs backwards for a reader.
     if (clocks_[fix.sensor].stamp(fix.time_us, arrived, taken_at) && taken_at > taken_at_[fix.sensor])
         publish(fix, taken_at);
     else
@@ -127,14 +126,14 @@ void CanReader::round(Duration patience) noexcept {
     health_.missed = assembler_.missed();
     health_.refused = assembler_.refused().total();
     mailbox_->health.publish(health_);
-    // A flood leaves the processor to others between the rounds.
+    // During a flood, leaves the processor to other threads between the rounds.
     if (flood) clock_.wait_until(clock_.now() + kFloodPause);
 }
 
 TrackerState CanReader::read(unsigned sensor, TrackerSample& newest, Instant now) const noexcept {
     SampleWords w;
     if (sensor >= settings_.fix.sensors) return newest.state = TrackerState::lost;
-    // Lapped by the writer on every try: the caller keeps its old value, and its age says the rest.
+    // If the writer lapped every attempt, the caller keeps its old value and its age.
     if (mailbox_->samples[sensor].read(w)) {
         newest.taken_at = std::min(instant_from_ns(w.taken_at_ns), now);
         newest.sequence = w.sequence;

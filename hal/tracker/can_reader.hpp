@@ -1,11 +1,11 @@
 // From a CAN bus to the newest pose of each sensor: one bounded round at a time.
 //
-// Round     at most kBatchesMax batches: a flood costs a bounded time, and what lies in the kernel's
-//           queue is then old, refused as stale and counted until the newest is reached
-// Link      down: goes on by itself; gone: reopened every kReopenEvery; bus off: flagged until a good
-//           frame or the controller's "restarted". After each, counters begin anew.
-// Mailbox   samples and counters go out through Latest<>: readers never wait and see whole values
-// Thread    round() on one, its own; read() and health() on another
+// Round     at most kBatchesMax batches: a flood costs a bounded time; frames left in the kernel's queue
+//           are then old, refused as stale and counted until the newest is reached
+// Link      down: continues automatically; gone: reopened every kReopenEvery; bus off: flagged until a good
+//           frame or the controller's "restarted". After each, counters restart.
+// Mailbox   samples and counters go out through Latest<>: readers never wait and get whole values
+// Thread    round() on its own thread; read() and health() on another
 #pragma once
 
 #include <array>
@@ -25,10 +25,10 @@ struct CanTrackerSettings {
     Duration latency = std::chrono::milliseconds(4);  // from the motion to the frame on the bus
 };
 
-// The same settings, or StartupError: numbers of sensors, rates and latencies that no tracker has.
+// The same settings, or StartupError for impossible numbers of sensors, rates and latencies.
 const CanTrackerSettings& checked(const CanTrackerSettings& settings);
 
-// Counters of one kind each, for the health panel and the log.
+// One counter per kind, for the health panel and the log.
 struct CanReaderCounts {
     RefusalCounts refused;
     std::uint64_t bus_offs = 0, bus_passive = 0, clock_restarts = 0;
@@ -43,12 +43,12 @@ public:
     // Both outlive the reader.
     CanReader(const CanTrackerSettings& settings, CanSource& source, Clock& clock);
 
-    void opened() noexcept;                  // the source works: after its open()
-    void round(Duration patience) noexcept;  // comes back after about `patience` when nothing comes
+    void opened() noexcept;                  // after open() of the source
+    void round(Duration patience) noexcept;  // returns after about `patience` without frames
 
     TrackerState read(unsigned sensor, TrackerSample& newest, Instant now) const noexcept TACT_RT;
     [[nodiscard]] TrackerHealth health() const noexcept TACT_RT;
-    [[nodiscard]] CanReaderCounts counts() const noexcept;  // on the thread of round(), or when it stands
+    [[nodiscard]] CanReaderCounts counts() const noexcept;  // on the thread of round() only
 
 private:
     struct SampleWords {

@@ -43,7 +43,7 @@ void CanTracker::live() noexcept {
     pthread_setname_np(pthread_self(), "can");
     sched_param param{};
     param.sched_priority = kPriority;
-    pthread_setschedparam(pthread_self(), SCHED_FIFO, &param);  // where it is not permitted, ordinary
+    pthread_setschedparam(pthread_self(), SCHED_FIFO, &param);  // without the right: ordinary scheduling
     while (!leave_.load(std::memory_order_relaxed)) reader_.round(std::chrono::milliseconds(10));
 }
 

@@ -1,7 +1,7 @@
-// The head tracker on a CAN bus as Tact uses it: a CanReader on a thread of its own.
+// The head tracker on a CAN bus: a CanReader on its own thread.
 //
-// Thread   "can", FIFO 70 where that is permitted, else ordinary; never the servo's. It wakes for frames
-//          or every 10 ms, and takes no signal.
+// Thread   "can", FIFO 70 where permitted, else ordinary; never the servo's. It wakes for frames or every
+//          10 ms, and blocks all signals.
 #pragma once
 
 #include <atomic>
@@ -19,7 +19,7 @@ public:
     static constexpr int kPriority = 70;
 
     CanTracker(const CanTrackerSettings& settings, const std::string& interface);
-    // On any source of frames; `name` is for people.
+    // With any source of frames; `name` is for people.
     CanTracker(const CanTrackerSettings& settings, std::unique_ptr<CanSource> source, std::string name);
     ~CanTracker() override;
     CanTracker(const CanTracker&) = delete;

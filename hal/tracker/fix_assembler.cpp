@@ -56,7 +56,7 @@ Refusal FixAssembler::whole_pair(std::uint8_t sensor, TrackerFix& fix, bool& who
     fix.time_us = sync_.time_us;
     fix.T_tracker_sensor.p_m = h.p_m;
     fix.T_tracker_sensor.q = h.q;
-    // The classic frames have no room for more than the bits.
+    // The classic frames hold only these two bits.
     fix.quality = (h.status & kSensorFar) != 0 ? 0.5 : 1.0;
     fix.distortion = (h.status & kSensorDistorted) != 0 ? 1.0 : 0.0;
     whole = true;

@@ -1,9 +1,9 @@
-// From single frames to whole poses: pairs of classic frames by their counter, counters held to their order,
-// and what no tracker can have measured refused.
+// Combines frames into whole poses: pairs classic frames by their counter, checks the order of counters,
+// and refuses impossible values.
 //
 // Counters  one more than the last is right; up to kCounterLead more is accepted and the gap counted as
-//           missed; the same again is repeated; anything else is a jump: refused, and counting goes on
-//           from there
+//           missed; the same value is a repetition; anything else is a jump: refused, and counting
+//           continues from there
 // Range     a sensor farther from the tracker's origin than reach_m is refused
 // Thread    one; no allocation
 #pragma once
@@ -40,7 +40,7 @@ public:
 
     // True: `fix` is a new whole pose. Refusals are counted.
     bool take(const CanFrame& frame, TrackerFix& fix) noexcept;
-    // Forgets counters and halves: after the bus was away.
+    // Clears counters and halves; for use after an interruption of the bus.
     void restart() noexcept;
 
     [[nodiscard]] const RefusalCounts& refused() const noexcept { return refused_; }

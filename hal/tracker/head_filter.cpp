@@ -1,7 +1,7 @@
-// Why the twist is the filtered pose's: with a cut-off f, tau = 1/(2 pi f), the filtered value is
-// x^ = x - tau v^, v^ its own derivative, so x^ + h v^ takes back h of the lag tau, and what is predicted at
-// rest is as quiet as the filter. A derivative of the raw pose with a cut-off of its own is either late or
-// loud.
+// The twist is that of the filtered pose: with a cut-off f, tau = 1/(2 pi f), the filtered value is x^ = x
+// - tau v^, with v^ its own derivative, so x^ + h v^ compensates h of the lag tau, and a prediction at rest
+// has no more noise than the filter. A derivative of the raw pose with its own cut-off has either more lag
+// or more noise.
 #include "hal/tracker/head_filter.hpp"
 
 #include <algorithm>
@@ -16,7 +16,7 @@ double share(double cutoff_hz, double dt_s) noexcept {
     return 1.0 - std::exp(-2.0 * std::numbers::pi * cutoff_hz * dt_s);
 }
 
-// Moves the steering speed towards what the last step was and gives the share of the new sample.
+// Moves the steering speed towards the speed of the last step and returns the weight of the new sample.
 double steered(const OneEuroSettings& s, const Vec3& step, double dt_s, Vec3& speed) noexcept {
     speed += share(s.speed_cutoff_hz, dt_s) * (step / dt_s - speed);
     return share(s.min_cutoff_hz + s.beta_hz_per_speed * speed.norm(), dt_s);

@@ -1,14 +1,14 @@
-// The head's pose without the tracker's noise, and where it will be when the picture is seen.
+// The head's pose without the tracker's noise, and its prediction for the time of display.
 //
 // Filter    1 euro filter (Casiez, Roussel, Vogel 2012), position and rotation each: a low-pass whose
-//           cut-off rises with the speed, f = min_cutoff + beta |speed|: still at rest, little lag in
+//           cut-off rises with the speed, f = min_cutoff + beta |speed|: no jitter at rest, little lag in
 //           motion
-// Steps     of any length: share = 1 - exp(-2 pi f dt), which is exact for a value that stands between
-//           the samples, so the answer does not depend on how time was cut up. A sample that is not newer
-//           is left out; after a gap beyond kGap the filter begins anew.
-// Predicts  with the twist of the filtered pose itself, kept constant, at most kHorizon past the newest
-//           sample: beyond that the pose stands
-// Frame     the samples'; twist about its axes, of the sensor's own point
+// Steps     of any length: weight = 1 - exp(-2 pi f dt), exact for a value that is constant between
+//           samples, so the result does not depend on the step lengths. A sample that is not newer is
+//           ignored; after a gap beyond kGap the filter restarts.
+// Predicts  with the twist of the filtered pose, kept constant, at most kHorizon past the newest sample:
+//           beyond that the pose stays constant
+// Frame     that of the samples; twist about its axes, at the sensor's own point
 // Thread    one; no allocation
 #pragma once
 
@@ -21,11 +21,11 @@ namespace tact {
 struct OneEuroSettings {
     double min_cutoff_hz;
     double beta_hz_per_speed;  // Hz per m/s, or per rad/s
-    double speed_cutoff_hz;    // of the speed that steers the cut-off
+    double speed_cutoff_hz;    // low-pass of the speed that steers the cut-off
 };
 
-// Cut-offs at rest from common use for trackers; the rest measured against 0.8 mm and 0.15 degrees of noise
-// at 240 Hz, see README.md.
+// Cut-offs at rest: common values for trackers. The others were measured against 0.8 mm and 0.15 degrees of
+// noise at 240 Hz, see README.md.
 struct HeadFilterSettings {
     OneEuroSettings position{1.15, 60.0, 2.5};
     OneEuroSettings rotation{1.5, 18.0, 2.5};
@@ -45,7 +45,7 @@ public:
     [[nodiscard]] Instant taken_at() const noexcept { return taken_at_; }
     [[nodiscard]] const Pose& pose() const noexcept { return filtered_; }
     [[nodiscard]] const Twist& twist() const noexcept { return twist_; }
-    // At that instant, which is usually ahead of now: when the picture is seen.
+    // Pose at that instant, usually the future time of display.
     [[nodiscard]] Pose at(Instant when) const noexcept TACT_RT;
 
 private:
@@ -53,7 +53,7 @@ private:
     bool known_ = false;
     Instant taken_at_{};
     Pose raw_, filtered_;
-    Twist steering_;  // of the raw pose, low-passed: steers the cut-offs
+    Twist steering_;  // of the raw pose, low-pass filtered: steers the cut-offs
     Twist twist_;     // of the filtered pose
 };
 

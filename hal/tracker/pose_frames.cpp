@@ -34,7 +34,7 @@ Refusal check_classic(const CanFrame& f, std::uint32_t id, unsigned copies, cons
     return Refusal::none;
 }
 
-// Nearest step, stopping at the ends; the lowest number of all is not used, so that the range is symmetric.
+// Nearest step, clamped to the range; the lowest raw number is not used, so that the range is symmetric.
 void put_steps(const CanSignal& s, double value, std::span<std::uint8_t> data) noexcept {
     const double end = static_cast<double>((1U << (s.bits - 1)) - 1U);
     const double steps = std::clamp(std::round(value / s.scale), -end, end);
@@ -104,7 +104,7 @@ CanFrame encode(const PosFrame& pos) noexcept {
 CanFrame encode(const QuatFrame& quat) noexcept {
     CanFrame f;
     const auto data = begin(f, kQuatId + quat.sensor, CanKind::classic, kClassicBytes);
-    // A quaternion has no mark of its own: zeros fail by their norm.
+    // A quaternion has no validity flag: zeros fail by their norm.
     const Quat q = quat.q.coeffs().allFinite() ? quat.q : Quat(0.0, 0.0, 0.0, 0.0);
     put_rotation(can_quat::kX, can_quat::kY, can_quat::kZ, can_quat::kW, q, data);
     can_put(can_quat::kCounter, quat.counter, data);

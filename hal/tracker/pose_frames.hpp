@@ -1,10 +1,11 @@
 // The tracker's frames as bytes: encoded by emulators and tests, decoded by the driver.
 //
 // Frame    the tracker's own, right-handed; metres, unit quaternions
-// Decode   looks at one frame alone: its length, checksum and values. What comes out is finite and within
-//          what the layout can say, whatever the bytes were; not `none` leaves `out` as it was.
-// Encode   rounds to the layout's steps and stops at its ends; a pose that is not finite becomes one that is
-//          marked as not valid. CAN cannot carry a value that is not a number.
+// Decode   checks one frame alone: its length, checksum and values. Decoded values are finite and within
+//          the range of the layout, whatever the bytes were; on a result other than `none`, `out` is
+//          unchanged.
+// Encode   rounds to the layout's steps and clamps to its range; a pose that is not finite is marked as not
+//          valid, since CAN cannot carry NaN.
 // Thread   any; no allocation
 #pragma once
 
@@ -17,7 +18,7 @@
 
 namespace tact {
 
-inline constexpr double kQuatNormError = 0.01;  // 13 bits leave 2.5e-4 at most
+inline constexpr double kQuatNormError = 0.01;  // 13 bits cause at most 2.5e-4
 
 struct SyncFrame {
     std::uint16_t counter = 0;
@@ -27,7 +28,7 @@ struct SyncFrame {
 
 struct PosFrame {
     std::uint8_t sensor = 0;
-    std::uint8_t counter = 0;  // low four bits of the SYNC's
+    std::uint8_t counter = 0;  // low four bits of the SYNC counter
     std::uint8_t status = kSensorValid;
     Vec3 p_m = Vec3::Zero();
 };
@@ -44,7 +45,7 @@ struct PoseFrame {
     std::uint8_t status = kSensorValid;
     std::uint32_t time_us = 0;
     Pose T_tracker_sensor;
-    double quality = 1.0;     // 0 to 1, as the tracker judges itself
+    double quality = 1.0;     // 0 to 1, as the tracker reports it
     double distortion = 0.0;  // 0 to 1
 };
 

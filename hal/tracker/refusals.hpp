@@ -1,4 +1,4 @@
-// Why a frame of the tracker was not believed, and how many of each.
+// Reasons to refuse a frame of the tracker, and a counter for each.
 #pragma once
 
 #include <array>
@@ -9,19 +9,19 @@ namespace tact {
 
 enum class Refusal : std::uint8_t {
     none,
-    unknown_id,    // not of this tracker, or of a sensor that is not configured
+    unknown_id,    // not of this tracker, or of an unconfigured sensor
     wrong_length,  // or an extended identifier, a remote request, the other kind of frame
     crc,
-    malformed,       // a value that the layout does not have
-    repeated,        // a counter that was seen already
-    jump,            // a counter that is too far from the last; counting goes on from it
-    no_sync,         // of no period that was opened, or of a refused one
-    half,            // the other half of the pair never came
-    tracker_status,  // the tracker says that it is not ready
-    sensor_status,   // the sensor says that its pose means nothing
+    malformed,       // a value outside the layout
+    repeated,        // a counter that was received already
+    jump,            // a counter too far from the last; counting continues from it
+    no_sync,         // of a period that was not opened or was refused
+    half,            // the other half of the pair is missing
+    tracker_status,  // the tracker reports that it is not ready
+    sensor_status,   // the sensor reports an invalid pose
     out_of_range,    // beyond the reach of the tracker
     norm,            // a quaternion far from unit length
-    stale,           // older than three periods when it came, or not newer than the last sample
+    stale,           // older than three periods on arrival, or not newer than the last sample
     count_
 };
 

@@ -19,11 +19,11 @@ namespace tact {
 
 namespace {
 
-// The kernel books about 800 bytes for a CAN frame and doubles what is asked: some 300 frames, one round of
-// the reader. A longer queue would only hold older frames in a flood.
+// The kernel charges about 800 bytes per CAN frame and doubles the requested size: about 300 frames, one
+// round of the reader. A longer queue would only hold older frames in a flood.
 constexpr int kQueueBytes = 128 * 1024;
 
-// Closes unless it is taken.
+// Closes the descriptor unless ownership was taken.
 class Descriptor {
 public:
     explicit Descriptor(int fd) : fd_(fd) {}
@@ -105,13 +105,13 @@ std::uint32_t dropped_in(const msghdr& message, std::uint32_t before) noexcept {
         std::memcpy(&total, CMSG_DATA(c), sizeof total);
         return total;
     }
-    return before;  // the kernel sends none until it dropped something
+    return before;  // the kernel sends none before the first drop
 }
 
 }  // namespace
 
 std::vector<can_filter> tracker_filters(CanFormat format, unsigned sensors) {
-    // All of the identifier and both flags count, so what is extended or remote fails.
+    // All bits of the identifier and both flags must match, so extended and remote frames fail.
     constexpr canid_t kAll = CAN_EFF_FLAG | CAN_RTR_FLAG | CAN_SFF_MASK;
     std::vector<can_filter> filters;
     const auto pass = [&filters](std::uint32_t id) { filters.push_back({id, kAll}); };
@@ -134,31 +134,32 @@ void refuse_interface(CanStep step, const std::string& interface, int error) {
     switch (step) {
         case CanStep::socket:
             if (error == EAFNOSUPPORT || error == EPROTONOSUPPORT)
-                throw StartupError(what, "this kernel has no CAN", "modprobe can_raw (as root)");
-            throw StartupError(what, "a CAN socket is refused: " + reason,
+                throw StartupError(what, "this kernel has no CAN", "run as root: modprobe can_raw");
+            throw StartupError(what, "the kernel refused a CAN socket: " + reason,
                                error == EPERM || error == EACCES
-                                   ? "allow AF_CAN where it is forbidden: RestrictAddressFamilies= of the "
+                                   ? "allow AF_CAN: RestrictAddressFamilies= of the "
                                      "service, or the container's network (use the host's)"
-                                   : "close other programs");
+                                   : "close other programs that use CAN sockets");
         case CanStep::interface:
             throw StartupError(
-                what, "there is no such interface",
-                "plug the adapter, or name another (tracker.interface; ip -br link shows them)");
+                what, "no such interface exists",
+                "plug in the adapter, or set tracker.interface to an existing one; ip -br link lists them");
         case CanStep::type:
-            throw StartupError(what, "it is no CAN interface", "name one that is: ip -br link show type can");
+            throw StartupError(what, "this is not a CAN interface",
+                               "set tracker.interface to one listed by: ip -br link show type can");
         case CanStep::state:
-            throw StartupError(what, "it is down", set_up + " (as root)");
+            throw StartupError(what, "the interface is down", "run as root: " + set_up);
         case CanStep::mtu:
-            throw StartupError(what, "it does not do CAN FD",
-                               "set it down, then " + set_up +
-                                   " dbitrate 5000000 fd on (as root), or set tracker.format = \"classic\"");
+            throw StartupError(what, "the interface does not support CAN FD",
+                               "set it down, then run as root: " + set_up +
+                                   " dbitrate 5000000 fd on; or set tracker.format = \"classic\"");
         case CanStep::option:
-            throw StartupError(what, "an option of the socket is refused: " + reason,
-                               "use a kernel of 5.4 or newer");
+            throw StartupError(what, "the kernel refused a socket option: " + reason,
+                               "use kernel 5.4 or newer");
         case CanStep::bind:
             break;
     }
-    throw StartupError(what, "it cannot be listened to: " + reason, set_up + " (as root)");
+    throw StartupError(what, "binding a socket failed: " + reason, "run as root: " + set_up);
 }
 
 SocketCan::SocketCan(std::string interface, const FixSettings& settings)
@@ -185,7 +186,7 @@ bool SocketCan::reopen() noexcept {
         open();
         return true;
     } catch (const std::exception&) {
-        return false;  // still not there: the reader asks again
+        return false;  // still absent: the reader tries again
     }
 }
 
@@ -220,7 +221,7 @@ CanBatch SocketCan::receive(std::span<CanFrame> into, Duration patience) noexcep
     const int n = recvmmsg(fd_, messages_.data(), static_cast<unsigned>(room), MSG_DONTWAIT, nullptr);
     if (n < 0) return fault(errno, batch);
     for (std::size_t i = 0; i < static_cast<std::size_t>(n); ++i) {
-        // A CAN socket gives no empty message: this is a stream's end.
+        // A CAN socket gives no empty message: size 0 means the end of a stream socket.
         if (messages_[i].msg_len == 0) return fault(ENODEV, batch);
         const bool cut = (messages_[i].msg_hdr.msg_flags & MSG_TRUNC) != 0;
         into[batch.count++] = from_raw(raw_[i], cut ? 0 : messages_[i].msg_len);

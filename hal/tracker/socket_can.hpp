@@ -1,10 +1,9 @@
-// A raw SocketCAN socket: the tracker's frames only, taken with recvmmsg into fixed arrays.
+// A raw SocketCAN socket: receives the tracker's frames only, with recvmmsg into fixed arrays.
 //
-// Kernel   filters let through the configured tracker's identifiers and nothing else; error frames on;
-//          frames that found no room are counted (SO_RXQ_OVFL); the queue holds about one round of the
-//          reader
+// Kernel   filters pass only the identifiers of the configured tracker; error frames are on; frames dropped
+//          for lack of space are counted (SO_RXQ_OVFL); the queue holds about one round of the reader
 // Thread   one; receive() does not allocate
-// Fails by open(): StartupError naming the interface and the command that fixes it. Later by CanFault.
+// Errors   open(): StartupError with the interface and the command that fixes it; later a CanFault
 #pragma once
 
 #include <linux/can.h>
@@ -19,18 +18,18 @@
 
 namespace tact {
 
-// Exactly the frames of so many sensors; extended identifiers and remote requests never pass.
+// Passes exactly the frames of this many sensors; extended identifiers and remote requests never pass.
 [[nodiscard]] std::vector<can_filter> tracker_filters(CanFormat format, unsigned sensors);
 
-// Why an interface cannot be read, and the fix; `error` is the errno of the step.
+// Steps of opening an interface; refuse_interface() reports the failed one with its fix. `error`: errno.
 enum class CanStep : std::uint8_t { socket, interface, type, state, mtu, option, bind };
 [[noreturn]] void refuse_interface(CanStep step, const std::string& interface, int error);
 
 class SocketCan final : public CanSource {
 public:
     SocketCan(std::string interface, const FixSettings& settings);
-    // On a socket that is open already and gives one CAN frame a message, as a raw CAN socket does. It is
-    // closed with this object and cannot be reopened.
+    // With an open socket that returns one CAN frame per message, as a raw CAN socket does. This object
+    // closes it and cannot reopen it.
     explicit SocketCan(int fd);
     ~SocketCan() override;
     SocketCan(const SocketCan&) = delete;

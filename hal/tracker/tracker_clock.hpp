@@ -1,14 +1,12 @@
-// The tracker's clock against the machine's.
+// Converts the tracker's clock to the machine's.
 //
-// A frame comes at  arrival = time + offset + delay,  delay >= 0: the smallest difference seen is the offset,
-// and what is above it is how long the frame was on its way. The offset may rise by kDrift, so that a
-// tracker's quartz that runs slow is followed; one that runs fast is followed by the smallest difference
-// itself.
+// A frame arrives at  arrival = time + offset + delay,  delay >= 0: the smallest observed difference is the
+// offset, and the excess over it is the delay of the frame. The offset may rise by kDrift, to follow a tracker
+// whose quartz runs slow; the smallest difference itself follows one that runs fast.
 //
-// Stale    a delay above three periods: the frame lay in a queue while newer ones came. Refused.
-// Restart  the two clocks differ by more than a second over one step (the tracker was switched on again,
-//          or its 32 bits went round in a long silence), or everything was stale for kStaleAtMost: begun
-//          anew.
+// Stale    a delay above three periods: the frame waited in a queue while newer ones arrived. Refused.
+// Restart  when the two clocks differ by more than a second over one step (the tracker was restarted, or
+//          its 32 bits wrapped in a long silence), or everything was stale for kStaleAtMost.
 // Thread   one; no allocation
 #pragma once
 
@@ -21,13 +19,13 @@ namespace tact {
 
 class TrackerClock {
 public:
-    static constexpr double kDrift = 200e-6;  // two quartzes of 100 ppm each
+    static constexpr double kDrift = 200e-6;  // two quartzes with 100 ppm each
     static constexpr Duration kRestart = std::chrono::seconds(1);
     static constexpr Duration kStaleAtMost = std::chrono::milliseconds(250);
 
     explicit TrackerClock(Duration period) : delay_max_(3 * period) {}
 
-    // False: stale. Else taken_at is when the tracker measured, never after the arrival.
+    // False: stale. Otherwise taken_at is the time of measurement, never after the arrival.
     [[nodiscard]] bool stamp(std::uint32_t time_us, Instant arrived, Instant& taken_at) noexcept {
         if (known_) {
             const Duration step = std::chrono::microseconds(static_cast<std::int32_t>(time_us - last_us_));
@@ -64,9 +62,9 @@ private:
     bool known_ = false;
     std::uint32_t last_us_ = 0;
     std::uint64_t begun_ = 0;
-    Instant time_{};     // the tracker's clock, unrolled, from the first arrival on
+    Instant time_{};     // the tracker's clock, unwrapped, from the first arrival on
     Instant arrived_{};  // of the last frame
-    Instant good_at_{};  // last one that was not stale
+    Instant good_at_{};  // of the last frame that was not stale
     Duration offset_{};
 };
 

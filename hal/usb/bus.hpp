@@ -1,5 +1,5 @@
-// The USB bus as a pump sees it: packets of at most 64 bytes each way, and what can happen to them. One
-// implementation uses libusb, others are made of memory for tests.
+// Interface of a pump to the USB bus: packets of at most 64 bytes each way, and their faults. One
+// implementation uses libusb, others emulate the bus in memory for tests.
 //
 // In      the bus keeps its own IN transfers queued; each packet that arrives is an event
 // Out     one at a time: send() returns false until the event `sent` or `send_failed` arrives
@@ -19,9 +19,9 @@ namespace tact::usb {
 
 enum class BusFault : std::uint8_t {
     none,
-    missing,    // no device, or none with that serial
-    several,    // more than one device, and no serial was given
-    twins,      // two devices with one serial
+    missing,    // no device, or none with that serial number
+    several,    // more than one device, and no serial number given
+    twins,      // two devices with the same serial number
     denied,     // no permission to open the device file
     busy,       // another program uses it
     not_ready,  // present, but not configured yet: try again
@@ -32,14 +32,14 @@ enum class BusFault : std::uint8_t {
 struct BusFinding {
     BusFault fault = BusFault::missing;
     std::string serial;  // of the opened device
-    std::string detail;  // of a fault: the serials found, or the bus's own message
+    std::string detail;  // of a fault: the serial numbers found, or the bus's own message
 };
 
 enum class BusEventKind : std::uint8_t { packet, sent, send_failed, receive_failed, stalled, gone };
 
 struct BusEvent {
     BusEventKind kind = BusEventKind::packet;
-    std::uint8_t size = 0;  // of a packet; 65: it was longer than 64 bytes, and is refused
+    std::uint8_t size = 0;  // of a packet; 65: longer than 64 bytes, and refused
     Instant at{};           // time of arrival
     std::array<std::byte, 64> bytes{};
 };
@@ -54,13 +54,13 @@ struct VendorRequest {
 class Bus {
 public:
     virtual ~Bus() = default;
-    // Empty serial: the only device present. Anything but `none` leaves it closed.
+    // Empty serial: the only device present. On any result but `none` the bus stays closed.
     virtual BusFinding open(const std::string& serial) = 0;
     virtual void close() noexcept = 0;
-    // Waits for at most `patience` for events; returns how many it wrote, the oldest first.
+    // Waits at most `patience` for events; returns their number, the oldest first.
     virtual std::size_t wait(std::span<BusEvent> events, Duration patience) noexcept = 0;
     virtual bool send(std::span<const std::byte> packet) noexcept = 0;
-    // After `stalled`: both endpoints work again, or false.
+    // After `stalled`: makes both endpoints work again; false on failure.
     virtual bool clear_stall() noexcept = 0;
     // Waits for the device's answer. False: refused, or the bus has no such requests.
     virtual bool control(const VendorRequest& /*request*/) noexcept { return false; }

@@ -12,10 +12,11 @@ bool may_pass(BusFault fault) noexcept {
 
 void refuse_open(const std::string& what, const BusFinding& found) {
     if (found.fault == BusFault::denied)
-        throw StartupError(what, "this user may not open it (" + found.detail + ")", kDeviceRightsFix);
+        throw StartupError(what, "this user has no right to open the device (" + found.detail + ")",
+                           kDeviceRightsFix);
     if (found.fault == BusFault::busy)
-        throw StartupError(what, "another program has it (" + found.detail + ")",
-                           "end that program; lsof names it");
+        throw StartupError(what, "another program uses the device (" + found.detail + ")",
+                           "end that program; lsof lists it");
     throw StartupError(what, found.detail, "unplug it and plug it in again; see dmesg");
 }
 

@@ -1,4 +1,4 @@
-// Which devices a driver looks for on the USB bus, and how their transfers are read.
+// The kind of USB device that a driver searches for, and the format of its transfers.
 #pragma once
 
 #include <cstddef>
@@ -7,7 +7,7 @@
 
 namespace tact::usb {
 
-// The useful part of an IN transfer. Neither damaged nor any bytes: nothing to report.
+// The useful part of an IN transfer. Empty and undamaged: nothing to report.
 struct Piece {
     std::span<const std::byte> bytes;
     bool damaged = false;

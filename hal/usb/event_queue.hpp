@@ -1,5 +1,5 @@
-// The events of a bus that its pump has not fetched yet. When it is full the oldest one goes: an old state is
-// worth nothing.
+// Events of a bus that its pump has not fetched yet. When full, it drops the oldest: an old state has no
+// value.
 //
 // Thread  the pump's
 #pragma once
@@ -24,7 +24,7 @@ public:
         e.size = static_cast<std::uint8_t>(std::min<std::size_t>(bytes.size(), e.bytes.size() + 1));
         std::copy_n(bytes.begin(), std::min(bytes.size(), e.bytes.size()), e.bytes.begin());
     }
-    // Moves the oldest events out; returns how many.
+    // Moves the oldest events out; returns their number.
     std::size_t fetch(std::span<BusEvent> into) noexcept {
         const std::size_t n = std::min(count_, into.size());
         for (std::size_t i = 0; i < n; ++i) into[i] = events_[(first_ + i) % N];

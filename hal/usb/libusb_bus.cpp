@@ -1,5 +1,5 @@
-// One libusb context for each time the device is open: Debian's libusb lists devices anew only by udev's
-// events or with a new context, and there is not always a udev.
+// A new libusb context for each connection: Debian's libusb updates its device list only through udev
+// events or with a new context, and udev is not always present.
 #include "hal/usb/libusb_bus.hpp"
 
 #include <libusb.h>
@@ -17,14 +17,14 @@ namespace tact::usb {
 
 namespace {
 
-constexpr std::size_t kIn = 4;  // transfers that wait for a packet
-// One whole packet. A transfer ends with a packet that is shorter than the endpoint's largest, or when its memory
-// is full: with more than this, states of full size would be glued together, eight of them in 512 bytes.
+constexpr std::size_t kIn = 4;  // queued transfers
+// One whole packet. A transfer ends with a packet shorter than the endpoint's maximum, or when its buffer
+// is full: a larger buffer would merge states of full size, eight of them in 512 bytes.
 constexpr std::size_t kInBytes = 64;
-constexpr std::array<std::byte, kInBytes + 1> kTooLong{};  // stands for a packet that did not fit
+constexpr std::array<std::byte, kInBytes + 1> kTooLong{};  // placeholder for a packet that did not fit
 constexpr std::size_t kEvents = 64;
-constexpr unsigned kErrorsMax = 20;      // in a row: it is as good as gone
-constexpr unsigned kControlMaxMs = 500;  // a device answers within a millisecond, or is gone
+constexpr unsigned kErrorsMax = 20;      // in a row: the device counts as disconnected
+constexpr unsigned kControlMaxMs = 500;  // a present device answers within a millisecond
 constexpr Duration kCloseMax = std::chrono::milliseconds(500);
 
 class LibusbBus final : public Bus {
@@ -76,14 +76,14 @@ private:
 };
 
 BusFinding LibusbBus::claim(const BusFinding& found) {
-    // The kernel's own driver for such a device has it by then.
+    // The kernel may already have bound its own driver to the device.
     static_cast<void>(libusb_set_auto_detach_kernel_driver(handle_, 1));
     const int error = libusb_claim_interface(handle_, device_.interface);
     if (error == 0) {
         claimed_ = true;
         return {BusFault::none, found.serial, {}};
     }
-    // Arrived before its configuration was set.
+    // The device was found before its configuration was set.
     const bool soon = error == LIBUSB_ERROR_NOT_FOUND || error == LIBUSB_ERROR_NO_DEVICE;
     const BusFault fault = soon                           ? BusFault::not_ready
                            : error == LIBUSB_ERROR_BUSY   ? BusFault::busy
@@ -94,7 +94,8 @@ BusFinding LibusbBus::claim(const BusFinding& found) {
 
 BusFinding LibusbBus::open(const std::string& serial) {
     close();
-    if (context_ != nullptr) return {BusFault::failed, {}, "transfers of the last connection do not end"};
+    if (context_ != nullptr)
+        return {BusFault::failed, {}, "transfers of the last connection are still running"};
     if (const int error = libusb_init(&context_); error != 0) {
         context_ = nullptr;
         return {BusFault::failed, {}, std::string("starting libusb: ") + libusb_error_name(error)};
@@ -120,7 +121,7 @@ BusFinding LibusbBus::open(const std::string& serial) {
     for (In& in : in_) queue(in);
     if (gone_ || out_ == nullptr) {
         close();
-        return {BusFault::not_ready, {}, "it went away while it was being opened"};
+        return {BusFault::not_ready, {}, "the device disappeared while it was being opened"};
     }
     return found;
 }
@@ -243,7 +244,7 @@ void LibusbBus::handle_now() noexcept {
     static_cast<void>(libusb_handle_events_timeout_completed(context_, &none, nullptr));
 }
 
-// ppoll instead of libusb's own wait, which rounds up to milliseconds.
+// Uses ppoll instead of libusb's own wait, which rounds up to milliseconds.
 std::size_t LibusbBus::wait(std::span<BusEvent> events, Duration patience) noexcept {
     if (handle_ == nullptr) {
         nap(patience);
@@ -272,7 +273,7 @@ void LibusbBus::close() noexcept {
         if (busy()) nap(kBusNap);
     }
     closing_ = false;
-    if (busy()) return;  // the kernel still has the memory: it stays, and is tried again with the next open()
+    if (busy()) return;  // the kernel still uses the memory: keep it and retry at the next open()
     for (In& in : in_) libusb_free_transfer(std::exchange(in.transfer, nullptr));
     libusb_free_transfer(std::exchange(out_, nullptr));
     if (handle_ != nullptr) {

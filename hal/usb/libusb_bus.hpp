@@ -1,4 +1,4 @@
-// The USB bus of this machine, for the device of one kind.
+// The USB bus of this computer, for devices of one kind.
 #pragma once
 
 #include <memory>

@@ -90,7 +90,7 @@ BusFinding find_device(libusb_context* context, const DeviceKind& kind, const st
         found.serial = its;
         matching.push_back(d);
     }
-    libusb_free_device_list(list, 1);  // what is open keeps its device
+    libusb_free_device_list(list, 1);  // each open handle keeps its device
     found.fault = matching.size() == 1 ? (slow ? BusFault::slow : BusFault::none)
                   : !matching.empty()  ? (serial.empty() ? BusFault::several : BusFault::twins)
                   : !denied.empty()    ? BusFault::denied

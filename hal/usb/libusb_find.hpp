@@ -1,6 +1,6 @@
-// Looks for a device among those that libusb lists: by its kind, then by its serial.
+// Finds a device in libusb's list: by its kind, then by its serial number.
 //
-// Thread  the bus's; it opens every candidate, since only an open device tells its serial
+// Thread  the bus's; opens every candidate, since only an open device reports its serial number
 #pragma once
 
 #include <string>
@@ -20,7 +20,7 @@ struct FoundDevice {
     unsigned char in = 0, out = 0;  // addresses of its endpoints
 };
 
-// Empty serial: the only device present. `device` is unchanged where there is a fault.
+// Empty serial: the only device present. On a fault, `device` is unchanged.
 [[nodiscard]] BusFinding find_device(libusb_context* context, const DeviceKind& kind,
                                      const std::string& serial, FoundDevice& device);
 

@@ -14,7 +14,7 @@ bool PumpLink::reopen(Instant now) noexcept {
     try {
         return bus_.open(serial_).fault == BusFault::none;
     } catch (...) {
-        return false;  // out of memory for a moment: tried again
+        return false;  // out of memory for a moment: retried later
     }
 }
 

@@ -1,5 +1,5 @@
-// The bus of a pump: opened by serial, looked for again when it is gone, its events in bounded batches; and the
-// share of bad packets in each second.
+// The bus of a pump: opens it by serial number, searches again after a loss, and passes its events on in
+// bounded batches; and the fraction of bad packets in each second.
 //
 // Thread  the pump's; open() at start-up
 #pragma once
@@ -22,13 +22,13 @@ public:
     [[nodiscard]] Bus& bus() const noexcept { return bus_; }
     [[nodiscard]] const std::string& serial() const noexcept { return serial_; }
 
-    // One try. From the first success on the serial is that of the device found.
+    // One attempt. After the first success, the serial number is that of the device found.
     [[nodiscard]] BusFinding open();
-    // For a link that is gone: one try every kReopenEvery. True: it is open again.
+    // For a lost link: one attempt every kReopenEvery. True: open again.
     [[nodiscard]] bool reopen(Instant now) noexcept;
     void lose(Instant now) noexcept;
 
-    // Passes on what arrives within `patience`, at most kBatch times kBatchesMax events. True: an endpoint stalled.
+    // Passes on the events of `patience`, at most kBatch times kBatchesMax. True: an endpoint stalled.
     template <class Take>
     [[nodiscard]] bool drain(Duration patience, Take&& take) noexcept {
         bool stalled = false;
@@ -54,7 +54,7 @@ private:
 // Packets refused or lost, second by second.
 class BadSeconds {
 public:
-    // The counts since the start. True once a second: bad() is about the one that is over.
+    // Takes the counts since the start. True once a second: bad() then describes the past second.
     [[nodiscard]] bool over(Instant now, std::uint64_t bad, std::uint64_t taken) noexcept;
     // More than 5 % of the packets were bad.
     [[nodiscard]] bool bad() const noexcept { return last_bad_; }

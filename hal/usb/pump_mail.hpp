@@ -1,7 +1,8 @@
-// The newest value each way between a pump and the servo, and the request to switch the motors off.
+// Seqlocks with the newest value in each direction between a pump and the servo, and the request to switch
+// the motors off.
 //
-// News    what the pump tells the servo; Order: what the servo asks for, with written_at_ns
-// Thread  read(), write() on the servo's; relax() and relaxed() on any; what is protected on the pump's
+// News    from the pump to the servo; Order: from the servo to the pump, with written_at_ns
+// Thread  read(), write() on the servo's; relax() and relaxed() on any; protected members on the pump's
 #pragma once
 
 #include <algorithm>
@@ -26,7 +27,7 @@ public:
 
 protected:
     void publish(const News& news) noexcept { mailbox_->news.publish(news); }
-    // The newest order, if it was not fetched before.
+    // The newest order, unless already fetched.
     [[nodiscard]] bool fetch(Order& order, Instant now) noexcept {
         const std::uint64_t written = mailbox_->order.count();
         if (written == seen_ || !mailbox_->order.read(order)) return false;
@@ -36,7 +37,7 @@ protected:
         ordered_at_ = std::min(instant_from_ns(order.written_at_ns), now);
         return true;
     }
-    // When the newest order was written, and how long after the one before it.
+    // Time of the newest order, and its interval from the order before it.
     [[nodiscard]] Instant ordered_at() const noexcept { return ordered_at_; }
     [[nodiscard]] Duration interval() const noexcept { return Duration(interval_ns_); }
 

@@ -1,4 +1,4 @@
-// The thread that runs a pump: rounds until it is told to stop, then until the motors are off on the wire.
+// The thread of a pump: runs rounds until stop(), then until the last command sent switches the motors off.
 //
 // Thread  start() and stop() on the main one
 #pragma once
@@ -21,8 +21,9 @@ public:
     PumpThread(const PumpThread&) = delete;
     PumpThread& operator=(const PumpThread&) = delete;
 
-    // `name`: of the thread, at most 15 characters. `what` names it in a message: "the arm's USB". FIFO priority;
-    // 0: ordinary scheduling. Returns why it runs without that priority, or nothing. Pump and bus outlive stop().
+    // `name`: of the thread, at most 15 characters. `what` names it in a message: "the arm's USB". FIFO
+    // priority; 0: ordinary scheduling. Returns the reason if it runs without that priority. Pump and bus
+    // must outlive stop().
     template <class Pump>
     [[nodiscard]] std::string start(Pump& pump, Bus& bus, const char* name, const char* what, int priority) {
         return start([this, &pump, &bus] { run(pump, bus); }, name, what, priority);

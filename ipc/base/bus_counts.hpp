@@ -1,7 +1,7 @@
-// What came over a device's bus since the start of the program, and what of it was wrong. Each number stands at
-// 2^32 - 1 once it is there.
+// Packets received over a device's bus since the start of the program, and its errors. Each counter
+// saturates at 2^32 - 1.
 //
-// Use  goes through DeviceSample, topic and screen as it is; a driver that counts nothing leaves zeros
+// Use  goes through DeviceSample, topic and display unchanged; a driver without counters leaves zeros
 #pragma once
 
 #include <algorithm>
@@ -13,11 +13,11 @@
 namespace tact {
 
 struct BusCounts {
-    std::uint32_t packets = 0;           // taken
-    std::uint32_t checksum = 0;          // refused for it
-    std::uint32_t refused = 0;           // for anything else in them
-    std::uint32_t repeated = 0;          // or late, or by a clock that stood still
-    std::uint32_t lost = 0;              // sequence numbers that never came
+    std::uint32_t packets = 0;           // accepted
+    std::uint32_t checksum = 0;          // refused for their checksum
+    std::uint32_t refused = 0;           // refused for another reason
+    std::uint32_t repeated = 0;          // or late, or with a clock that did not advance
+    std::uint32_t lost = 0;              // sequence numbers that never arrived
     std::uint32_t transfers_failed = 0;  // of the bus itself
     std::uint32_t stalls = 0;
     std::uint32_t reconnects = 0;
@@ -25,7 +25,7 @@ struct BusCounts {
     std::uint32_t bad_seconds = 0;       // with more than 5 % refused or lost
     bool operator==(const BusCounts&) const = default;
 
-    // Everything but what was taken.
+    // True if all counters except `packets` are zero.
     [[nodiscard]] bool clean() const noexcept TACT_RT {
         BusCounts c = *this;
         c.packets = 0;

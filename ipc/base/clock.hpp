@@ -1,7 +1,7 @@
-// Instants and durations, and the clock that the servo loop runs on.
+// Instants and durations, and the clock of the servo loop.
 //
-// The loop takes a Clock so that the very same loop runs on the monotonic clock of the machine and, in
-// tests and replays, on a clock that is moved by hand.
+// The loop takes a Clock so that the same loop runs on the machine's monotonic clock and, in tests and
+// replays, on a manual clock.
 #pragma once
 
 #include <time.h>

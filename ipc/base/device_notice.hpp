@@ -1,5 +1,5 @@
-// What a haptic device says to the person at it: what it asks for, and why it shows no force. One byte, so
-// that it goes through every topic.
+// Notice from a haptic device to its user: a required action, or the reason for zero force. One byte, so
+// that it fits every topic.
 #pragma once
 
 #include <cstdint>
@@ -10,13 +10,13 @@ namespace tact {
 
 enum class DeviceNotice : std::uint8_t {
     none,
-    // It asks.
+    // Required actions.
     hold_reset_pose,
     keep_still,
     stylus_into_inkwell,
     stylus_stays_in_inkwell,
     move_about,
-    // It shows no force until a person resets the fault.
+    // Zero force until a person resets the fault.
     gone,
     silent,
     commands_not_taken,
@@ -31,7 +31,7 @@ enum class DeviceNotice : std::uint8_t {
     drive_broken,
     encoder_stuck,
     encoder_jumped,
-    // It goes on, and should be looked at.
+    // Warnings: operation continues.
     states_refused,
 };
 inline constexpr std::uint8_t kDeviceNotices = 21;
@@ -58,31 +58,31 @@ inline constexpr std::uint8_t kDeviceNotices = 21;
         case DeviceNotice::gone:
             return "the device is unplugged or has no power";
         case DeviceNotice::silent:
-            return "the device sent nothing good for three periods";
+            return "the device sent no valid data for three periods";
         case DeviceNotice::commands_not_taken:
-            return "the device does not take its commands";
+            return "the device does not accept its commands";
         case DeviceNotice::watchdog_tripped:
-            return "the device's watchdog dropped its amplifier";
+            return "the device's watchdog switched its amplifier off";
         case DeviceNotice::amplifier_off:
-            return "the amplifier went off by itself";
+            return "the amplifier switched off unexpectedly";
         case DeviceNotice::over_temperature:
             return "a motor or the amplifier is too hot";
         case DeviceNotice::brown_out:
-            return "the amplifier's supply broke down";
+            return "the amplifier's supply voltage dropped";
         case DeviceNotice::safety_open:
             return "the emergency stop or the dead-man switch is open";
         case DeviceNotice::over_current:
-            return "a motor took too much current";
+            return "a motor drew too much current";
         case DeviceNotice::count_lost:
-            return "an encoder lost count";
+            return "an encoder lost counts";
         case DeviceNotice::restarted:
-            return "the device started anew";
+            return "the device restarted";
         case DeviceNotice::drive_broken:
-            return "a motor's current is not what was asked for";
+            return "a motor's current deviates from its command";
         case DeviceNotice::encoder_stuck:
-            return "an encoder stands still while its motor pushes";
+            return "an encoder does not move although its motor drives";
         case DeviceNotice::encoder_jumped:
-            return "an encoder moved faster than the arm can";
+            return "an encoder moved faster than the arm can move";
         case DeviceNotice::states_refused:
             return "more than 5 % of the device's packets are bad or lost";
     }

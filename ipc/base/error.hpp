@@ -1,8 +1,8 @@
-// The one exception of start-up, preparation and the launcher. Never thrown on the servo path.
+// The only exception type of start-up, preparation and the launcher. Never thrown on the servo path.
 //
-// Text    what was attempted and on what, why it failed, and what fixes it; in that order. Words of a
-//         hostile file may be part of it: control characters but the end of a line become '?', so that none
-//         ends the text early or speaks to a terminal.
+// Text    the attempt and its object, the reason of the failure, and the fix; in that order. Text from
+//         untrusted files may be part of it: control characters except newlines become '?', so that none
+//         truncates the text or controls a terminal.
 // Caught  once, in main(), which prints what() and exits with 1.
 #pragma once
 
@@ -13,7 +13,7 @@
 
 namespace tact {
 
-// What errno says, in words.
+// Text of errno.
 inline std::string last_error() { return std::system_category().message(errno); }
 
 class StartupError : public std::runtime_error {

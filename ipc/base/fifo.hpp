@@ -1,7 +1,7 @@
-// Real-time priorities of tact-rt's threads, and how a thread gets its own where that is permitted.
+// Real-time priorities of tact-rt's threads, and a function that sets them where permitted.
 //
-// Refused  no error: the thread goes on with ordinary scheduling, and there is a text to show, with what was
-//          tried, why it failed and the fix
+// Refused  no error: the thread continues with ordinary scheduling, and the returned text holds the
+//          attempt, the reason and the fix
 // Thread   any, at start-up
 #pragma once
 
@@ -32,7 +32,7 @@ inline constexpr int kSupervisorPriority = 95;  // the highest, which deploy/lim
     return "cannot use SCHED_FIFO at priority " + std::to_string(priority) + " for " + whose + " (" +
            std::strerror(error) + "): RLIMIT_RTPRIO is " +
            (limit.rlim_cur == RLIM_INFINITY ? "unlimited" : std::to_string(limit.rlim_cur)) +
-           ". Going on with ordinary scheduling.\n  fix: " + kLimitsFix;
+           ". The thread uses ordinary scheduling.\n  fix: " + kLimitsFix;
 }
 
 }  // namespace tact

@@ -1,6 +1,6 @@
-// Fidelity knobs: what a rendering path offers to the governor, and what it reports back.
+// Fidelity knobs: the interface of a rendering path to the governor, and the path's report.
 //
-// A fidelity is a number in [0, 1]. Cost rises with it and error falls with it. A path never picks its own
+// A fidelity is a number in [0, 1]. Cost rises with it and error falls with it. A path never sets its own
 // level; the governor does, and every change is published.
 #pragma once
 
@@ -15,13 +15,15 @@ namespace tact {
 
 struct KnobSpec {
     const char* path = "";    // "docking.force", "gui.mesh"
-    float floor = 0.0F;       // lowest level that is still right; always fits the budget
+    float floor = 0.0F;       // lowest level that is still correct; always fits the budget
     float start = 1.0F;       // level before the first measurement
-    float slew_per_s = 1e9F;  // fastest change that is not felt or seen
-    bool haptic = false;      // haptic levels are given up last
+    float slew_per_s = 1e9F;  // fastest imperceptible change
+    bool haptic = false;      // haptic levels are lowered last
+    // Equally spaced levels, from 0 to 1, between which a level costs as much as both of its neighbours; 0: none.
+    std::uint32_t steps = 0;
 };
 
-// Why a level is what it is.
+// Reason for a level.
 enum class LevelReason : std::uint8_t {
     start,
     hold,
@@ -30,8 +32,11 @@ enum class LevelReason : std::uint8_t {
     at_floor,
     at_top,
     by_command,
-    picture_low,  // the picture's own goal, not the force rate's
-    picture_high
+    picture_low,  // the frame rate's own target, not the force rate's
+    picture_high,
+    cost_high,        // the cost of a step no longer fits the period
+    cost_low,         // a level with a smaller error fits
+    deadline_missed,  // a step ended after its deadline
 };
 
 // Cost and error of one step. The unit of the error belongs to the path (N for forces).
@@ -46,15 +51,15 @@ struct PathLoad {
     float work_done = 1.0F;
 };
 
-// Checks of one deadline: their number, and the one that found it passed. Kept by the owner of the deadline and
-// recorded; in a replay the recorded values make the same check find it passed.
+// Checks of one deadline: their number, and the check that found it passed. Stored by the owner of the
+// deadline and recorded; in a replay, the recorded values make the same check find it passed.
 struct DeadlineChecks {
     std::uint32_t checks = 0;
-    std::uint32_t passed_at = 0;  // from 1; 0: none found it passed
-    bool replayed = false;        // passed_at decides, and no clock
+    std::uint32_t passed_at = 0;  // from 1; 0: never found passed
+    bool replayed = false;        // passed_at decides, not a clock
 };
 
-// When a step has to be over; none by default. It can only be asked whether it has passed.
+// Deadline of a step; none by default. Only passed() can be queried.
 class Deadline {
 public:
     Deadline() = default;
@@ -73,13 +78,13 @@ private:
     DeadlineChecks* checks_ = nullptr;
 };
 
-// What a step may use. The level fixes the work before the step starts, so that runs repeat exactly; the
-// deadline is the net beneath it.
+// Resources of a step. The level fixes the work before the step starts, so that runs repeat exactly; the
+// deadline is a safeguard.
 struct Budget {
     float fidelity = 1.0F;
     Deadline deadline = {};
-    // In (0, 1]: how much of the level's work may be done anew where a model can keep the rest of steps
-    // before. Nothing is left out: for spans too short for a change of the level.
+    // In (0, 1]: the fraction of the level's work to recompute, for a model that can keep the rest from
+    // earlier steps. Nothing is omitted. For periods too short for a change of the level.
     float work_fraction = 1.0F;
 };
 

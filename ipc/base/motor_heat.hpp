@@ -1,13 +1,14 @@
-// Heat of a brushed motor as two bodies, winding and housing, and the current that they still allow.
+// Thermal model of a brushed motor with two bodies, winding and housing, and the current limit that
+// follows.
 //
-// It is here because three need the same arithmetic and none may include another: the safety layer (rt), the
-// drivers and the emulated amplifier (hal).
+// It is in ipc/base because the safety layer (rt), the drivers and the emulated amplifier (hal) share it
+// and may not include each other.
 //
 //   C_w dT_w/dt = i^2 R (1 + a (T_w - 25)) - (T_w - T_h) / R_wh,      C_w = tau_w / R_wh, a of copper
 //   C_h dT_h/dt = (T_w - T_h) / R_wh - (T_h - T_a) / R_ha,            C_h = tau_h / R_ha
 //
-// Step   exact for a current that is constant over it, so any step is stable
-// State  two temperatures, plain data: it can be kept over a restart
+// Step   exact for a current that is constant over the step, so any step is stable
+// State  two temperatures, plain data; can be kept over a restart
 #pragma once
 
 #include <algorithm>
@@ -21,9 +22,9 @@ struct MotorHeatParameters {
     double resistance_ohm = 0.0;  // of the winding at 25 degrees C
     double winding_k_w = 0.0;     // thermal resistance winding to housing
     double housing_k_w = 0.0;     // thermal resistance housing to ambient
-    double winding_tau_s = 0.0;   // of the winding against the housing
-    double housing_tau_s = 0.0;   // of the housing against the ambient
-    double winding_c_max = 0.0;   // what the winding stands
+    double winding_tau_s = 0.0;   // winding against housing
+    double housing_tau_s = 0.0;   // housing against ambient
+    double winding_c_max = 0.0;   // highest permitted winding temperature
     double ambient_c = 25.0;
 };
 
@@ -32,13 +33,13 @@ struct MotorHeat {
     double housing_c = 25.0;
 };
 
-inline constexpr double kCopperPerK = 0.0039;  // rise of its resistance
-inline constexpr double kHeatCMax = 1000.0;    // states stay finite whatever the current
+inline constexpr double kCopperPerK = 0.0039;  // relative rise of its resistance per K
+inline constexpr double kHeatCMax = 1000.0;    // keeps states finite for any current
 
-// The state after dt_s at that current. With x = (T_w, T_h): dx/dt = M x + c, so
-// x(t) = x0 + t phi(M t) (M x0 + c) with phi(z) = (e^z - 1) / z, taken by Sylvester's formula. Both
-// eigenvalues are real and differ, as the off-diagonal elements are positive. At a current beyond
-// 1 / sqrt(a R (R_wh + R_ha)) one is positive: copper runs away, and the bound above holds it.
+// The state after dt_s at that current. With x = (T_w, T_h): dx/dt = M x + c, so x(t) = x0 + t phi(M t) (M
+// x0 + c) with phi(z) = (e^z - 1) / z, evaluated by Sylvester's formula. Both eigenvalues are real and
+// differ, as the off-diagonal elements are positive. At a current beyond 1 / sqrt(a R (R_wh + R_ha)) one is
+// positive: thermal runaway, limited by the bound above.
 [[nodiscard]] inline MotorHeat heated(const MotorHeatParameters& f, const MotorHeat& before, double current_a,
                                       double dt_s) noexcept TACT_RT {
     if (!(dt_s > 0.0) || !std::isfinite(current_a)) return before;
@@ -64,7 +65,7 @@ inline constexpr double kHeatCMax = 1000.0;    // states stay finite whatever th
             bounded(before.housing_c + even * r1 + odd * (m10 * r0 + (m11 - mean) * r1))};
 }
 
-// The current whose heat ends just at the winding's limit.
+// The current whose steady-state winding temperature is exactly the limit.
 [[nodiscard]] inline double continuous_current_a(const MotorHeatParameters& f) noexcept TACT_RT {
     const double rise_k = f.winding_c_max - f.ambient_c;
     if (rise_k <= 0.0) return 0.0;
@@ -72,8 +73,8 @@ inline constexpr double kHeatCMax = 1000.0;    // states stay finite whatever th
     return std::sqrt(rise_k / (hot_ohm * (f.winding_k_w + f.housing_k_w)));
 }
 
-// Largest current at that heat: max_a while the winding is cool, from 80 % of its rise on down to the
-// continuous current at the limit, so that a warm motor weakens gradually; to nothing 10 K above it.
+// Largest current at that temperature: max_a while the winding is cool, falling from 80 % of its rise to
+// the continuous current at the limit, so that a warm motor weakens gradually; zero from 10 K above it.
 [[nodiscard]] inline double current_limit_a(const MotorHeatParameters& f, const MotorHeat& heat,
                                             double max_a) noexcept TACT_RT {
     const double rise_k = f.winding_c_max - f.ambient_c;

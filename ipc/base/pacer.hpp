@@ -1,7 +1,7 @@
-// When the next cycle is due, and what a late one costs: pure arithmetic, no clock.
+// Schedule of the cycles, and the effect of a late one: pure arithmetic, no clock.
 //
-// A cycle that ends after the next one was due is an overrun; the periods that went by meanwhile are skipped
-// and counted. The loop never catches up in a burst.
+// A cycle that ends after the next one was due is an overrun; the missed periods are skipped and counted.
+// The loop never catches up in a burst.
 #pragma once
 
 #include <cstdint>

@@ -1,7 +1,8 @@
-// A process that ends with the one that started it.
+// Ends a process together with its parent.
 //
-// Called   in the child, first of all; async-signal-safe, so also between fork() and exec(), which keeps it
-// Thread   the parent is the thread that forked: the signal comes already when that one ends
+// Call     first in the child; async-signal-safe, so also between fork() and exec(), which keeps the
+//          setting
+// Thread   the parent is the thread that forked: the signal is sent as soon as that thread ends
 #pragma once
 
 #include <sys/prctl.h>
@@ -10,11 +11,11 @@
 
 namespace tact {
 
-// From now on the kernel sends `signal` here when the parent is gone. False: it is gone already, and no
-// signal will come.
+// From this call on, the kernel sends `signal` when the parent ends. False: the parent has already ended,
+// and no signal will come.
 [[nodiscard]] inline bool end_with_parent(pid_t parent, int signal) noexcept {
     prctl(PR_SET_PDEATHSIG, static_cast<unsigned long>(signal));
-    return getppid() == parent;  // in this order: whoever goes between the lines is seen by one of them
+    return getppid() == parent;  // in this order: one of the two lines detects every death
 }
 
 }  // namespace tact

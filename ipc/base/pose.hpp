@@ -1,10 +1,10 @@
 // Rigid poses, wrenches and twists, in double precision and fixed size.
 //
-// Frames   world  right-handed, x right, y up, z to the user; metres of the hand
-//          dev    of the haptic device; tool: of what the hand holds; head: of the glasses
-//          model  of the map or mesh, metres (an EM map is about 1e-8 m wide)
-//          body   of an atomic structure, origin in its centre of mass, axes as in its file
-// Naming   T_world_tool takes tool coordinates to world, so neighbouring names cancel.
+// Frames   world  right-handed, x right, y up, z to the user; metres of the hand's motion
+//         dev    haptic device; tool: the object in the hand; head: the glasses
+//         model  map or mesh, metres (an EM map is about 1e-8 m wide)
+//         body   atomic structure, origin in its centre of mass, axes as in its file
+// Naming   T_world_tool maps tool coordinates to world, so adjacent names cancel.
 #pragma once
 
 #include <Eigen/Core>
@@ -30,7 +30,7 @@ struct Pose {
     [[nodiscard]] bool finite() const { return p_m.allFinite() && q.coeffs().allFinite(); }
 };
 
-// Force at and torque about a stated point, axes of a stated frame.
+// Force at, and torque about, a stated point, in the axes of a stated frame.
 struct Wrench {
     Vec3 force_n = Vec3::Zero();
     Vec3 torque_n_m = Vec3::Zero();

@@ -1,7 +1,7 @@
-// Calls for a cache line some turns before it is read.
+// Loads a cache line some iterations before it is read.
 //
-// The empty assembly is there because a function that only prefetches has no effect that GCC knows of: it drops the calls
-// of such a function, and with them the prefetches, without a word (seen with GCC 12 at -O3).
+// Without the empty assembly, GCC assumes that a function that only prefetches has no effect, and silently
+// drops its calls and with them the prefetches (observed with GCC 12 at -O3).
 #pragma once
 
 #include "ipc/base/rt.hpp"

@@ -1,12 +1,12 @@
-// How long work tells how far it is, and how it is stopped.
+// Progress reports of long work, and its cancellation.
 #pragma once
 
 #include <functional>
 
 namespace tact {
 
-// Called from time to time with the fraction done, in [0, 1], and what is being done. Returning false
-// cancels: the callee throws Cancelled and leaves nothing half written.
+// Called periodically with the completed fraction in [0, 1] and the current activity. Returning false
+// cancels: the callee throws Cancelled and leaves no partial output.
 using Progress = std::function<bool(double fraction, const char* what)>;
 
 struct Cancelled {};
@@ -15,7 +15,7 @@ inline void report(const Progress& progress, double fraction, const char* what) 
     if (progress && !progress(fraction, what)) throw Cancelled{};
 }
 
-// A part of the whole work tells its own fraction.
+// Maps the progress of a part to the range from..to of the whole.
 inline Progress part(const Progress& whole, double from, double to) {
     if (!whole) return {};
     return [whole, from, to](double fraction, const char* what) {

@@ -1,6 +1,6 @@
-// A thread that takes no signal: they belong to the main thread.
+// A thread that blocks all signals: the main thread handles them.
 //
-// Thread  any, at start-up; std::system_error as std::thread throws it
+// Thread  any, at start-up; throws std::system_error like std::thread
 #pragma once
 
 #include <pthread.h>

@@ -1,4 +1,4 @@
-// Seeded random numbers: the same on every machine and standard library, unlike the distributions of
+// Random numbers from a seed: identical on every machine and standard library, unlike the distributions of
 // <random>.
 //
 // Thread   each object belongs to one; no allocation.
@@ -26,7 +26,7 @@ public:
     }
     // In [0, 1).
     double uniform() noexcept { return static_cast<double>(next() >> 11) * 0x1p-53; }
-    // In [0, count); count > 0. The bias is below 2^-32 for counts of use.
+    // In [0, count); count > 0. The bias is below 2^-32 for practical counts.
     std::uint64_t below(std::uint64_t count) noexcept {
         return std::min(static_cast<std::uint64_t>(uniform() * static_cast<double>(count)), count - 1);
     }

@@ -1,4 +1,4 @@
-// How long something took the last so many times, and percentiles of that. Not for the servo path: asking copies.
+// The most recent durations of an activity, and their percentiles. Not for the servo path: a query copies.
 #pragma once
 
 #include <algorithm>
@@ -20,7 +20,7 @@ public:
         next_ = (next_ + 1) % most_;
     }
     [[nodiscard]] std::size_t size() const noexcept { return time_s_.size(); }
-    // The nearest that there was, p in [0, 1]; 0: none was.
+    // The nearest recorded value, p in [0, 1]; 0 without one.
     [[nodiscard]] float percentile_s(double p) const {
         if (time_s_.empty()) return 0.0F;
         std::vector<float> sorted = time_s_;

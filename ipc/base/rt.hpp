@@ -1,9 +1,9 @@
-// Marks of the servo path.
+// Annotations of the servo path.
 //
-// TACT_RT marks a function as fit for the servo thread: it never allocates, blocks or throws. Where the
-// compiler knows the attribute (clang >= 20) it checks this; elsewhere tests/rt_safe does.
-// RtSection is the mark at run time: while one lives, the calling thread is inside a servo cycle, and the
-// allocation and lock counters of rt/servo/rt_guard.cpp count, or in tests abort.
+// TACT_RT marks a function as suitable for the servo thread: it never allocates, blocks or throws.
+// Compilers with the attribute (clang >= 20) check this; otherwise tests/rt_safe does. RtSection is the
+// annotation at run time: while one exists, the calling thread is inside a servo cycle, and the allocation
+// and lock counters of rt/servo/rt_guard.cpp count, or abort in tests.
 #pragma once
 
 #include <cstdint>

@@ -1,4 +1,4 @@
-// The states of the controller, and why it is in one: decided in rt/safety, published in the health topic.
+// The states of the controller with their reasons: set by rt/safety, published in the health topic.
 #pragma once
 
 #include <cstddef>
@@ -6,14 +6,14 @@
 
 namespace tact {
 
-// off     no device, or leaving
+// off     no device, or shutting down
 // ready   device open, amplifier off
-// armed   amplifier on, no force: nobody holds the device
+// armed   amplifier on, no force: no person holds the device
 // active  force on
 // fault   latched: amplifier off until a person resets it
 enum class RunState : std::uint8_t { off, ready, armed, active, fault };
 
-// The text for people is run_reason_text() in ipc/topics/text.hpp.
+// run_reason_text() in ipc/topics/text.hpp gives the text for people.
 enum class RunReason : std::uint8_t {
     none,
     by_command,
@@ -27,9 +27,9 @@ enum class RunReason : std::uint8_t {
     overruns,
     too_late,
     gui_silent,
-    model_failed,  // not given any more; kept, as recordings number the reasons
+    model_failed,  // no longer used; kept because recordings store the reason's number
     emergency_stop,
-    stop_channels,  // the two of the emergency stop disagree
+    stop_channels,  // the two channels of the emergency stop disagree
     dead_man,
     amplifier_readback,
     lines_lost,
@@ -37,7 +37,7 @@ enum class RunReason : std::uint8_t {
 };
 inline constexpr RunReason kLastRunReason = RunReason::supervisor;
 
-// Whether the reason can latch a fault, in any state: rt/safety/state_machine.hpp decides in which.
+// True if the reason can latch a fault in any state; rt/safety/state_machine.hpp decides in which.
 [[nodiscard]] constexpr bool latches_fault(RunReason reason) noexcept {
     switch (reason) {
         case RunReason::force_not_finite:
@@ -65,7 +65,7 @@ inline constexpr RunReason kLastRunReason = RunReason::supervisor;
     return false;
 }
 
-// Name for programs, such as the label of a metric: stays the same when the text for people changes.
+// Name for programs, such as a metric label: stable when the text for people changes.
 [[nodiscard]] constexpr const char* run_reason_name(RunReason reason) noexcept {
     constexpr const char* kNames[] = {"none",
                                       "by_command",

@@ -1,7 +1,7 @@
-// The machine's monotonic clock for the servo thread: sleeps to shortly before the instant, then spins to it.
+// The machine's monotonic clock for the servo thread: sleeps until shortly before the instant, then spins.
 //
-// A sleeping thread is woken 20 to 60 microseconds late here; the spin tail hides that at the price of so
-// much processor time in every cycle. Absolute times, so nothing drifts.
+// A sleeping thread wakes 20 to 60 microseconds late; spinning hides that at the cost of that much
+// processor time in every cycle. Times are absolute, so there is no drift.
 #pragma once
 
 #include <cerrno>

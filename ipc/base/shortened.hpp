@@ -1,4 +1,4 @@
-// A vector held to a largest length, its direction kept.
+// A vector limited to a maximum length, with its direction kept.
 #pragma once
 
 #include "ipc/base/pose.hpp"

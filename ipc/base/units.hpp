@@ -1,4 +1,4 @@
-// Units that enter or leave at the borders of Tact. Inside, everything is SI.
+// Units that enter or leave at Tact's interfaces. Inside, everything is SI.
 #pragma once
 
 #include <numbers>

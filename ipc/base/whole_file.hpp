@@ -1,6 +1,7 @@
-// A small file that is there as a whole or not at all: a temporary file beside the target, synced and renamed.
+// Writes a small file completely or not at all: a temporary file beside the target, synced and renamed.
 //
-// Fails by StartupError; what was there before stays.  Thread any but the servo thread: it waits for the disk.
+// Errors  StartupError; an existing file stays unchanged.
+// Thread  any but the servo thread: it waits for the disk.
 #pragma once
 
 #include <fcntl.h>
@@ -17,9 +18,9 @@
 
 namespace tact {
 
-// In a folder that exists.
+// In an existing folder.
 inline void replace_file(const std::filesystem::path& path, const std::string& content) {
-    constexpr const char* kFix = "free some space, correct the permissions, or give another path";
+    constexpr const char* kFix = "free disk space, correct the permissions, or choose another path";
     std::string temporary = path.string() + ".XXXXXX";
     const int fd = mkostemp(temporary.data(), O_CLOEXEC);
     if (fd < 0) throw StartupError("writing " + path.string(), last_error(), kFix);
@@ -40,7 +41,7 @@ inline void replace_file(const std::filesystem::path& path, const std::string& c
     throw StartupError("writing " + path.string(), std::system_category().message(why), kFix);
 }
 
-// Makes the folder where there is none.
+// Creates the folder if it does not exist.
 inline void write_whole_file(const std::filesystem::path& path, const std::string& content) {
     std::error_code failed;
     if (path.has_parent_path()) std::filesystem::create_directories(path.parent_path(), failed);

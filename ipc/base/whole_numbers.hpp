@@ -1,4 +1,4 @@
-// Whole numbers as a person types them on a command line.
+// Parses whole numbers from the command line.
 #pragma once
 
 #include <array>
@@ -10,10 +10,10 @@
 
 namespace tact {
 
-// "1280x720" between "x", "0:256,10:90" between ":,:": numbers with these letters between them, and nothing else; no sign.
+// "1280x720" with letters "x", "0:256,10:90" with ":,:": numbers separated by exactly these letters, without sign.
 template <std::size_t N>
 [[nodiscard]] std::optional<std::array<std::uint32_t, N>> numbers_between(
-    std::string_view text, const char (&letters)[N]) noexcept {  // with its zero, N
+    std::string_view text, const char (&letters)[N]) noexcept {  // N includes the terminating zero
     std::array<std::uint32_t, N> number{};
     const char* at = text.data();
     const char* const end = at + text.size();

@@ -52,7 +52,7 @@ std::vector<std::uint8_t> PngReader::read(PngFormat format) {
 void write_png(const std::filesystem::path& path, std::uint32_t width_px, std::uint32_t height_px,
                std::span<const std::uint8_t> pixels, PngFormat format) {
     const auto fail = [&path](const std::string& why) {
-        throw StartupError("writing the picture " + path.string(), why, "give it a size above zero");
+        throw StartupError("writing the image " + path.string(), why, "set a size above zero");
     };
     png_image image{};
     image.version = PNG_IMAGE_VERSION;

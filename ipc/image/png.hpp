@@ -1,7 +1,7 @@
-// PNG files, read and written. Rows from the top, 8 bits per channel.
+// Reads and writes PNG files. Rows from the top, 8 bits per channel.
 //
-// Hostile   a file's size is known before anything is allocated: the caller checks it, then reads
-// Fails by  reading: PngError with libpng's text; writing: StartupError, and the file is whole or absent
+// Input     untrusted: the image size is known before any allocation; the caller checks it, then reads
+// Errors    reading: PngError with libpng's text; writing: StartupError, and the file is complete or absent
 // Thread    any but the servo's: it waits for the disk
 #pragma once
 
@@ -18,7 +18,7 @@ struct PngError : std::runtime_error {
     using std::runtime_error::runtime_error;
 };
 
-enum class PngFormat : std::uint8_t { grey = 1, rgb = 3, rgba = 4 };  // bytes of a pixel
+enum class PngFormat : std::uint8_t { grey = 1, rgb = 3, rgba = 4 };  // bytes per pixel
 
 class PngReader {
 public:
@@ -29,8 +29,8 @@ public:
 
     [[nodiscard]] std::uint32_t width_px() const noexcept;
     [[nodiscard]] std::uint32_t height_px() const noexcept;
-    [[nodiscard]] bool colour() const noexcept;  // channels of colour, or a palette
-    // Once: width times height pixels, converted to `format`.
+    [[nodiscard]] bool colour() const noexcept;  // true for colour channels or a palette
+    // Call once; returns width times height pixels, converted to `format`.
     [[nodiscard]] std::vector<std::uint8_t> read(PngFormat format);
 
 private:
@@ -38,7 +38,7 @@ private:
     std::unique_ptr<State> state_;
 };
 
-// `pixels`: width times height pixels of `format`. The folder has to exist.
+// `pixels`: width times height pixels of `format`. The folder must exist.
 void write_png(const std::filesystem::path& path, std::uint32_t width_px, std::uint32_t height_px,
                std::span<const std::uint8_t> pixels, PngFormat format = PngFormat::rgb);
 

@@ -16,7 +16,7 @@ std::string joined(const std::vector<std::string>& words, const char* between) {
     return text;
 }
 
-// "1e+07" as 10000000.
+// Converts "1e+07" to "10000000".
 std::string plain_number(const std::string& text) {
     char* end = nullptr;
     const double value = std::strtod(text.c_str(), &end);
@@ -26,7 +26,7 @@ std::string plain_number(const std::string& text) {
     return out;
 }
 
-// Of "{a,b}" or "value in {a->1,b->2} OR {1,2}": a and b.
+// For "{a,b}" or "value in {a->1,b->2} OR {1,2}": a and b.
 std::vector<std::string> choices_of(const std::string& check) {
     std::vector<std::string> found;
     const auto open = check.find('{'), close = check.find('}');
@@ -36,7 +36,7 @@ std::vector<std::string> choices_of(const std::string& check) {
     return found;
 }
 
-// A type written as its choices: "elastic|sensitus|fixed".
+// Choices of a type such as "elastic|sensitus|fixed".
 std::vector<std::string> choices_of_type(const std::string& type) {
     const bool lower = std::all_of(type.begin(), type.end(), [](unsigned char c) {
         return std::islower(c) != 0 || std::isdigit(c) != 0 || c == '|' || c == '-';
@@ -51,7 +51,7 @@ std::vector<std::string> checks_of(CLI::Option& option) {
         for (int i = 0;; ++i)
             if (const std::string text = option.get_validator(i)->get_description(); !text.empty())
                 found.push_back(text);
-    } catch (const CLI::OptionNotFound&) {  // how the library says that there are no more
+    } catch (const CLI::OptionNotFound&) {  // the library's sign that no more exist
     }
     return found;
 }
@@ -113,7 +113,7 @@ Argument read_argument(CLI::Option& option) {
     std::sort(a.needs.begin(), a.needs.end());  // they are sorted by address
     std::sort(a.excludes.begin(), a.excludes.end());
     if (option.get_items_expected_max() == 0) return a;  // a flag
-    // The library writes the type and every check as TYPE:CHECK:CHECK.
+    // The library formats the type and every check as TYPE:CHECK:CHECK.
     const std::vector<std::string> checks = checks_of(option);
     a.type = option.get_type_name();
     for (auto c = checks.rbegin(); c != checks.rend(); ++c)

@@ -1,10 +1,10 @@
-// Four arrays, by the words typed so far:
+// Four arrays, keyed by the words typed so far:
 //   _tact_commands[tact]='demo dock ...'
 //   _tact_options['tact dock']='--seconds ...'
-//   _tact_values['tact dock --law']='words elastic ...', _tact_values['tact dock 1']='files mrc ...'; the last
-//     argument that may be repeated is under *
-//   _tact_program['tact record']='tact-record', which takes the rest
-// Values are words, files with one of these endings (none: any), folders, or none where nothing can be offered.
+//   _tact_values['tact dock --law']='words elastic ...', _tact_values['tact dock 1']='files mrc ...'; the key * is
+//     the last argument if it may be repeated
+//   _tact_program['tact record']='tact-record', which handles the rest
+// Values are words, files with one of these endings (none: any), folders, or none when there is nothing to offer.
 #include "ipc/manual/completion.hpp"
 
 #include <array>
@@ -13,7 +13,7 @@
 namespace tact::manual {
 namespace {
 
-// By the name of the argument; also compressed where Tact reads that.
+// By the name of the argument; includes compressed formats that Tact reads.
 constexpr std::array<std::pair<const char*, const char*>, 6> kEndings{{
     {"SCENE", "tact"},
     {"MAP", "mrc map ccp4 situs mrc.gz map.gz ccp4.gz situs.gz"},
@@ -37,7 +37,7 @@ std::string values(const Argument& a) {
     for (const auto& [name, endings] : kEndings)
         if (a.names.back() == name || a.type == name) return std::string("files ") + endings;
     if (a.number) return "none";
-    // "FILE.h5" is a file with this ending.
+    // "FILE.h5": a file with this ending.
     if (const auto dot = a.type.find("."); dot != std::string::npos) return "files " + a.type.substr(dot + 1);
     return "files";
 }

@@ -1,4 +1,4 @@
-// What deploy/manual/completion.bash completes with, as assignments to its arrays.
+// Data for deploy/manual/completion.bash, as assignments to its arrays.
 #pragma once
 
 #include <string>

@@ -15,7 +15,7 @@ std::string range_text(const Argument& a) {
 }  // namespace
 
 std::string HelpFormatter::make_option_opts(const CLI::Option* option) const {
-    // The library reads an option's checks through a function that is not const, and changes nothing.
+    // The library's access to an option's checks is not const, but changes nothing.
     const Argument a =
         read_argument(const_cast<CLI::Option&>(*option));  // NOLINT(cppcoreguidelines-pro-type-const-cast)
     std::string text;

@@ -1,4 +1,4 @@
-// --help in the same words as the man pages: value, range and default of every option, nothing of the parser's internals.
+// Formats --help like the man pages: value, range and default of every option, without the parser's internals.
 #pragma once
 
 #include <CLI/App.hpp>
@@ -9,7 +9,7 @@ namespace tact::manual {
 
 class HelpFormatter final : public CLI::Formatter {
 public:
-    // Behind the names: "HZ (1 to 10000; default 1000)".
+    // Text after the names: "HZ (1 to 10000; default 1000)".
     [[nodiscard]] std::string make_option_opts(const CLI::Option* option) const override;
 };
 

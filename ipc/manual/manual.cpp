@@ -21,12 +21,12 @@ void write_pages(const Command& command, const std::vector<File>& files,
     std::filesystem::create_directories(folder, failed);
     if (failed)
         throw StartupError("creating the folder " + folder.string(), failed.message(),
-                           "name a folder that can be written");
+                           "choose a writable folder");
     for (const Page& page : pages(command, files)) {
         const auto path = folder / (page.name + ".1");
         std::ofstream out(path, std::ios::binary);
         if (!(out << page.text) || !out.flush())
-            throw StartupError("writing " + path.string(), last_error(), "name a folder that can be written");
+            throw StartupError("writing " + path.string(), last_error(), "choose a writable folder");
     }
 }
 
@@ -43,7 +43,8 @@ std::optional<int> answer(CLI::App& app, const std::string& program, int argc, c
         if (pages_asked) {
             write_pages(command, files, argv[2]);
         } else if (std::fputs(completion(command).c_str(), stdout) < 0 || std::fflush(stdout) != 0) {
-            throw StartupError("printing the completion", last_error(), "free space where it is written to");
+            throw StartupError("printing the completion", last_error(),
+                               "free space at the output's destination");
         }
         return 0;
     } catch (const std::exception& e) {

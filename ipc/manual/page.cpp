@@ -26,7 +26,7 @@ std::string date() {
 bool lower(char c) { return std::islower(static_cast<unsigned char>(c)) != 0; }
 bool upper(char c) { return std::isupper(static_cast<unsigned char>(c)) != 0; }
 
-// A whole sentence of a help text: a capital first, unless it is a symbol or a name, and a full stop.
+// Makes a help text a sentence: a capital first, unless it is a symbol or a name, and a full stop.
 std::string sentence(std::string text) {
     while (!text.empty() && std::isspace(static_cast<unsigned char>(text.back())) != 0) text.pop_back();
     if (text.empty()) return text;
@@ -37,7 +37,7 @@ std::string sentence(std::string text) {
     return text;
 }
 
-// "Tact: does this" says "tact - does this" in NAME already.
+// Removes "Tact: " from "Tact: does this", since NAME already prints "tact - does this".
 std::string without_name(const std::string& text, const std::string& name) {
     if (text.size() > name.size() + 2 && text[name.size()] == ':' &&
         CLI::detail::to_lower(text.substr(0, name.size())) == name)
@@ -53,7 +53,7 @@ std::string summary(const std::string& about) {
     return first;
 }
 
-// One paragraph for each line.
+// One paragraph per line.
 std::string paragraphs(const std::string& text) {
     std::string out;
     for (const std::string& line : CLI::detail::split(text, '\n'))
@@ -123,7 +123,7 @@ std::string options(const Command& c) {
     return out;
 }
 
-// "Exit codes: 0 as asked; 1 error": a list.
+// Formats "Exit codes: 0 success; 1 error" as a list.
 std::string exit_status(const std::string& footer) {
     const auto at = footer.find(kExitCodes);
     if (at == std::string::npos) return {};
@@ -154,7 +154,7 @@ std::string references(const std::string& own, const Command& c) {
 
 std::string commands(const Command& c) {
     if (c.commands.empty()) return {};
-    // Its own page would be another program's.
+    // Its own page would be the page of another program.
     const auto described_here = [](const Command& sub) {
         return is_program(page_name(sub)) && !sub.passes_on;
     };
@@ -175,7 +175,7 @@ Page page(const Command& c, const std::string& version, const std::vector<File>&
     Page p{name, {}};
     p.text = ".TH " + roff(capitals(name)) + " 1 \"" + date() + "\" \"" +
              roff(version.empty() ? "Tact" : "Tact " + version) + "\" \"Tact manual\"\n";
-    p.text += ".nh\n.ad l\n";  // options are not divided, lines not stretched
+    p.text += ".nh\n.ad l\n";  // no hyphenation, no justification
     p.text += ".SH NAME\n" + roff(name) + " \\- " + roff(summary(about)) + "\n";
     p.text += ".SH SYNOPSIS\n" + synopsis(c) + ".SH DESCRIPTION\n" + paragraphs(about);
     p.text += entries(c.positionals);

@@ -13,11 +13,11 @@ struct Page {
     std::string name, text;  // "tact-dock", and its roff
 };
 
-// The page of the program and one for each of its commands, and of theirs. A command whose page would bear the
-// name of another program is described in the page above it.
+// One page for the program and for each of its commands, recursively. A command whose page would have the
+// name of another program's page is described in the page of its parent.
 //
-// SOURCE_DATE_EPOCH in the environment gives the pages a date; they have none otherwise, so that the same
-// source makes the same pages.
+// SOURCE_DATE_EPOCH in the environment sets the date of the pages; without it they have none, so that the
+// same source gives the same pages.
 std::vector<Page> pages(const Command& program, const std::vector<File>& files);
 
 }  // namespace tact::manual

@@ -6,7 +6,7 @@
 namespace tact::manual {
 namespace {
 
-// The code point that begins at `at`, which is moved behind it; U+FFFD for bytes that are none.
+// Decodes the code point at `at` and advances `at`; U+FFFD for invalid bytes.
 std::uint32_t next_code_point(const std::string& text, std::size_t& at) {
     const auto byte = [&](std::size_t i) {
         return i < text.size() ? static_cast<unsigned char>(text[i]) : static_cast<unsigned char>(0);
@@ -60,7 +60,7 @@ std::string roff(const std::string& text) {
     bool line_begins = true;
     for (std::size_t at = 0; at < text.size();) {
         const std::uint32_t code = next_code_point(text, at);
-        if (line_begins && code == ' ') continue;  // a break otherwise
+        if (line_begins && code == ' ') continue;  // a space there would start a new line
         out += one(code, line_begins);
         line_begins = code == '\n';
     }

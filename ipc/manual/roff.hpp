@@ -1,12 +1,12 @@
-// Plain text as roff, the language of man pages.
+// Converts plain text to roff, the language of man pages.
 #pragma once
 
 #include <string>
 
 namespace tact::manual {
 
-// Letters that roff takes for its own are escaped, those beyond ASCII named by their number; no line begins
-// with a request.
+// Escapes characters with a meaning in roff and writes those beyond ASCII by number; no line begins with a
+// request.
 std::string roff(const std::string& text);
 // The same, in bold or italic.
 std::string bold(const std::string& text);

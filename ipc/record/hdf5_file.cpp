@@ -1,6 +1,7 @@
-// SWMR ("single writer, multiple readers") is what makes a killed writer harmless: from H5Fstart_swmr_write on the
-// library orders its writes so that the file makes sense at any instant, and what was flushed is there. A kill leaves a mark in
-// the superblock, and maybe a superblock that has an older end of the file; open_abandoned() fixes both as h5clear does.
+// SWMR ("single writer, multiple readers") makes a killed writer harmless: after H5Fstart_swmr_write the
+// library orders its writes so that the file is consistent at any instant, and flushed data is safe. A kill
+// leaves a mark in the superblock, and possibly a superblock with an older end of file; open_abandoned()
+// fixes both like h5clear.
 #include "ipc/record/hdf5_file.hpp"
 
 #include <hdf5.h>
@@ -56,7 +57,7 @@ std::size_t size_of(Number n) {
     return kSize[static_cast<std::size_t>(n)];
 }
 
-// A column's numbers one behind the other: HDF5 takes 20 times as long to pick them out of the rows itself.
+// Copies the values of a column into one array: gathering by HDF5 itself takes 20 times as long.
 void gather(const Column& c, std::size_t row_bytes, std::size_t count, const void* rows,
             std::vector<char>& to) {
     const std::size_t bytes = size_of(c.number) * c.width;
@@ -77,22 +78,23 @@ Hdf5Handle memory_space(const Column& c, std::size_t count) {
     return Hdf5Handle(checked(H5Screate_simple(1, &numbers, nullptr), "describing rows"));
 }
 
-// In the file, of a column of width 1: one dimension.
+// File space of a selection of rows; a column of width 1 has one dimension.
 Hdf5Handle file_space(const Hdf5Handle& set, const Column& c, std::uint64_t first, std::size_t count) {
-    Hdf5Handle space(checked(H5Dget_space(set.get()), "looking at a column"));
+    Hdf5Handle space(checked(H5Dget_space(set.get()), "inspecting a column"));
     const std::array<hsize_t, 2> start{first, 0}, own{count, c.width};
     check(H5Sselect_hyperslab(space.get(), H5S_SELECT_SET, start.data(), nullptr, own.data(), nullptr),
-          "choosing rows");
+          "selecting rows");
     return space;
 }
 
 std::uint64_t length_of(const Hdf5Handle& set, const Column& c, const char* group) {
-    const Hdf5Handle space(checked(H5Dget_space(set.get()), "looking at a column"));
+    const Hdf5Handle space(checked(H5Dget_space(set.get()), "inspecting a column"));
     std::array<hsize_t, 2> dims{0, 1};
     const int rank = H5Sget_simple_extent_ndims(space.get());
     if (rank != (c.width > 1 ? 2 : 1) ||
         H5Sget_simple_extent_dims(space.get(), dims.data(), nullptr) != rank || dims[1] != c.width)
-        throw RecordError(std::string(group) + "/" + c.name + " has another shape than a recording's");
+        throw RecordError(std::string(group) + "/" + c.name +
+                          " does not have the shape of a recording's column");
     return dims[0];
 }
 
@@ -111,9 +113,9 @@ void write_attribute(Hdf5Id file, const char* object, const char* name, hid_t ty
 }
 
 Hdf5Handle text_type(std::size_t bytes) {
-    Hdf5Handle type(checked(H5Tcopy(H5T_C_S1), "making a text type"));
-    check(H5Tset_size(type.get(), std::max<std::size_t>(bytes, 1)), "making a text type");
-    check(H5Tset_cset(type.get(), H5T_CSET_UTF8), "making a text type");
+    Hdf5Handle type(checked(H5Tcopy(H5T_C_S1), "creating a text type"));
+    check(H5Tset_size(type.get(), std::max<std::size_t>(bytes, 1)), "creating a text type");
+    check(H5Tset_cset(type.get(), H5T_CSET_UTF8), "creating a text type");
     return type;
 }
 
@@ -207,7 +209,7 @@ Hdf5Table Hdf5Table::open(Hdf5Id file, const char* group, std::span<const Column
     return table;
 }
 
-// Column by column: where the disk takes no more, the ones behind are shorter, and the repair cuts to the shortest.
+// Writes column by column: on a full disk the later ones are shorter, and the repair cuts to the shortest.
 void Hdf5Table::append(const void* rows, std::size_t count) {
     if (count == 0) return;
     for (const Set& s : sets_) {
@@ -274,9 +276,9 @@ Hdf5Handle create_file(const std::filesystem::path& path) {
     const Hdf5Handle access = newest_format();
     Hdf5Handle file(H5Fcreate(path.c_str(), H5F_ACC_EXCL, H5P_DEFAULT, access.get()));
     if (!file.valid()) {
-        const std::string why = std::filesystem::exists(path) ? "the file is there already" : last_error();
+        const std::string why = std::filesystem::exists(path) ? "the file exists already" : last_error();
         throw StartupError("creating the recording '" + path.string() + "'", why,
-                           "name a new file in a folder that can be written");
+                           "choose a new file in a writable folder");
     }
     return file;
 }
@@ -290,37 +292,37 @@ Hdf5Handle open_file(const std::filesystem::path& path, bool write) {
     Hdf5Handle file(H5Fopen(path.c_str(), write ? H5F_ACC_RDWR : H5F_ACC_RDONLY, access.get()));
     if (!file.valid())
         throw StartupError("opening '" + path.string() + "'", last_error(),
-                           "name a recording of tact record");
+                           "choose a file recorded by tact record");
     return file;
 }
 
 Hdf5Handle open_abandoned(const std::filesystem::path& path) {
     const Hdf5Handle access = newest_format();
-    // What h5clear sets: the mark of a writer is cleared, and an end of file that does not fit is no error.
+    // Same flags as h5clear: clears the writer's mark, and accepts a wrong end of file.
     hbool_t yes = 1;
     check(H5Pset(access.get(), "clear_status_flags", &yes), "preparing the repair");
     check(H5Pset(access.get(), "skip_eof_check", &yes), "preparing the repair");
     Hdf5Handle file(H5Fopen(path.c_str(), H5F_ACC_RDWR, access.get()));
     if (!file.valid())
         throw StartupError("repairing '" + path.string() + "'", last_error(),
-                           "restore it from a copy; nothing was changed");
+                           "restore the file from a copy; it was not changed");
     check(H5Fincrement_filesize(file.get(), 0), "finding the end of the file");
     return file;
 }
 
-// The superblock of format 2 or 3 lies at 0 here: signature, version, two sizes, flags.
+// The superblock of format 2 or 3 is at offset 0 here: signature, version, two sizes, flags.
 bool marked_open(const std::filesystem::path& path) {
     std::ifstream in(path, std::ios::binary);
     std::array<char, 12> head{};
     constexpr std::array<char, 8> kSignature{'\x89', 'H', 'D', 'F', '\r', '\n', '\x1a', '\n'};
     if (!in.read(head.data(), head.size()) || !std::equal(kSignature.begin(), kSignature.end(), head.begin()))
-        throw RecordError("'" + path.string() + "' is no HDF5 file");
+        throw RecordError("'" + path.string() + "' is not an HDF5 file");
     return head[8] >= 2 && head[11] != 0;
 }
 
 void make_group(Hdf5Id file, const char* name) {
     const Hdf5Handle group(
-        checked(H5Gcreate2(file, name, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT), "making a group"));
+        checked(H5Gcreate2(file, name, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT), "creating a group"));
 }
 
 void put_text(Hdf5Id file, const char* object, const char* name, const std::string& text) {
@@ -348,7 +350,7 @@ std::string text(Hdf5Id file, const char* object, const char* name, std::size_t 
     const Hdf5Handle space(checked(H5Aget_space(attribute.get()), name));
     if (H5Tget_class(type.get()) != H5T_STRING || H5Tis_variable_str(type.get()) > 0 || size > bytes_max ||
         H5Sget_simple_extent_npoints(space.get()) != 1)
-        throw RecordError(std::string("the attribute ") + name + " is no text of a recording");
+        throw RecordError(std::string("the attribute ") + name + " is not a text of a recording");
     std::string value(size, '\0');
     check(H5Aread(attribute.get(), type.get(), value.data()), name);
     value.resize(strnlen(value.data(), value.size()));
@@ -379,7 +381,7 @@ std::string bytes(Hdf5Id file, const char* name, std::size_t bytes_max) {
     const Hdf5Handle space(checked(H5Dget_space(set.get()), name));
     const hssize_t size = H5Sget_simple_extent_npoints(space.get());
     if (size < 0 || static_cast<std::uint64_t>(size) > bytes_max)
-        throw RecordError(std::string(name) + " is larger than a recording's");
+        throw RecordError(std::string(name) + " exceeds the size limit of a recording");
     std::string value(static_cast<std::size_t>(size), '\0');
     if (size > 0)
         check(H5Dread(set.get(), H5T_NATIVE_UINT8, H5S_ALL, H5S_ALL, H5P_DEFAULT, value.data()), name);

@@ -1,9 +1,12 @@
-// What a recording needs of HDF5: files, groups, columns that grow, attributes. hdf5.h is included here alone (.cpp).
+// The HDF5 functions of a recording: files, groups, growing columns, attributes. Only the .cpp includes
+// hdf5.h.
 //
-// Column   a dataset of rows x width numbers, chunked, that grows without bound. A table is a group of columns that
-//          take one C++ struct a row; each column knows where in it its numbers lie.
-// Thread   one at a time; HDF5 is not told of threads.
-// Fails by StartupError (opening, creating) and RecordError (writing, reading): what, and HDF5's own innermost word.
+// Column   a dataset of rows x width numbers, chunked, that grows without bound. A table is a group of
+//          columns that stores one C++ struct per row; each column holds the offset of its numbers in the
+//          struct.
+// Thread   one at a time; HDF5 is used without its thread support
+// Errors   StartupError (opening, creating) and RecordError (writing, reading) with HDF5's innermost
+//          message
 #pragma once
 
 #include <cstddef>
@@ -27,13 +30,13 @@ struct Column {
     Number number;
     std::size_t offset;  // in the row's struct
     std::uint32_t width = 1;
-    const char* what = "";    // unit and meaning, as the file states it
-    const char* former = "";  // name in recordings made before it was renamed; empty: it never was
+    const char* what = "";    // unit and meaning, stored in the file
+    const char* former = "";  // name in recordings made before a renaming; empty: never renamed
 };
 
 using Hdf5Id = std::int64_t;
 
-// Closes what it holds.
+// Owns an HDF5 handle and closes it.
 class Hdf5Handle {
 public:
     Hdf5Handle() = default;
@@ -44,7 +47,7 @@ public:
     [[nodiscard]] Hdf5Id get() const { return id_; }
     [[nodiscard]] bool valid() const { return id_ >= 0; }
     void reset() noexcept;
-    // Forgets it unclosed, where closing would write to a disk that takes no more.
+    // Releases the handle unclosed, when closing would write to a full disk.
     void release() noexcept { id_ = -1; }
 
 private:
@@ -56,24 +59,24 @@ public:
     static constexpr std::uint64_t kChunkRows = 1024;
 
     Hdf5Table() = default;
-    // Makes group and columns; rows of row_bytes.
+    // Creates group and columns; rows of row_bytes.
     static Hdf5Table create(Hdf5Id file, const char* group, std::span<const Column> columns,
                             std::size_t row_bytes);
-    // Throws RecordError where the group lacks a column or it has another shape.
+    // Throws RecordError if the group lacks a column or a column has another shape.
     static Hdf5Table open(Hdf5Id file, const char* group, std::span<const Column> columns,
                           std::size_t row_bytes);
     [[nodiscard]] static bool exists(Hdf5Id file, const char* group);
 
     void append(const void* rows, std::size_t count);
-    // Over rows that there are.
+    // Overwrites existing rows.
     void write(std::uint64_t first, std::size_t count, const void* rows) const;
-    // Rows from first on, which there must be; columns that the file lacks do not exist here.
+    // Reads existing rows from `first` on; columns missing in the file are skipped.
     void read(std::uint64_t first, std::size_t count, void* rows) const;
     void flush();
-    // The rows that all columns have. They differ where a writer was killed.
+    // The number of rows in all columns. Column lengths differ after a kill of the writer.
     [[nodiscard]] std::uint64_t rows() const { return rows_; }
     [[nodiscard]] std::uint64_t rows_most() const { return rows_most_; }
-    // Columns to one length.
+    // Cuts all columns to one length.
     void cut(std::uint64_t rows);
     void release() noexcept;
 
@@ -86,21 +89,22 @@ private:
 
     std::vector<Set> sets_;
     std::size_t row_bytes_ = 0;
-    mutable std::vector<char> numbers_;  // of one column, on their way
+    mutable std::vector<char> numbers_;  // buffer for one column
     std::uint64_t rows_ = 0, rows_most_ = 0;
 };
 
 namespace hdf5 {
 
-void quiet();  // errors as exceptions alone, never on standard error
+void quiet();  // reports errors as exceptions only, never on standard error
 [[nodiscard]] std::string last_error();
-[[nodiscard]] Hdf5Handle create_file(const std::filesystem::path& path);  // for a reader beside the writer
-void start_shared_writing(Hdf5Id file);                                   // no new object from here on
+[[nodiscard]] Hdf5Handle create_file(
+    const std::filesystem::path& path);  // allows readers while the writer writes
+void start_shared_writing(Hdf5Id file);  // no new objects after this call
 void flush(Hdf5Id file);
 [[nodiscard]] Hdf5Handle open_file(const std::filesystem::path& path, bool write);
-// Of a file whose writer died: takes away its mark, and the end of the file where it really is.
+// For a file whose writer died: clears its mark and sets the actual end of the file.
 [[nodiscard]] Hdf5Handle open_abandoned(const std::filesystem::path& path);
-// The mark that a writer leaves while it has the file open. Throws RecordError where this is no HDF5 file.
+// True if the writer's mark is set. Throws RecordError if this is not an HDF5 file.
 [[nodiscard]] bool marked_open(const std::filesystem::path& path);
 void make_group(Hdf5Id file, const char* name);
 
@@ -111,7 +115,7 @@ void put_reals(Hdf5Id file, const char* object, const char* name, std::span<cons
 [[nodiscard]] bool has(Hdf5Id file, const char* object, const char* name);
 [[nodiscard]] std::string text(Hdf5Id file, const char* object, const char* name, std::size_t bytes_max);
 [[nodiscard]] std::uint64_t number(Hdf5Id file, const char* object, const char* name);
-// A dataset of bytes, of any fixed length; and its content.
+// A dataset of bytes with a fixed length, and its content.
 void put_bytes(Hdf5Id file, const char* name, std::span<const char> bytes);
 [[nodiscard]] std::string bytes(Hdf5Id file, const char* name, std::size_t bytes_max);
 

@@ -17,23 +17,24 @@ RecordingReader::RecordingReader(const std::filesystem::path& path) {
     try {
         read_about(path);
     } catch (const RecordError& e) {
-        throw StartupError("reading '" + path.string() + "'", e.what(), "name a recording of tact record");
+        throw StartupError("reading '" + path.string() + "'", e.what(),
+                           "choose a file recorded by tact record");
     }
 }
 
 void RecordingReader::read_about(const std::filesystem::path& path) {
     const Hdf5Id f = file_.get();
     if (hdf5::text(f, "/", "format", 64) != kRecordingFormat)
-        throw RecordError("it does not say that it is a recording");
+        throw RecordError("the file is not marked as a recording");
     const std::uint64_t version = hdf5::number(f, "/", "version");
     if (version != kRecordingVersion ||
         hdf5::number(f, "/start", "loop_version") != StartTopic::kInfo.version)
         throw StartupError("reading '" + path.string() + "'",
-                           "it has version " + std::to_string(version) + ", this program reads version " +
-                               std::to_string(kRecordingVersion),
-                           "use the program that is named in its attribute 'program'");
+                           "the file has version " + std::to_string(version) +
+                               ", this program reads version " + std::to_string(kRecordingVersion),
+                           "use the program named in the file's attribute 'program'");
     const std::string start = hdf5::bytes(f, "/start/loop", sizeof(StartTopic));
-    if (start.size() != sizeof(StartTopic)) throw RecordError("its start is not whole");
+    if (start.size() != sizeof(StartTopic)) throw RecordError("its start data is incomplete");
     std::memcpy(&about_.start, start.data(), start.size());
     if (about_.start.hands < 1 || about_.start.hands > kHandsMax)
         throw RecordError("it has " + std::to_string(about_.start.hands) + " hands");
@@ -57,7 +58,7 @@ void RecordingReader::read_about(const std::filesystem::path& path) {
     for (std::uint32_t i = 0; i < about_.start.hands; ++i) {
         hand_[i] = RowStream<HandRow>(Hdf5Table::open(f, kHandGroups[i], hand_columns(), sizeof(HandRow)));
         if (hand_[i].rows() != about_.cycles)
-            throw RecordError("its hands have not as many rows as its cycles");
+            throw RecordError("the numbers of rows of its hands and cycles differ");
     }
     mailbox_ = RowStream<MailboxTopic>(
         Hdf5Table::open(f, mailbox_group(f), mailbox_columns(), sizeof(MailboxTopic)));

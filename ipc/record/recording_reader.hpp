@@ -1,9 +1,10 @@
-// Reads a recording step by step, whole or while it grows no more, in blocks: memory does not depend on its length.
+// Reads a complete recording step by step in blocks: memory does not depend on its length.
 //
-// Repairs   first, where its recorder was killed; what was found is in repaired().
-// Hostile   every number may be anything; counts are bounded, texts printable by whoever shows them. A file that is no
-//           recording is refused.
-// Thread    one. Fails by StartupError (opening), RecordError (reading on).
+// Repairs   first, if its recorder was killed; about().repair has the result
+// Input     untrusted: every number may have any value; counts are bounded, and the user of a text makes it
+//           printable. A file that is not a recording is refused.
+// Thread    one
+// Errors    StartupError (opening), RecordError (further reading)
 #pragma once
 
 #include <filesystem>
@@ -16,7 +17,7 @@
 
 namespace tact {
 
-// Rows of one table in order, read a block at a time.
+// Rows of one table in order, read in blocks.
 template <class Row>
 class RowStream {
 public:
@@ -25,7 +26,7 @@ public:
     RowStream() = default;
     explicit RowStream(Hdf5Table table) : table_(std::move(table)) {}
     [[nodiscard]] std::uint64_t rows() const { return table_.rows(); }
-    // Null: there is none any more. Good until next() of another block.
+    // Null: no more rows. Valid until next() enters another block.
     const Row* peek() {
         if (at_ < block_.size()) return &block_[at_];
         const std::uint64_t left = table_.rows() - done_;
@@ -45,7 +46,7 @@ private:
     std::uint64_t done_ = 0;
 };
 
-// All that one step was given, and what came of it.
+// All inputs of one step, and its results.
 struct RecordedStep {
     CycleTopic cycle{};
     HandRow hand[kHandsMax]{};
@@ -61,13 +62,13 @@ public:
         StartTopic start{};
         std::vector<std::string> arguments;  // of the controller
         std::string config, poses, scene_path, program;
-        std::string controller;  // the program that computed the forces; "" in files of before 2026-11-24
-        bool known = false;      // all of those are there
+        std::string controller;  // the program that computed the forces; "" in files from before 2026-11-24
+        bool known = false;      // all of those are present
         std::uint64_t scene_checksum = 0, first_step = 0, cycles = 0, dropped = 0;
         RepairReport repair;
     };
     [[nodiscard]] const About& about() const { return about_; }
-    // False: that was the last one. Mailbox of steps that are not there comes with the next one that is.
+    // False: no more steps. Mailbox entries of missing steps come with the next existing step.
     bool next(RecordedStep& step);
 
     [[nodiscard]] RowStream<EventTopic>& events() { return events_; }

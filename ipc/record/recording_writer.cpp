@@ -44,7 +44,7 @@ std::span<const char> bytes_of(const T& value) {
     return {reinterpret_cast<const char*>(&value), sizeof value};
 }
 
-// Where there was more than fits, the file has no such text and says so by its size.
+// A text that is too long is omitted; the size 0 in the file indicates it.
 std::span<const char> told(const char* text, std::uint32_t bytes, std::size_t most) {
     return {text, bytes <= most ? bytes : 0};
 }
@@ -56,12 +56,12 @@ RecordingWriter::RecordingWriter(const std::filesystem::path& path, const Record
       hands_(std::min<std::uint32_t>(head.start.hands, kHandsMax)),
       T_world_dev_{Vec3(head.start.pos_world_dev_m), Quat(head.start.quat_world_dev_xyzw)} {
     hdf5::quiet();
-    // Under the name that was asked for there is never half a file, whenever this process is killed.
+    // The final name never belongs to a partial file, even if this process is killed.
     const std::filesystem::path making = path.string() + ".making-" + std::to_string(getpid());
     file_ = hdf5::create_file(making);
     try {
         make(head);
-        hdf5::start_shared_writing(file_.get());  // lets go of HDF5's own lock, which would keep readers away
+        hdf5::start_shared_writing(file_.get());  // releases HDF5's own lock, which would block readers
         lock_ = FileDescriptor(open(making.c_str(), O_RDONLY | O_CLOEXEC));
         if (!lock_.valid() || flock(lock_.get(), LOCK_SH | LOCK_NB) != 0)
             throw RecordError("locking the file: " + last_error());
@@ -71,8 +71,8 @@ RecordingWriter::RecordingWriter(const std::filesystem::path& path, const Record
     } catch (const RecordError& e) {
         std::error_code gone;
         std::filesystem::remove(making, gone);
-        throw StartupError("making the recording '" + path.string() + "'", e.what(),
-                           "name a file on a disk with space");
+        throw StartupError("creating the recording '" + path.string() + "'", e.what(),
+                           "choose a file on a disk with free space");
     }
 }
 
@@ -200,7 +200,7 @@ void RecordingWriter::add(const BodiesTopic& topic) {
 }
 
 void RecordingWriter::flush() {
-    // What a cycle was given before the cycle: a replay never lacks what it needs for the last one.
+    // Flushes the inputs of a cycle before the cycle: a replay has all inputs of the last cycle.
     mailbox_.flush();
     reports_.flush();
     for (std::uint32_t i = 0; i < hands_; ++i) hand_[i].flush();
@@ -221,7 +221,7 @@ void RecordingWriter::close() {
         *t = {};
     file_.reset();
     lock_ = {};
-    // Attributes cannot change while others may read; the file is its own now.
+    // Attributes cannot change during shared writing; the file is reopened without it.
     Hdf5Handle file = hdf5::open_file(path_, true);
     hdf5::put_number(file.get(), "/", "end", static_cast<std::uint64_t>(RecordingEnd::whole));
 }

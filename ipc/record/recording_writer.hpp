@@ -1,11 +1,12 @@
-// Writes a recording: rows are kept in memory until flush(), which puts them into the file so that a kill loses none.
+// Writes a recording: keeps rows in memory until flush(), which writes them so that a kill loses none of
+// them.
 //
-// Killed   what the last flush() wrote stays, whole; repair.hpp takes away the mark of a writer.
-// Rows     of /cycles and of the hands belong together, one of each a step; the caller sees to it.
-// Lock     held while it lives, so that nobody repairs the file of a living writer.
-// Thread   one.
-// Fails by StartupError where the file cannot be made, RecordError where it takes no more (the disk is full); then
-//          abandon() it: what was flushed stays.
+// Killed   the data of the last flush() stays complete; repair.hpp clears the writer's mark
+// Rows     of /cycles and of the hands correspond, one each per step; the caller ensures it
+// Lock     held for the object's lifetime, so that no other process repairs the file of a running writer
+// Thread   one
+// Errors   StartupError if the file cannot be created, RecordError if a write fails (full disk); then call
+//          abandon(): flushed data stays
 #pragma once
 
 #include <filesystem>
@@ -19,19 +20,19 @@
 
 namespace tact {
 
-// What is known when a recording begins.
+// Data known at the start of a recording.
 struct RecordingHead {
     StartTopic start{};
     RunText text{};
     LevelsTopic levels{};          // names of the paths
-    std::string scene_path;        // only its file name is kept, as of paths in the arguments
+    std::string scene_path;        // only its file name is stored, as for paths in the arguments
     std::string session, program;  // program: with its version
-    std::string cause;             // of a flight recording; empty: it is no such
+    std::string cause;             // of a flight recording; empty for any other
     std::uint64_t scene_checksum = 0, generation = 0, first_step = 1;
     std::int64_t created_utc_ns = 0, created_ns = 0;  // the same instant on both clocks
 };
 
-// How it was ended.
+// State of the end of a recording.
 enum class RecordingEnd : std::uint64_t { open, whole, repaired };
 
 template <class Row>
@@ -47,7 +48,7 @@ struct RowStore {
 class RecordingWriter {
 public:
     RecordingWriter(const std::filesystem::path& path, const RecordingHead& head);
-    ~RecordingWriter();  // closes as far as it can
+    ~RecordingWriter();  // closes as far as possible
     RecordingWriter(const RecordingWriter&) = delete;
     RecordingWriter& operator=(const RecordingWriter&) = delete;
 
@@ -63,7 +64,7 @@ public:
     [[nodiscard]] std::size_t kept_rows() const { return cycles_.kept.size(); }
 
     void flush();
-    // In order: everything is in the file, and it says that it is whole.
+    // Regular end: writes everything and marks the file as complete.
     void close();
     void abandon() noexcept;
     [[nodiscard]] std::uint64_t cycles() const { return cycles_.table.rows(); }

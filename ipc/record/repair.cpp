@@ -12,17 +12,17 @@
 namespace tact {
 namespace {
 
-// A living recorder holds a shared lock; so do readers, but they are no hindrance where nothing is to be fixed.
+// A running recorder holds a shared lock; readers do too, but a file that needs no repair is not checked.
 void refuse_a_living_writers(const std::filesystem::path& path) {
     const FileDescriptor file(open(path.c_str(), O_RDONLY | O_CLOEXEC));
     if (file.valid() && flock(file.get(), LOCK_EX | LOCK_NB) != 0)
-        throw StartupError("repairing '" + path.string() + "'", "a recorder is still writing it",
-                           "end the recording first (Ctrl-C where it runs)");
+        throw StartupError("repairing '" + path.string() + "'", "a recorder is still writing the file",
+                           "end the recording first (Ctrl-C in its terminal)");
 }
 
 struct Cut {
     Hdf5Table table;
-    bool of_a_step = false;  // has as many rows as there are cycles
+    bool of_a_step = false;  // has as many rows as cycles
 };
 
 }  // namespace
@@ -31,14 +31,14 @@ RepairReport repair_recording(const std::filesystem::path& path) {
     hdf5::quiet();
     RepairReport report;
     if (!std::filesystem::is_regular_file(path))
-        throw StartupError("opening '" + path.string() + "'", "there is no such file",
-                           "name a recording of tact record");
+        throw StartupError("opening '" + path.string() + "'", "the file does not exist",
+                           "choose a file recorded by tact record");
     try {
         const bool marked = hdf5::marked_open(path);
         if (marked) refuse_a_living_writers(path);
         Hdf5Handle file = marked ? hdf5::open_abandoned(path) : hdf5::open_file(path, false);
         const auto end = static_cast<RecordingEnd>(hdf5::number(file.get(), "/", "end"));
-        if (!marked && end == RecordingEnd::open) {  // closed, but not by us
+        if (!marked && end == RecordingEnd::open) {  // closed, but not by RecordingWriter
             file.reset();
             file = hdf5::open_file(path, true);
         }
@@ -77,17 +77,19 @@ RepairReport repair_recording(const std::filesystem::path& path) {
             report.last_ns = last.now_ns;
         }
     } catch (const RecordError& e) {
-        throw StartupError("repairing '" + path.string() + "'", e.what(),
-                           "name a recording of tact record; what cannot be repaired was not changed");
+        throw StartupError(
+            "repairing '" + path.string() + "'", e.what(),
+            "choose a file recorded by tact record; a file that cannot be repaired stays unchanged");
     }
     return report;
 }
 
 std::string repair_text(const std::filesystem::path& path, const RepairReport& r) {
     std::string text = path.string();
-    text.append(r.needed ? ": its recorder ended suddenly; repaired, " : ": whole, ");
+    text.append(r.needed ? ": its recorder ended unexpectedly; repaired, " : ": complete, ");
     text.append(std::to_string(r.cycles)).append(" cycles");
-    if (r.rows_cut > 0) text.append("; ").append(std::to_string(r.rows_cut)).append(" single rows cut");
+    if (r.rows_cut > 0)
+        text.append("; ").append(std::to_string(r.rows_cut)).append(" incomplete rows removed");
     return text;
 }
 

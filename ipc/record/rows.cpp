@@ -17,7 +17,7 @@ constexpr Number number_of() {
     return Number::u8;
 }
 
-// A member under its own name; and several of one kind that lie one behind the other, as one.
+// A column for a member under its own name; an array member becomes one wide column.
 #define TACT_COLUMN(Row, member, what)                                                  \
     Column {                                                                            \
 #member, number_of < decltype(Row::member)>(), offsetof(Row, member),           \
@@ -39,18 +39,19 @@ static_assert(offsetof(BodyRow, quat_model_body_xyzw) == offsetof(BodyRow, pos_m
 static_assert(offsetof(ServoOrder, quat_model_body_xyzw) == offsetof(ServoOrder, pos_model_m) + 24);
 
 constexpr std::array kCycle{
-    TACT_COLUMN(CycleTopic, step,
-                "cycles so far, dry ones too; from 1; joins /cycles, /hand0, /hand1, /mailbox, /reports"),
-    TACT_COLUMN(CycleTopic, cycle, "of the loop, from 1; dry ones before it count for themselves"),
+    TACT_COLUMN(
+        CycleTopic, step,
+        "number of the cycle from 1, including dry ones; key of /cycles, /hand0, /hand1, /mailbox, /reports"),
+    TACT_COLUMN(CycleTopic, cycle, "cycle of the loop from 1; dry cycles have their own count"),
     TACT_COLUMN(CycleTopic, clock_ns, "the servo's readings of the monotonic clock"),
-    TACT_COLUMN(CycleTopic, now_ns, "the reading that the cycle uses"),
-    TACT_COLUMN(CycleTopic, lateness_ns, "of its beginning"),
-    TACT_COLUMN(CycleTopic, cost_ns, "of the whole cycle"),
-    TACT_COLUMN(CycleTopic, model_ns, "of the force models' steps"),
-    TACT_COLUMN(CycleTopic, level, "of the haptic path, 0 to 1"),
+    TACT_COLUMN(CycleTopic, now_ns, "time that the cycle uses"),
+    TACT_COLUMN(CycleTopic, lateness_ns, "lateness of the cycle's start"),
+    TACT_COLUMN(CycleTopic, cost_ns, "duration of the whole cycle"),
+    TACT_COLUMN(CycleTopic, model_ns, "duration of the force models' steps"),
+    TACT_COLUMN(CycleTopic, level, "level of the haptic path, 0 to 1"),
     Column{"work_fraction", Number::f32, offsetof(CycleTopic, work_fraction), 1,
-           "of the level's work that could be recomputed, 0 to 1", "share"},
-    TACT_COLUMN(CycleTopic, lines_taken_at_ns, "safety lines, where flags has 2"),
+           "fraction of the level's work to recompute, 0 to 1", "share"},
+    TACT_COLUMN(CycleTopic, lines_taken_at_ns, "time of the safety line sample; valid if flags contains 2"),
     TACT_COLUMN(CycleTopic, lines_sequence, ""),
     TACT_COLUMN(CycleTopic, lines_trips, ""),
     TACT_COLUMN(CycleTopic, lines_state, ""),
@@ -58,58 +59,63 @@ constexpr std::array kCycle{
     TACT_COLUMN(CycleTopic, lines_inputs, ""),
     TACT_COLUMN(CycleTopic, lines_outputs, ""),
     TACT_COLUMN(CycleTopic, run_state, "0 off, 1 ready, 2 armed, 3 active, 4 fault"),
-    TACT_COLUMN(CycleTopic, run_reason, "of a fault"),
-    TACT_COLUMN(CycleTopic, flags, "1: dry, before the start; 2: safety lines were looked at"),
+    TACT_COLUMN(CycleTopic, run_reason, "reason of a fault"),
+    TACT_COLUMN(CycleTopic, flags, "1: dry, before the start; 2: safety lines were read"),
     Column{"timestamps", Number::u8, offsetof(CycleTopic, timestamps), 1, "number of values in clock_ns",
            "looks"},
 };
 
 constexpr std::array kHand{
-    Column{"step", Number::u64, in_hand(offsetof(HandTopic, step)), 1, "joins /cycles"},
+    Column{"step", Number::u64, in_hand(offsetof(HandTopic, step)), 1, "key of /cycles"},
     Column{"taken_at_ns", Number::i64, in_hand(offsetof(HandTopic, taken_at_ns)), 1,
-           "when the device measured"},
-    Column{"sequence", Number::u64, in_hand(offsetof(HandTopic, sequence)), 1, "of the device's samples"},
+           "time of the device's measurement"},
+    Column{"sequence", Number::u64, in_hand(offsetof(HandTopic, sequence)), 1,
+           "sequence number of the device's samples"},
     Column{"pose_world", Number::f64, offsetof(HandRow, pos_world_m), 7,
-           "of the tool: x y z in m, quaternion x y z w"},
+           "pose of the tool: x y z in m, quaternion x y z w"},
     Column{"wrench_world", Number::f64, in_hand(offsetof(HandTopic, force_world_n)), 6,
            "sent to the device, at the tool: force in N, torque in N m"},
     Column{"wrench_model", Number::f64, in_hand(offsetof(HandTopic, force_model_world_n)), 6,
-           "wanted by the force model, world axes: force in N, torque in N m"},
-    Column{"pose_dev", Number::f64, in_hand(offsetof(HandTopic, pos_dev_m)), 7, "as the device gave it"},
+           "output of the force model, world axes: force in N, torque in N m"},
+    Column{"pose_dev", Number::f64, in_hand(offsetof(HandTopic, pos_dev_m)), 7,
+           "pose from the device: x y z in m, quaternion x y z w"},
     Column{"twist_dev", Number::f64, in_hand(offsetof(HandTopic, velocity_dev_m_s)), 6,
-           "as the device gave it: m/s, rad/s"},
+           "twist from the device: m/s, rad/s"},
     Column{"delay_ns", Number::i64, in_hand(offsetof(HandTopic, delay_ns)), 1,
-           "from sample to motor; 0: unknown"},
+           "delay from sample to motor; 0: unknown"},
     Column{"model_error_n", Number::f32, in_hand(offsetof(HandTopic, model_error_n)), 1,
-           "bound of the force's distance from the exact one"},
-    Column{"items", Number::u32, in_hand(offsetof(HandTopic, items)), 1, "points, blocks or moves felt"},
+           "bound of the force error"},
+    Column{"items", Number::u32, in_hand(offsetof(HandTopic, items)), 1, "points, blocks or moves evaluated"},
     Column{"buttons", Number::u32, in_hand(offsetof(HandTopic, buttons)), 1, "1: clutch; 2: drives the tool"},
     Column{"deadline_check", Number::u32, in_hand(offsetof(HandTopic, deadline_check)), 1,
-           "number of the check of the step's deadline that found it passed; 0: none did", "deadline_look"},
+           "number of the deadline check that found the step's deadline passed; 0: none", "deadline_look"},
     Column{"read_status", Number::u8, in_hand(offsetof(HandTopic, read_status)), 1,
            "0 ok, 1 stale, 2 lost, 3 fault"},
-    Column{"write_status", Number::u8, in_hand(offsetof(HandTopic, write_status)), 1, "as read_status"},
+    Column{"write_status", Number::u8, in_hand(offsetof(HandTopic, write_status)), 1,
+           "0 ok, 1 stale, 2 lost, 3 fault"},
     Column{"hand_present", Number::u8, in_hand(offsetof(HandTopic, hand_present)), 1, "0 or 1"},
     Column{"device_state", Number::u8, in_hand(offsetof(HandTopic, device_state)), 1,
            "0 closed, 1 ready, 2 powered, 3 watchdog tripped, 4 fault"},
-    Column{"notice", Number::u8, in_hand(offsetof(HandTopic, notice)), 1, "what the device asks of a person"},
+    Column{"notice", Number::u8, in_hand(offsetof(HandTopic, notice)), 1,
+           "DeviceNotice: required action, or reason of zero force"},
     Column{"step_status", Number::u8, in_hand(offsetof(HandTopic, step_status)), 1,
-           "of the model: 0 ok, 1 out of time, 2 out of range"},
+           "status of the model: 0 ok, 1 out of time, 2 out of range"},
     Column{"at_wall", Number::u8, in_hand(offsetof(HandTopic, at_wall)), 1,
-           "1: a wall of the workspace pushes back"},
+           "1: a wall of the workspace exerts force"},
 };
 
 constexpr std::array kMailbox{
-    TACT_COLUMN(MailboxTopic, step, "in which the servo took it"),
+    TACT_COLUMN(MailboxTopic, step, "step in which the servo took the order"),
     TACT_COLUMN(MailboxTopic, kind,
                 "1 order, 2 model taken, 3 build refused, 4 stop, 5 drops of the supervisor"),
-    Column{"sequence", Number::u64, in_order(offsetof(ServoOrder, sequence)), 1, "of the command"},
+    Column{"sequence", Number::u64, in_order(offsetof(ServoOrder, sequence)), 1,
+           "sequence number of the command"},
     Column{"value", Number::f64, in_order(offsetof(ServoOrder, value)), 1, ""},
     Column{"order", Number::u32, in_order(offsetof(ServoOrder, kind)), 1, "CommandKind"},
     Column{"index", Number::u32, in_order(offsetof(ServoOrder, index)), 1, "path or law"},
     Column{"body", Number::u32, in_order(offsetof(ServoOrder, body)), 1, "id or structure"},
     Column{"pose_model", Number::f64, in_order(offsetof(ServoOrder, pos_model_m)), 7,
-           "of the body: m, quaternion x y z w"},
+           "pose of the body: x y z in m, quaternion x y z w"},
 };
 
 #define TACT_SAID(member)                                             \
@@ -118,7 +124,7 @@ constexpr std::array kMailbox{
             in_said(offsetof(HousekeepingReport, member)), 1, ""      \
     }
 constexpr std::array kReport{
-    TACT_COLUMN(ReportTopic, step, "in which the servo took it"),
+    TACT_COLUMN(ReportTopic, step, "step in which the servo took the report"),
     TACT_SAID(gui_heartbeat_ns),
     TACT_SAID(gui_generation),
     TACT_SAID(bad_input),
@@ -140,30 +146,30 @@ constexpr std::array kReport{
 
 constexpr std::array kEvent{
     TACT_COLUMN(EventTopic, taken_at_ns, "monotonic clock"),
-    TACT_COLUMN(EventTopic, cycle, "of the loop"),
-    TACT_COLUMN(EventTopic, code, "EventCode; the attribute codes of /events has their names"),
-    TACT_COLUMN(EventTopic, a, "meaning by the code"),
-    TACT_COLUMN(EventTopic, b, "meaning by the code"),
+    TACT_COLUMN(EventTopic, cycle, "cycle of the loop"),
+    TACT_COLUMN(EventTopic, code, "EventCode; names are in the attribute codes of /events"),
+    TACT_COLUMN(EventTopic, a, "value; meaning depends on code"),
+    TACT_COLUMN(EventTopic, b, "value; meaning depends on code"),
 };
 
 constexpr std::array kLevels{
     TACT_COLUMN(LevelsRow, taken_at_ns, "monotonic clock"),
     TACT_COLUMN(LevelsRow, sequence, "rises with every change"),
-    TACT_COLUMN(LevelsRow, goal_hz, "of the governor"),
-    TACT_COLUMN(LevelsRow, rate_hz, "what its law last saw"),
-    TACT_COLUMN(LevelsRow, level, "0 to 1, by the attribute paths of /levels"),
+    TACT_COLUMN(LevelsRow, goal_hz, "target rate of the governor"),
+    TACT_COLUMN(LevelsRow, rate_hz, "last rate that the law used"),
+    TACT_COLUMN(LevelsRow, level, "level of each path, 0 to 1; names are in the attribute paths of /levels"),
 };
 
 constexpr std::array kHealth{
     TACT_COLUMN(HealthRow, taken_at_ns, "monotonic clock"),
     TACT_COLUMN(HealthRow, cycle, ""),
     TACT_COLUMN(HealthRow, force_rate_hz, ""),
-    TACT_COLUMN(HealthRow, lateness_p50_ns, "of the last second"),
+    TACT_COLUMN(HealthRow, lateness_p50_ns, "median lateness in the last second"),
     TACT_COLUMN(HealthRow, lateness_p99_ns, ""),
     TACT_COLUMN(HealthRow, lateness_max_ns, ""),
     TACT_COLUMN(HealthRow, cycle_cost_p50_ns, ""),
     TACT_COLUMN(HealthRow, cycle_cost_max_ns, ""),
-    TACT_COLUMN(HealthRow, overruns, "so far"),
+    TACT_COLUMN(HealthRow, overruns, "number of overruns since the start"),
     TACT_COLUMN(HealthRow, skipped, ""),
     TACT_COLUMN(HealthRow, allocations, ""),
     TACT_COLUMN(HealthRow, locks, ""),
@@ -181,8 +187,8 @@ constexpr std::array kBody{
     TACT_COLUMN(BodyRow, taken_at_ns, "monotonic clock"),
     TACT_COLUMN(BodyRow, cycle, ""),
     Column{"pose_model", Number::f64, offsetof(BodyRow, pos_model_m), 7,
-           "of the centre of mass: x y z in m, quaternion x y z w"},
-    TACT_COLUMN(BodyRow, id, "from 1, never used again"),
+           "pose of the centre of mass: x y z in m, quaternion x y z w"},
+    TACT_COLUMN(BodyRow, id, "number from 1, never reused"),
     TACT_COLUMN(BodyRow, structure, "index in the scene"),
     TACT_COLUMN(BodyRow, flags, "1: fixed"),
 };
@@ -190,7 +196,7 @@ constexpr std::array kBody{
 constexpr std::array kDrop{
     TACT_COLUMN(DropRow, noticed_at_ns, "monotonic clock"),
     TACT_COLUMN(DropRow, ring, "0 cycles, 1 hand 0, 2 hand 1, 3 mailbox, 4 reports, 5 events"),
-    TACT_COLUMN(DropRow, records, "lost, as the recorder was too slow"),
+    TACT_COLUMN(DropRow, records, "number of records lost because the recorder was too slow"),
 };
 #undef TACT_COLUMN
 

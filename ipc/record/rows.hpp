@@ -1,4 +1,4 @@
-// What a recording consists of: tables, their rows, and where the numbers of a row lie. See RECORDING.md.
+// Tables of a recording: rows and columns. See RECORDING.md.
 #pragma once
 
 #include <array>
@@ -13,14 +13,14 @@
 
 namespace tact {
 
-// A hand in one step; pose_world follows from the device's pose.
+// A hand in one step; pose_world is computed from the device's pose.
 struct HandRow {
     HandTopic t;
     double pos_world_m[3];
     double quat_world_tool_xyzw[4];
 };
 
-// The governor's levels, when they changed.
+// The governor's levels after a change.
 struct LevelsRow {
     std::int64_t taken_at_ns;
     std::uint64_t sequence;
@@ -28,7 +28,7 @@ struct LevelsRow {
     float level[kPathsMax];  // by the names in /levels
 };
 
-// Ten times a second.
+// Ten times per second.
 struct HealthRow {
     std::int64_t taken_at_ns;
     std::uint64_t cycle;
@@ -41,7 +41,7 @@ struct HealthRow {
     std::uint8_t state, reason, device_state, gui_attached;
 };
 
-// A placed structure, when it had moved; up to fifty times a second.
+// A placed structure after a motion; up to fifty times per second.
 struct BodyRow {
     std::int64_t taken_at_ns;
     std::uint64_t cycle;
@@ -53,7 +53,7 @@ struct BodyRow {
 
 enum class RecordRing : std::uint32_t { cycles, hand0, hand1, mailbox, reports, events };
 
-// What the recorder was too slow for: never silently.
+// Records lost because the recorder was too slow.
 struct DropRow {
     std::int64_t noticed_at_ns;
     std::uint32_t ring;  // RecordRing
@@ -61,7 +61,7 @@ struct DropRow {
     std::uint64_t records;
 };
 
-// group: its place in the file; hand: "/hand0" or "/hand1".
+// Columns and groups of the tables; hand groups are "/hand0" and "/hand1".
 [[nodiscard]] std::span<const Column> cycle_columns();
 [[nodiscard]] std::span<const Column> hand_columns();
 [[nodiscard]] std::span<const Column> mailbox_columns();
@@ -83,7 +83,7 @@ inline constexpr const char* kHealthGroup = "/health";
 inline constexpr const char* kBodiesGroup = "/bodies";
 inline constexpr const char* kDropsGroup = "/drops";
 
-// The group of a file that holds the mailbox, under its present or its former name.
+// The group of the mailbox in a file, under its present or former name.
 [[nodiscard]] inline const char* mailbox_group(Hdf5Id file) {
     return Hdf5Table::exists(file, kMailboxGroup) ? kMailboxGroup : kFormerMailboxGroup;
 }

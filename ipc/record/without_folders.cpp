@@ -5,7 +5,7 @@ namespace tact {
 std::string without_folders(std::string_view path) {
     if (path.find('/') == std::string_view::npos) return std::string(path);
     while (path.ends_with('/')) path.remove_suffix(1);
-    path.remove_prefix(path.find_last_of('/') + 1);  // none: from its start
+    path.remove_prefix(path.find_last_of('/') + 1);  // without '/', the whole text
     return path.empty() ? "." : std::string(path);
 }
 

@@ -1,6 +1,6 @@
-// What a recording keeps of paths: file names. Folders tell who ran it, and a recording is given away.
+// Reduces paths in a recording to file names: folder names identify people, and recordings are passed on.
 //
-// Thread   any. Whatever the bytes, what comes out is no longer than what went in and holds no '/'.
+// Thread   any. For any input, the output is not longer than the input and contains no '/'.
 #pragma once
 
 #include <string>
@@ -8,7 +8,7 @@
 
 namespace tact {
 
-// Of "/home/anna/rod.tact" rod.tact; of a text without '/' the text; "." where nothing is left.
+// "/home/anna/rod.tact" gives rod.tact; a text without '/' is unchanged; "." if nothing remains.
 [[nodiscard]] std::string without_folders(std::string_view path);
 // Each argument ends with 0. "--poses=/home/anna/p.json" becomes "--poses=p.json".
 [[nodiscard]] std::string arguments_without_folders(std::string_view arguments);

@@ -84,7 +84,7 @@ const std::string& row_of(Row& row, const RecordedStep& s, std::uint32_t hands, 
 std::uint64_t write_csv(const CsvSettings& settings, const std::function<bool()>& stop) {
     if (std::filesystem::exists(settings.file))
         throw StartupError("writing '" + settings.file.string() + "'", "the file exists already",
-                           "name another one, or remove it");
+                           "choose another file, or remove it");
     RecordingReader reader(settings.recording);
     const std::uint32_t hands = reader.about().start.hands;
     std::ofstream out(settings.file, std::ios::binary);
@@ -106,13 +106,13 @@ std::uint64_t write_csv(const CsvSettings& settings, const std::function<bool()>
             if (seen++ % settings.every != 0) continue;
             out << row_of(row, step, hands, *begin_ns);
             ++rows;
-            if (rows % 1024 == 0 && stop()) give_up("stopped", "start it again");
+            if (rows % 1024 == 0 && stop()) give_up("stopped", "start the conversion again");
         }
     } catch (const RecordError& e) {
-        give_up(e.what(), "the recording cannot be read on");
+        give_up(e.what(), "the recording is not readable beyond this point");
     }
     out.close();
-    if (!out) give_up("the disk takes no more", "make space, or write fewer rows with --every");
+    if (!out) give_up("the disk is full", "free disk space, or write fewer rows with --every");
     return rows;
 }
 

@@ -1,9 +1,11 @@
-// A recording as a table of text, a row a cycle: for programs that read nothing else.
+// Converts a recording into a text table with one row per cycle, for programs that read no HDF5.
 //
-// Columns  time_s (since the first row), cycle, state, level, lateness_us, cost_us, model_us; of each hand pose (x y z in m, quaternion
-//          x y z w), force and torque sent, force and torque of the model, buttons. Numbers as short as they can be read back the same.
-// Memory   does not depend on the recording's length.
-// Thread   one. Fails by StartupError.
+// Columns  time_s (since the first row), cycle, state, level, lateness_us, cost_us, model_us; for each hand
+//          pose (x y z in m, quaternion x y z w), force and torque sent, force and torque of the model,
+//          buttons. Numbers have the fewest digits that reproduce them exactly.
+// Memory   does not depend on the recording's length
+// Thread   one
+// Errors   StartupError
 #pragma once
 
 #include <cstdint>
@@ -13,11 +15,11 @@
 namespace tact::record {
 
 struct CsvSettings {
-    std::filesystem::path recording, file;  // file: must not be there
-    std::uint64_t every = 1;                // writes one cycle of so many
+    std::filesystem::path recording, file;  // file: must not exist
+    std::uint64_t every = 1;                // cycles per written row
 };
 
-// Rows written. Of the cycles before the loop's start none is. A stop leaves no file.
+// Returns the number of rows. Omits cycles before the loop's start. A stop leaves no file.
 std::uint64_t write_csv(
     const CsvSettings& settings, const std::function<bool()>& stop = [] { return false; });
 

@@ -47,7 +47,7 @@ Drain::Drain(const RtRegion& region) : region_(region) {
 
 void Drain::take(Batch& batch, std::int64_t now_ns) {
     take_steps(batch);
-    // After the steps, so that what a step was given is there with it.
+    // After the steps, so that the inputs of a step arrive with it.
     const auto take_all = [](const auto& ring, RingCursor& at, auto& to) {
         typename std::decay_t<decltype(to)>::value_type value{};
         for (std::uint64_t i = 0; i < ring.kCapacity && ring.next(at, value); ++i) to.push_back(value);
@@ -75,7 +75,7 @@ void Drain::take_steps(Batch& batch) {
     }
 }
 
-// The servo pushes a step's hands before its cycle, so they are there, unless the ring lapped.
+// The servo pushes a step's hands before its cycle, so they are present unless the ring lapped.
 bool Drain::hands_of(std::uint64_t step) {
     bool all = true;
     for (std::uint32_t h = 0; h < hands_; ++h) {
@@ -115,7 +115,7 @@ void Drain::count_drops(Batch& batch, std::int64_t now_ns) {
                                .records = records});
     };
     for (std::size_t i = 0; i < kRings; ++i) {
-        // A step that lacks a hand is said as a lost cycle, not a second time as a lost hand.
+        // A step without a hand is reported as a lost cycle, not in addition as a lost hand.
         const bool hand = i == index(RecordRing::hand0) || i == index(RecordRing::hand1);
         if (!hand) say(static_cast<RecordRing>(i), at_[i].missed - missed_[i]);
         missed_[i] = at_[i].missed;

@@ -1,9 +1,9 @@
-// Takes what the servo pushed into its rings, step by step, and counts what was lost on the way.
+// Reads the servo's rings step by step, and counts lost records.
 //
-// Whole     a step comes with its cycle and all of its hands, or not at all.
-// Lost      by lapping, each ring for itself; steps that came without a hand count as lost cycles.
-// Hostile   rings hold any numbers; what is kept is bounded by what the rings hold.
-// Thread    one; never blocks.
+// Whole     a step comes with its cycle and all of its hands, or not at all
+// Lost      by lapping, counted per ring; steps without a hand count as lost cycles
+// Input     untrusted: rings hold any numbers; the output is bounded by the capacity of the rings
+// Thread    one; never blocks
 #pragma once
 
 #include <array>
@@ -15,7 +15,7 @@
 
 namespace tact::record {
 
-// What came in a span of time.
+// Records of a period of time.
 struct Batch {
     std::vector<CycleTopic> cycles;
     std::array<std::vector<HandTopic>, kHandsMax> hand;  // as many as cycles
@@ -33,7 +33,7 @@ struct Batch {
 
 class Drain {
 public:
-    // From the oldest that the rings still hold: what they had lost before is no drop.
+    // Starts with the oldest records in the rings: earlier losses are not counted.
     explicit Drain(const RtRegion& region);
 
     void take(Batch& batch, std::int64_t now_ns);
@@ -47,7 +47,7 @@ private:
 
     const RtRegion& region_;
     std::uint32_t hands_;
-    static constexpr std::size_t kRings = 6;  // as RecordRing
+    static constexpr std::size_t kRings = 6;  // in the order of RecordRing
     std::array<RingCursor, kRings> at_{};
     std::array<std::uint64_t, kRings> missed_{};
     std::array<HandTopic, kHandsMax> next_hand_{};

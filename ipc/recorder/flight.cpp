@@ -27,7 +27,7 @@ std::string name_of_now() {
     return text;
 }
 
-// Names of one length that hold the time sort by it.
+// Names contain the time and have the same length, so they sort by time.
 void remove_old(const std::filesystem::path& folder, std::size_t files_max) {
     std::vector<std::filesystem::path> mine;
     for (const auto& entry : std::filesystem::directory_iterator(folder)) {
@@ -50,9 +50,8 @@ public:
         std::error_code error;
         std::filesystem::create_directories(settings.folder, error);
         if (!std::filesystem::is_directory(settings.folder))
-            throw StartupError("keeping flights in '" + settings.folder.string() + "'",
-                               error ? error.message() : "this is no folder",
-                               "name a folder that can be written");
+            throw StartupError("keeping flight recordings in '" + settings.folder.string() + "'",
+                               error ? error.message() : "this is not a folder", "choose a writable folder");
     }
 
     FlightOutcome go() {
@@ -60,7 +59,7 @@ public:
         outcome_.began = true;
         Drain drain(watched_.region());
         const Instant begin = Monotonic::now();
-        // What the rings still hold of before is on the tape, but no cause any more.
+        // Earlier records in the rings go onto the tape, but do not trigger a file.
         Batch batch;
         drain.take(batch, to_ns(begin));
         tape_.add(std::move(batch));
@@ -72,7 +71,7 @@ public:
                    (settings_.seconds > 0.0 && to_s(Monotonic::now() - begin) >= settings_.seconds);
             const Instant now = Monotonic::now();
             drain.take(batch, to_ns(now));
-            if (settings_.save()) want("asked for", now);
+            if (settings_.save()) want("requested", now);
             if (last || now - turned >= kBatch) {
                 turned = now;
                 if (const std::string cause = cause_in(batch); !cause.empty()) want(cause, now);
@@ -92,10 +91,10 @@ private:
         Instant at;
     };
 
-    // What a person asks for is never too soon.
+    // A person's request is always accepted.
     void want(const std::string& cause, Instant now) {
         if (request_) return;
-        const bool person = cause == "asked for" || cause == command_kind_text(CommandKind::mark);
+        const bool person = cause == "requested" || cause == command_kind_text(CommandKind::mark);
         if (!person && saved_at_ && now - *saved_at_ < settings_.length) return;
         request_ = {cause, now + settings_.after};
     }
@@ -108,7 +107,7 @@ private:
         try {
             if (disk_nearly_full(settings_.folder, kFreeBytesLeast + tape_.bytes()))
                 throw StartupError("writing '" + path.string() + "'", "the disk is nearly full",
-                                   "make space");
+                                   "free disk space");
             write(path, request.cause);
             remove_old(settings_.folder, settings_.files_max);
             ++outcome_.files;

@@ -1,10 +1,14 @@
-// The flight recorder: the last seconds of a controller, kept in memory, written to a file when something happens.
+// The flight recorder: keeps the last seconds of a controller in memory and writes them to a file after an
+// event.
 //
-// Memory   `length` of batches, or `bytes_max` where a loop runs so fast that these are fewer seconds; never more.
-// Written  at a fault, an overrun, a command "mark" (the window's key) or save(); kAfter later, so that what came of it is
-//          in the file too. A cause within `length` of the one before is in that one's file mostly, and makes no new one.
-// Kept     the newest `files_max` of its files in the folder; older ones are removed.
-// Thread   one. Fails by StartupError where the folder cannot be used; a file that cannot be written is said, and it goes on.
+// Memory   `length` of batches, or `bytes_max` when a fast loop needs more; never more
+// Written  at a fault, an overrun, a command "mark" (the window's key) or save(); `after` later, so that the
+//          consequences are in the file too. A cause within `length` of the previous one is mostly in that
+//          file, and creates no new one.
+// Kept     the newest `files_max` files in the folder; older ones are removed
+// Thread   one
+// Errors   StartupError if the folder is unusable; a file that cannot be written is reported, and recording
+//          continues
 #pragma once
 
 #include <cstdint>
@@ -19,7 +23,7 @@
 
 namespace tact::record {
 
-// The last batches.
+// The last batches in memory.
 class FlightTape {
 public:
     FlightTape(Duration length, std::size_t bytes_max) : length_(length), bytes_max_(bytes_max) {}
@@ -27,7 +31,7 @@ public:
     [[nodiscard]] const std::deque<Batch>& batches() const { return batches_; }
     [[nodiscard]] std::size_t bytes() const { return bytes_; }
     [[nodiscard]] double length_s() const;           // from its first cycle to its last
-    [[nodiscard]] std::uint64_t first_step() const;  // 0: there is none
+    [[nodiscard]] std::uint64_t first_step() const;  // 0: no step
 
 private:
     void shorten();
@@ -36,7 +40,7 @@ private:
     std::deque<Batch> batches_;
 };
 
-// Why a batch would be saved; empty: it would not.
+// The reason to save a batch; empty: none.
 [[nodiscard]] std::string cause_in(const Batch& batch);
 
 struct FlightSettings {
@@ -47,9 +51,9 @@ struct FlightSettings {
     Duration after = std::chrono::seconds(1);
     std::size_t bytes_max = std::size_t{256} << 20U;
     std::size_t files_max = 20;
-    double seconds = 0.0, wait_s = 0.0;  // as of a recording
+    double seconds = 0.0, wait_s = 0.0;  // see RecorderSettings
     std::function<bool()> stop = [] { return false; };
-    std::function<bool()> save = [] { return false; };  // true once for each request
+    std::function<bool()> save = [] { return false; };  // true once per request
 };
 
 struct FlightOutcome {
@@ -57,7 +61,7 @@ struct FlightOutcome {
     bool began = false;
 };
 
-// say: each file and its cause, and what failed.
+// say: reports each file with its cause, and failures.
 FlightOutcome fly(const FlightSettings& settings, const std::function<void(const std::string&)>& say);
 
 }  // namespace tact::record

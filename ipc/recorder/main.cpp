@@ -1,9 +1,9 @@
-// tact-record: writes what a controller's rings hold into an HDF5 file; keeps its last seconds for when something happens; repairs
-// files of recorders that were killed; makes tables of text of them.
+// tact-record: writes the contents of a controller's rings to an HDF5 file; keeps a flight recorder;
+// repairs files of killed recorders; converts recordings to text tables.
 //
-// Exit  0  as asked: the recording is whole, or the file was repaired or needed none
-//       1  error, or the disk was nearly full: what was recorded till then is whole
-//       2  wrong usage
+// Exit  0  success: the recording is complete, or the file was repaired or needed no repair
+//      1  error, or the disk was nearly full: the recording up to then is complete
+//      2  wrong usage
 #include <signal.h>
 #include <unistd.h>
 
@@ -83,15 +83,15 @@ int make_recording(Requests& w) {
                                 .dump()
                                 .c_str());
     } else if (!outcome.began) {
-        std::printf("nothing recorded: stopped before there was a controller\n");
+        std::printf("nothing recorded: stopped before a controller was available\n");
     } else {
         std::printf("%s: %llu cycles, %.1f MB, %s; %llu records lost; %s\n", name.c_str(),
                     static_cast<unsigned long long>(p.cycles), static_cast<double>(p.bytes) * 1e-6,
-                    p.first_step == 1 ? "from the controller's start" : "begun in the middle of a run",
+                    p.first_step == 1 ? "from the controller's start" : "started in the middle of a run",
                     static_cast<unsigned long long>(p.dropped), recorder_end_text(outcome.end));
     }
     if (outcome.end != RecorderEnd::disk_full) return 0;
-    std::fprintf(stderr, "tact-record: the disk is nearly full; the recording ends here and is whole\n");
+    std::fprintf(stderr, "tact-record: the disk is nearly full; the recording ends here and is complete\n");
     return 1;
 }
 
@@ -119,7 +119,7 @@ int keep_flights(Requests& w) {
                                 .dump()
                                 .c_str());
     else
-        std::printf("%s: %llu flights saved, %llu failed; %llu records lost\n", w.folder.c_str(),
+        std::printf("%s: %llu flight recordings saved, %llu failed; %llu records lost\n", w.folder.c_str(),
                     static_cast<unsigned long long>(outcome.files),
                     static_cast<unsigned long long>(outcome.failed),
                     static_cast<unsigned long long>(outcome.dropped));
@@ -151,11 +151,12 @@ void describe(CLI::App& app, Requests& w) {
     what->add_option("file", w.file, "New recording of every servo cycle, such as run.h5")
         ->type_name("FILE.h5");
     what->add_option("--flight", w.folder,
-                     "Folder for flights: the last seconds, kept in memory and saved at an overrun, a fault, "
+                     "Folder for flight recordings: the last seconds, kept in memory and saved at an "
+                     "overrun, a fault, "
                      "the key M in the window or SIGUSR1")
         ->type_name("DIR");
     what->add_option("--repair", w.repair,
-                     "Recording to repair after its recorder was killed; prints the data that were lost")
+                     "Recording to repair after its recorder was killed; prints the amount of lost data")
         ->type_name("FILE.h5");
     auto* const csv =
         what->add_option("--csv", w.table, "Recording to convert into a table (CSV)")->type_name("FILE.h5");
@@ -170,11 +171,12 @@ void describe(CLI::App& app, Requests& w) {
     app.add_option("--wait", w.settings.wait_s, "Time to wait for a controller (s); 0: no limit")
         ->type_name("S")
         ->check(CLI::Range(0.0, 1e7));
-    app.add_option("--length", w.length_s, "Length of a flight (s)")
+    app.add_option("--length", w.length_s, "Length of a flight recording (s)")
         ->type_name("S")
         ->check(CLI::Range(1.0, 600.0))
         ->capture_default_str();
-    app.add_option("--keep", w.flight.files_max, "Number of flights to keep; older flights are removed")
+    app.add_option("--keep", w.flight.files_max,
+                   "Number of flight recordings to keep; older ones are removed")
         ->check(CLI::Range(1, 100000))
         ->capture_default_str();
     auto* const output =
@@ -211,12 +213,12 @@ int main(int argc, char** argv) {
     for (const int number : {SIGINT, SIGTERM, SIGHUP}) sigaction(number, &action, nullptr);
     action.sa_handler = &on_save;
     sigaction(SIGUSR1, &action, nullptr);
-    signal(SIGXFSZ, SIG_IGN);  // a file too big is an error of a write
+    signal(SIGXFSZ, SIG_IGN);  // reports a file above the size limit as a write error
     try {
         return run_request(w);
     } catch (const std::exception& e) {
         std::fprintf(stderr, "tact-record: %s\n", e.what());
         std::fflush(nullptr);
-        _exit(1);  // HDF5 would try at exit to write what the disk did not take
+        _exit(1);  // at exit, HDF5 would try again to write to the full disk
     }
 }

@@ -6,7 +6,7 @@
 namespace tact::record {
 namespace {
 
-// A loop that runs freely fills its rings in a fifth of a second: the rows go out in portions that take a part of that.
+// A free-running loop fills its rings in a fifth of a second: each portion of rows must take only a part of that.
 constexpr std::size_t kFlushRows = 8192;
 
 }  // namespace
@@ -16,7 +16,7 @@ RecorderOutcome record(const RecorderSettings& settings, const std::function<voi
     RecorderOutcome outcome;
     if (std::filesystem::exists(settings.file))
         throw StartupError("recording to '" + settings.file.string() + "'", "the file exists already",
-                           "name another one, or remove it");
+                           "choose another file, or remove it");
     Watched watched(settings.session, LinkRole::recorder);
     if (!await(watched, {settings.session, settings.wait_s, settings.stop}, say)) return outcome;
     Drain drain(watched.region());
@@ -30,7 +30,7 @@ RecorderOutcome record(const RecorderSettings& settings, const std::function<voi
     Instant flushed = begin - kFlushEvery;
     try {
         for (bool last = false; !last;) {
-            // Looked at before the rings are emptied, so that nothing of a controller that ended stays behind.
+            // Checked before the rings are emptied, so that all records of an ended controller are written.
             watched.look();
             last = true;
             if (watched.ended())
@@ -60,8 +60,9 @@ RecorderOutcome record(const RecorderSettings& settings, const std::function<voi
         writer.close();
     } catch (const RecordError& e) {
         writer.abandon();
-        throw StartupError("recording to '" + settings.file.string() + "'", e.what(),
-                           "make space and record again; tact record --repair opens the data written so far");
+        throw StartupError(
+            "recording to '" + settings.file.string() + "'", e.what(),
+            "free disk space and record again; tact record --repair recovers the data written so far");
     }
     return outcome;
 }
@@ -73,7 +74,7 @@ const char* recorder_end_text(RecorderEnd end) {
         case RecorderEnd::stopped:
             return "stopped";
         case RecorderEnd::time_over:
-            return "its time was over";
+            return "the recording length was reached";
         case RecorderEnd::disk_full:
             return "the disk is nearly full";
     }

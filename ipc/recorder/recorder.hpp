@@ -1,10 +1,11 @@
-// Records one controller: waits for it, writes what its rings hold, a few times a second, until somebody ends it.
+// Records one controller: waits for it, writes the contents of its rings a few times per second, until
+// stopped.
 //
-// Killed    at most kFlushEvery and a turn of the loop are lost (ipc/record).
-// Ends      when the controller ends, when stop() says so, after `seconds`, or when the disk is nearly full: the file is
-//           closed whole then, and the outcome says which.
-// Thread    one; sleeps between turns.
-// Fails by  StartupError.
+// Killed    loses at most kFlushEvery and one round of the loop (ipc/record)
+// Ends      when the controller ends, when stop() returns true, after `seconds`, or when the disk is nearly
+//           full: the file is then closed properly, and the outcome holds the reason
+// Thread    one; sleeps between rounds
+// Errors    StartupError
 #pragma once
 
 #include <cstdint>
@@ -20,10 +21,10 @@ namespace tact::record {
 struct RecorderSettings {
     std::filesystem::path file;
     std::string session = "default";
-    std::string program;                                        // with its version, as the file says it
-    double seconds = 0.0;                                       // 0: until something else ends it
-    double wait_s = 0.0;                                        // for a controller; 0: as long as it takes
-    std::uint64_t free_bytes_least = std::uint64_t{64} << 20U;  // of the disk, left to others
+    std::string program;                                        // with its version, as stored in the file
+    double seconds = 0.0;                                       // 0: no limit
+    double wait_s = 0.0;                                        // for a controller; 0: no limit
+    std::uint64_t free_bytes_least = std::uint64_t{64} << 20U;  // free space to leave on the disk
     std::function<bool()> stop = [] { return false; };
 };
 
@@ -38,12 +39,12 @@ struct RecorderProgress {
 struct RecorderOutcome {
     RecorderEnd end = RecorderEnd::stopped;
     RecorderProgress progress;
-    bool began = false;  // there was a controller
+    bool began = false;  // a controller was available
 };
 
 inline constexpr Duration kFlushEvery = std::chrono::milliseconds(250);
 
-// say: what it waits for, once each; progress: after each flush.
+// say: each thing it waits for, once; progress: after each flush.
 RecorderOutcome record(const RecorderSettings& settings, const std::function<void(const std::string&)>& say,
                        const std::function<void(const RecorderProgress&)>& progress);
 

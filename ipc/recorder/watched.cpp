@@ -25,13 +25,13 @@ bool Watched::look() {
     if (region_.empty() && news.arrived) {
         region_ = MappedRegion<RtRegion>::map(std::move(news.rt_fd), refusal_);
     } else if (!region_.empty() && (news.left || news.arrived)) {
-        ended_ = true;  // another one's region is not this recording's
+        ended_ = true;  // the region of another controller does not belong to this recording
     }
     return !region_.empty() && region_->start.count() > 0;
 }
 std::string Watched::waiting_for() const {
     if (!refusal_.empty()) return refusal_;
-    return region_.empty() ? link_.status_text() : "waiting for the controller's loop to begin";
+    return region_.empty() ? link_.status_text() : "waiting for the controller's loop to start";
 }
 
 RecordingHead head_of(const Watched& watched, const std::string& session, const std::string& program,

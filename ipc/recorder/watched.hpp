@@ -1,6 +1,8 @@
-// What both ways of recording stand on: the controller that is watched, and how its words get into a file.
+// Common parts of both kinds of recording: the watched controller, and the transfer of its data into a
+// file.
 //
-// Thread  one. Fails by StartupError.
+// Thread  one
+// Errors  StartupError
 #pragma once
 
 #include <functional>
@@ -12,12 +14,12 @@
 
 namespace tact::record {
 
-// A controller's region; stays mapped after it ended.
+// A controller's region; stays mapped after the controller ended.
 class Watched {
 public:
     Watched(const std::string& session, LinkRole as) : link_(session, -1, as) {}
 
-    // True: there is one, and its loop has begun.
+    // True: a controller is present, and its loop has started.
     bool look();
     [[nodiscard]] bool ended() const { return ended_; }
     [[nodiscard]] const RtRegion& region() const { return *region_; }
@@ -33,15 +35,15 @@ private:
 
 struct AwaitSettings {
     std::string session;
-    double wait_s = 0.0;  // 0: as long as it takes
+    double wait_s = 0.0;  // 0: no limit
     std::function<bool()> stop;
 };
 
-// Until there is a controller whose loop has begun, and its first steps. False: it was told to stop before.
+// Waits for a controller whose loop has started, and for its first steps. False: stopped before.
 bool await(Watched& watched, const AwaitSettings& settings,
            const std::function<void(const std::string&)>& say);
 
-// first_step: of the rows that will come first; 0: not known.
+// first_step: of the first rows to come; 0: unknown.
 [[nodiscard]] RecordingHead head_of(const Watched& watched, const std::string& session,
                                     const std::string& program, std::uint64_t first_step);
 void add(RecordingWriter& writer, const Batch& batch);

@@ -11,9 +11,10 @@
 namespace tact {
 namespace {
 
-constexpr std::size_t kFilesSeen = 8;  // files of a greedy packet that are received, counted and closed
+constexpr std::size_t kFilesSeen =
+    8;  // descriptors of an oversized packet that are received, counted and closed
 
-// The start of both messages is the same: magic, then version.
+// Both messages start alike: magic, then version.
 template <class Message>
 HelloCheck parse(std::span<const std::byte> bytes, std::uint64_t magic, Message& message) noexcept {
     if (bytes.size() != sizeof message) return HelloCheck::garbage;
@@ -71,7 +72,7 @@ Receipt receive_packet(int socket, Packet& packet) noexcept {
         }
     }
     packet.files_too_many = files > 2 || (message.msg_flags & MSG_CTRUNC) != 0;
-    // A sequenced packet of no bytes and no files is how the end looks.
+    // A sequenced packet without bytes and files means the end of the connection.
     return got == 0 && files == 0 ? Receipt::closed : Receipt::message;
 }
 
@@ -107,7 +108,7 @@ bool peer_in_group(int socket, std::uint32_t group) noexcept {
     socklen_t size = sizeof who;
     if (getsockopt(socket, SOL_SOCKET, SO_PEERCRED, &who, &size) != 0) return false;
     if (who.gid == group) return true;
-    std::array<gid_t, 256> groups{};  // a process with more is refused (ERANGE)
+    std::array<gid_t, 256> groups{};  // a process with more groups is refused (ERANGE)
     size = sizeof groups;
     if (getsockopt(socket, SOL_SOCKET, SO_PEERGROUPS, groups.data(), &size) != 0) return false;
     const gid_t* const begin = groups.data();

@@ -1,6 +1,6 @@
 // The two messages of a link: the client's hello and the controller's answer. Fixed size, plain data.
 //
-// Hostile  parse_hello() and parse_answer() take any bytes; what they accept is in range in every field.
+// Input    untrusted: parse_hello() and parse_answer() take any bytes and accept only fields in range.
 #pragma once
 
 #include <cstddef>
@@ -13,20 +13,19 @@
 
 namespace tact {
 
-// A recorder keeps what it watches in a file, a flight recorder the last half minute of it.
+// A recorder writes every cycle to a file; a flight recorder keeps the last half minute.
 enum class LinkRole : std::uint32_t { observer, gui, recorder, flight };
 enum class LinkAnswer : std::uint32_t {
-    attached,  // as asked; the region's file comes with it, and that of the bone where there is one
-    watching,  // asked as gui, but another one is attached: the same files come with it, yours may be taken
-               // later
-    full,      // too many watch already
+    attached,  // as requested; comes with the region's file, and the bone region's file if there is one
+    watching,  // requested as gui, but another one is attached: same files; its region may be used later
+    full,      // too many clients
     other_user,
     other_version,
 };
 
 inline constexpr std::uint64_t kHelloMagic = 0x314F4C4C45485441ULL;
 inline constexpr std::uint64_t kAnswerMagic = 0x3152535741485441ULL;
-inline constexpr std::uint32_t kLinkVersion = 3;  // 3: recorders say that they are
+inline constexpr std::uint32_t kLinkVersion = 3;  // 3: recorders identify themselves
 
 struct HelloMessage {
     std::uint64_t magic;
@@ -38,7 +37,7 @@ struct AnswerMessage {
     std::uint64_t magic;
     std::uint32_t version;
     std::uint32_t answer;       // LinkAnswer
-    std::uint32_t gui_pid;      // of the visual process that is attached; 0: none
+    std::uint32_t gui_pid;      // of the attached visual process; 0: none
     std::uint32_t reserved0;    // zero
     std::uint64_t reserved[5];  // zero
 };
@@ -49,16 +48,16 @@ enum class HelloCheck : std::uint8_t { good, garbage, other_version };
 [[nodiscard]] HelloCheck parse_hello(std::span<const std::byte> bytes, HelloMessage& hello) noexcept;
 [[nodiscard]] HelloCheck parse_answer(std::span<const std::byte> bytes, AnswerMessage& answer) noexcept;
 
-// One packet with at most two files. Neither ever waits.
+// One packet with at most two files. Both functions never block.
 enum class Receipt : std::uint8_t { message, nothing_yet, closed };
 struct Packet {
-    std::byte bytes[65];  // one more than a message, to notice longer ones
+    std::byte bytes[65];  // one more than a message, to detect longer ones
     std::size_t size = 0;
-    FileDescriptor file, second;  // none: not valid()
+    FileDescriptor file, second;  // not valid(): no file
     bool files_too_many = false;
 };
 [[nodiscard]] Receipt receive_packet(int socket, Packet& packet) noexcept;
-// A file of -1: none; a second one goes with a first alone.
+// file -1: none; `second` needs a valid `file`.
 [[nodiscard]] bool send_packet(int socket, std::span<const std::byte> bytes, int file,
                                int second = -1) noexcept;
 
@@ -68,7 +67,7 @@ struct Peer {
     bool trusted = false;  // this user, or root
 };
 [[nodiscard]] Peer peer_of(int socket) noexcept;
-// By its own group or a supplementary one, as the kernel had them when it connected.
+// True for its own or a supplementary group at the time of its connect().
 [[nodiscard]] bool peer_in_group(int socket, std::uint32_t group) noexcept;
 
 }  // namespace tact

@@ -1,11 +1,11 @@
-// The newest value of a state, from one writer to any number of readers, between processes.
+// Seqlock value: the newest value of a state, from one writer to any number of readers, between processes.
 //
-// Writer   publish(): never waits; a few tens of nanoseconds per KiB.
-// Reader   read(): tries a bounded number of times; false leaves the caller's old value as it was. A value is
-//          given whole or not at all.
+// Writer   publish(): never waits; a few tens of nanoseconds per KiB
+// Reader   read(): tries a bounded number of times; false leaves the caller's old value unchanged. A value
+//          is returned completely or not at all.
 // Death    a writer that dies inside publish() leaves the last complete value readable: it was writing to
-//          another slot.
-// Hostile  readers mask the index and bound their tries, so a broken writer costs them nothing but the value.
+//          another slot
+// Errors   readers mask the index and limit their tries, so a faulty writer can only corrupt the value
 #pragma once
 
 #include <atomic>
@@ -22,18 +22,18 @@ public:
     static constexpr std::uint64_t kSlots = 4;
     static constexpr int kTries = 8;
 
-    // Only the one writer. All zero bytes are a valid empty Latest.
+    // For the single writer only. All zero bytes are a valid empty Latest.
     void publish(const T& value) noexcept TACT_RT {
         const std::uint64_t n = newest_.load(std::memory_order_relaxed) + 1;
         Slot& slot = slots_[n % kSlots];
-        // Before the words, which are stored with release; pairs with the second look in read().
+        // Before the words, which are stored with release; pairs with the second check in read().
         slot.sequence.store(2 * n - 1, std::memory_order_relaxed);
         slot.words.store(value);
         slot.sequence.store(2 * n, std::memory_order_release);  // pairs with the first load in read()
         newest_.store(n, std::memory_order_release);            // pairs with count()
     }
 
-    // Any reader. False: nothing published yet, or the writer lapped every try.
+    // For any reader. False: nothing published yet, or the writer lapped every try.
     [[nodiscard]] bool read(T& value) const noexcept TACT_RT {
         for (int i = 0; i < kTries; ++i) {
             const std::uint64_t n = count();
@@ -50,7 +50,7 @@ public:
         return false;
     }
 
-    // Values published so far: tells a reader whether there is something new.
+    // Number of published values, to detect a new one.
     [[nodiscard]] std::uint64_t count() const noexcept TACT_RT {
         return newest_.load(std::memory_order_acquire);
     }

@@ -1,5 +1,5 @@
-// The visual process's and the observers' end of a link: connect, say hello, keep the socket open as the sign
-// of life, and start again when the controller is gone.
+// The link's end in the visual process and the observers: connects, sends hello, keeps the socket open as a
+// sign of life, and starts again after the controller ended.
 #include <sys/socket.h>
 #include <sys/stat.h>
 #include <sys/un.h>
@@ -60,12 +60,12 @@ struct LinkClient::State {
         std::memcpy(address.sun_path, paths.socket.c_str(), paths.socket.size() + 1);
         if (!socket.valid() ||
             connect(socket.get(), reinterpret_cast<const sockaddr*>(&address), sizeof address) != 0) {
-            if (errno == ENOENT || errno == ECONNREFUSED) return wait("none is running");
+            if (errno == ENOENT || errno == ECONNREFUSED) return wait("it is not running");
             return wait(last_error());
         }
         const Peer peer = peer_of(socket.get());
         if (!peer.trusted && !(group && owns(peer.uid, paths.folder)))
-            return wait("process " + std::to_string(peer.pid) + " there belongs to another user");
+            return wait("process " + std::to_string(peer.pid) + " at this socket belongs to another user");
         HelloMessage hello{};
         hello.magic = kHelloMagic;
         hello.version = kLinkVersion;
@@ -91,19 +91,19 @@ struct LinkClient::State {
             case HelloCheck::good:
                 break;
             case HelloCheck::garbage:
-                return wait("its answer is garbage");
+                return wait("its answer is invalid");
             case HelloCheck::other_version:
-                return wait("it speaks version " + std::to_string(answer.version) +
+                return wait("it uses version " + std::to_string(answer.version) +
                             " of the link, this program version " + std::to_string(kLinkVersion) +
                             "; start both from the same build");
         }
         const auto what = static_cast<LinkAnswer>(answer.answer);
-        if (what == LinkAnswer::full) return wait("too many programs watch it already");
+        if (what == LinkAnswer::full) return wait("it already has too many clients");
         if (what == LinkAnswer::other_user) return wait("it belongs to another user");
         if (what == LinkAnswer::other_version)
-            return wait("it does not speak version " + std::to_string(kLinkVersion) +
+            return wait("it does not support version " + std::to_string(kLinkVersion) +
                         " of the link; start both programs from the same build");
-        if (!packet.file.valid() || packet.files_too_many) return wait("its answer came without its region");
+        if (!packet.file.valid() || packet.files_too_many) return wait("its answer contained no region");
         step = Step::attached;
         news.arrived = true;
         news.rt_fd = std::move(packet.file);
@@ -118,13 +118,13 @@ struct LinkClient::State {
                      " is its visual process";
     }
 
-    // The controller says nothing after its answer: whatever comes, or the end, ends the link.
+    // The controller sends nothing after its answer: any message, or a close, ends the link.
     void watch(News& news) {
         Packet packet;
         const Receipt receipt = receive_packet(socket.get(), packet);
         if (receipt == Receipt::nothing_yet) return;
         news.left = true;
-        wait(receipt == Receipt::closed ? "it went away" : "it sent garbage");
+        wait(receipt == Receipt::closed ? "it ended" : "it sent an invalid message");
     }
 };
 

@@ -1,9 +1,9 @@
-// The controller's end of a link.
+// The link's end in the controller.
 //
-// Every socket is non-blocking and every client has said hello within kHelloPatience or is dropped, so that
-// nobody can hold the housekeeping thread. A second visual process is given the region to watch, and its own region
-// is kept: it takes over when the first one goes, which is also what happens when a killed one is restarted
-// before its end was noticed.
+// Every socket is non-blocking, and every client that has not sent hello within kHelloPatience is dropped,
+// so that no client can block the housekeeping thread. A second visual process receives the region to
+// watch, and the server keeps its region: it takes over when the first one ends. This also covers a killed
+// process that restarts before its end is detected.
 #include <fcntl.h>
 #include <poll.h>
 #include <sys/file.h>
@@ -32,28 +32,28 @@ namespace tact {
 namespace {
 
 constexpr std::size_t kClientsMax = 16;  // visual process and observers together
-constexpr std::size_t kSilentMax = 8;    // connected, but have not said hello
+constexpr std::size_t kSilentMax = 8;    // connected, without hello
 constexpr Duration kHelloPatience = std::chrono::seconds(2);
 
 struct Client {
     FileDescriptor socket;
-    FileDescriptor region;  // of a visual process that is not, or not yet, the attached one
+    FileDescriptor region;  // of a visual process that is not (yet) attached
     std::uint32_t pid = 0;
     Instant connected_at{};
     bool greeted = false;
-    bool gui = false;  // asked to be the visual process
+    bool gui = false;  // requested to be the visual process
     LinkRole role = LinkRole::observer;
-    bool attached = false;  // is it
+    bool attached = false;  // is the visual process
     bool gone = false;
 };
 
-// Held as long as the server lives; the file stays, since removing it would race with the next controller.
+// Held as long as the server exists; the file stays, since removing it would race with the next controller.
 FileDescriptor take_lock(const std::string& session, const std::string& path) {
-    const std::string attempt = "be the controller of session " + session;
+    const std::string attempt = "start the controller of session " + session;
     FileDescriptor lock(open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0600));
     if (!lock.valid())
         throw StartupError(attempt, "open " + path + ": " + last_error(),
-                           "set TACT_RUNTIME_DIR to a folder of your own");
+                           "set TACT_RUNTIME_DIR to a folder that you own");
     if (flock(lock.get(), LOCK_EX | LOCK_NB) != 0) {
         std::array<char, 24> text{};
         const ssize_t got = pread(lock.get(), text.data(), text.size(), 0);
@@ -62,20 +62,20 @@ FileDescriptor take_lock(const std::string& session, const std::string& path) {
         throw StartupError(attempt,
                            pid > 0 ? "another controller runs, process " + std::to_string(pid)
                                    : "another controller runs (" + path + " is locked)",
-                           "stop that one, or start this one with --session NAME");
+                           "stop that controller, or start this one with --session NAME");
     }
     const std::string pid = std::to_string(getpid()) + "\n";
     if (ftruncate(lock.get(), 0) != 0 ||
         pwrite(lock.get(), pid.data(), pid.size(), 0) != static_cast<ssize_t>(pid.size()))
-        throw StartupError(attempt, "write " + path + ": " + last_error(), "make room on that file system");
+        throw StartupError(attempt, "write " + path + ": " + last_error(), "free space on that file system");
     return lock;
 }
 
 FileDescriptor listen_at(const std::string& session, const std::string& path,
                          std::optional<std::uint32_t> group) {
     const std::string attempt = "open the socket of session " + session;
-    const std::string fix = "set TACT_RUNTIME_DIR to a folder of your own on a local file system";
-    if (unlink(path.c_str()) != 0 && errno != ENOENT)  // of a controller that died: the lock says so
+    const std::string fix = "set TACT_RUNTIME_DIR to a folder that you own on a local file system";
+    if (unlink(path.c_str()) != 0 && errno != ENOENT)  // of a dead controller, since the lock is free
         throw StartupError(attempt, "remove " + path + ": " + last_error(), fix);
     FileDescriptor fd(socket(AF_UNIX, SOCK_SEQPACKET | SOCK_NONBLOCK | SOCK_CLOEXEC, 0));
     sockaddr_un address{};
@@ -94,7 +94,7 @@ struct LinkServer::State {
     SessionPaths paths;
     FileDescriptor lock;
     FileDescriptor listener;
-    std::optional<std::uint32_t> group;  // whose members are served besides this user and root
+    std::optional<std::uint32_t> group;  // whose members are served in addition to this user and root
     int region_fd = -1, bone_fd = -1;
     std::vector<Client> clients;
     std::uint64_t refused = 0;
@@ -182,14 +182,14 @@ struct LinkServer::State {
         if (receipt == Receipt::closed) {
             if (!client.greeted) ++refused;
             client.gone = true;
-        } else if (client.greeted) {  // nothing more is to be said
+        } else if (client.greeted) {  // no further message is allowed
             ++refused;
             client.gone = true;
         } else {
             greet(client, packet, news);
         }
     }
-    // Departures first, so that a restarted visual process finds its place free.
+    // Departures first, so that a restarted visual process can attach at once.
     void serve(News& news) {
         const Instant now = Monotonic::now();
         for (Client& c : clients) {

@@ -1,10 +1,10 @@
 // Memory    MAP_POPULATE on both sides: the servo thread reads the other process's region, and must not be
-//           the first to touch a page of it.
+//           the first to access any of its pages
 // Sealing   the writer maps first and seals afterwards, because F_SEAL_FUTURE_WRITE leaves existing maps
-//           writable and forbids all later ones, also those made from a descriptor that was handed out.
-//           F_SEAL_SEAL ends it: what a reader has checked cannot be changed afterwards.
-// Number    a generation is 64 random bits of the kernel, so that neither a reboot nor a reused process id
-//           can make two regions look like one.
+//           writable and forbids all later ones, also from a passed descriptor. F_SEAL_SEAL makes this
+//           final: the checked state cannot change afterwards
+// Number    a generation is 64 random bits from the kernel, so that neither a reboot nor a reused process
+//           id can give two regions the same number
 #include "ipc/shm/region.hpp"
 
 #include <fcntl.h>
@@ -72,7 +72,7 @@ RegionMemory RegionMemory::create(const RegionIdentity& identity) {
     if (fcntl(m.fd_.get(), F_ADD_SEALS, kSealsWanted) != 0)
         throw StartupError(attempt, "seals: " + last_error(), "run on Linux 5.1 or newer");
     m.generation_ = new_generation();
-    auto* const header = new (base) SharedRegionHeader;  // zeroes, ready included
+    auto* const header = new (base) SharedRegionHeader;  // zeroed, ready included
     header->fields.store(make_region_header(identity, m.generation_));
     return m;
 }
@@ -84,19 +84,19 @@ RegionMemory RegionMemory::map(FileDescriptor fd, const RegionIdentity& identity
         return RegionMemory{};
     };
     const int seals = fcntl(fd.get(), F_GET_SEALS);
-    if (seals < 0) return refuse(region + "what was passed on is not sealed memory: " + last_error());
+    if (seals < 0) return refuse(region + "the received file is not sealed memory: " + last_error());
     if ((seals & kSealsWanted) != kSealsWanted)
-        return refuse(region + "the seals are " + std::to_string(seals) + ", wanted at least " +
+        return refuse(region + "its seals are " + std::to_string(seals) + ", expected at least " +
                       std::to_string(kSealsWanted));
     struct stat status {};
     if (fstat(fd.get(), &status) != 0) return refuse(region + "fstat: " + last_error());
     const auto file_bytes = static_cast<std::uint64_t>(status.st_size);
     if (file_bytes < kRegionHeaderBytes)
-        return refuse(region + "the file size is " + std::to_string(file_bytes) + ", wanted " +
+        return refuse(region + "its file size is " + std::to_string(file_bytes) + ", expected " +
                       (identity.bytes_most > identity.bytes ? "at least " : "") +
                       std::to_string(kRegionHeaderBytes + identity.bytes));
 
-    // The header alone first: a file of another layout is refused by name and hash, not by its size.
+    // Maps the header first: a file of another layout is refused by name and hash, not by its size.
     void* const head = mmap(nullptr, kRegionHeaderBytes, PROT_READ, MAP_SHARED, fd.get(), 0);
     if (head == MAP_FAILED) return refuse(region + "mmap: " + last_error());
     const auto* const shared = static_cast<const SharedRegionHeader*>(head);
@@ -107,8 +107,7 @@ RegionMemory RegionMemory::map(FileDescriptor fd, const RegionIdentity& identity
     const std::string why = refuse_region_header(header, ready, file_bytes, identity);
     if (!why.empty()) return refuse(why);
 
-    const std::uint64_t bytes =
-        kRegionHeaderBytes + header.content_bytes;  // as it was found right, and sealed
+    const std::uint64_t bytes = kRegionHeaderBytes + header.content_bytes;  // checked above, and sealed
     void* const base = mmap(nullptr, bytes, PROT_READ, MAP_SHARED | MAP_POPULATE, fd.get(), 0);
     if (base == MAP_FAILED) return refuse(region + "mmap: " + last_error());
     refusal.clear();

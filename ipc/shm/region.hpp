@@ -1,12 +1,12 @@
 // A region of shared memory: one writer, read-only maps everywhere else.
 //
-// Content    header (magic, build, layout hash, sizes, generation), then one R (ipc/topics/regions.hpp). The
-//            writer fills it first; the ready mark is stored last, with release.
-// Memory     an anonymous file (memfd) whose size is sealed (no shrink, no grow), so that no reader can be
-//            killed by truncation; F_SEAL_FUTURE_WRITE makes every later map read-only, by the kernel.
-// Refusals   a reader checks seals, size, magic, layout hash and ready mark, and refuses with both values in
-//            the message; it never guesses.
-// Thread     create and map off the servo thread; the content as Latest and Ring say.
+// Content    header (magic, build, layout hash, sizes, generation), then one R (ipc/topics/regions.hpp).
+//            The writer fills it first; the ready mark is stored last, with release.
+// Memory     an anonymous file (memfd) with sealed size (no shrink, no grow), so that no truncation can
+//            kill a reader; F_SEAL_FUTURE_WRITE makes every later map read-only, enforced by the kernel
+// Errors     a reader checks seals, size, magic, layout hash and ready mark; a refusal contains the value
+//            found and the value expected
+// Thread     create and map off the servo thread; content access per Latest and Ring
 #pragma once
 
 #include <cstdint>
@@ -20,7 +20,7 @@ struct RegionIdentity {
     const char* name;
     std::uint64_t layout_hash;
     std::uint64_t bytes;           // of R
-    std::uint64_t bytes_most = 0;  // above bytes: the writer chose a size from bytes to this, and tells it
+    std::uint64_t bytes_most = 0;  // above bytes: largest size that the writer may choose
 };
 
 class FileDescriptor {
@@ -37,7 +37,7 @@ private:
     int fd_ = -1;
 };
 
-// Untyped halves; use OwnedRegion<R> and MappedRegion<R>, or what a region of another shape has of its own.
+// Untyped base; use OwnedRegion<R>, MappedRegion<R>, or the classes of a region with variable size.
 class RegionMemory {
 public:
     static RegionMemory create(const RegionIdentity& identity);  // throws StartupError
@@ -58,7 +58,7 @@ private:
     FileDescriptor fd_;
     void* base_ = nullptr;
     std::uint64_t bytes_ = 0;
-    std::uint64_t generation_ = 0;  // random; no two regions share it, also across reboots
+    std::uint64_t generation_ = 0;  // random; unique among regions, also across reboots
 };
 
 template <class R>

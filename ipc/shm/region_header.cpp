@@ -15,7 +15,7 @@ std::string hex(std::uint64_t value) {
     return s;
 }
 
-// Text of a stranger: bounded, and only what prints.
+// Text from another process: bounded, and reduced to printable characters.
 std::string shown(std::span<const char> text) {
     std::string s(text.begin(), std::find(text.begin(), text.end(), '\0'));
     for (char& c : s) {
@@ -49,7 +49,7 @@ std::string refuse_region_header(const RegionHeader& header, std::uint64_t ready
     const std::string region = std::string("region ") + wanted.name + ": ";
     const auto differ = [&region](const std::string& what, const std::string& found,
                                   const std::string& want) {
-        return region + what + " is " + found + ", wanted " + want;
+        return region + what + " is " + found + ", expected " + want;
     };
     const std::string builds = " (written by build " + shown(header.build) + ", read by build " + TACT_BUILD +
                                "; start both programs from the same build)";
@@ -74,7 +74,7 @@ std::string refuse_region_header(const RegionHeader& header, std::uint64_t ready
     if (file_bytes != kRegionHeaderBytes + header.content_bytes)
         return differ("the file size", std::to_string(file_bytes),
                       std::to_string(kRegionHeaderBytes + header.content_bytes));
-    if (header.generation == 0) return differ("the generation", "0", "another number");
+    if (header.generation == 0) return differ("the generation", "0", "a non-zero number");
     return {};
 }
 

@@ -1,7 +1,8 @@
-// The first bytes of a region's file, and the checks that a reader makes on them.
+// The first bytes of a region's file, and the reader's checks of them.
 //
-// Hostile  a header comes from another process: it is copied once, then judged; nothing in it is used before.
-// Errors   a refusal is a sentence with the value found and the value wanted; empty means accepted.
+// Input    untrusted: the header comes from another process; it is copied once, then checked; no field is
+//          used before
+// Errors   a refusal is a sentence with the value found and the value expected; empty: accepted
 #pragma once
 
 #include <atomic>
@@ -15,7 +16,7 @@
 
 namespace tact {
 
-inline constexpr std::uint64_t kRegionHeaderBytes = 256;  // the content follows, aligned as it needs
+inline constexpr std::uint64_t kRegionHeaderBytes = 256;  // the content follows, suitably aligned
 inline constexpr std::uint32_t kRegionHeaderVersion = 1;
 inline constexpr std::uint64_t kRegionReady = 0x5944414552544341ULL;  // stored last, with release
 
@@ -40,7 +41,7 @@ static_assert(sizeof(SharedRegionHeader) == kRegionHeaderBytes);
 
 [[nodiscard]] RegionHeader make_region_header(const RegionIdentity& identity, std::uint64_t generation);
 
-// Pure; any bytes may come in. file_bytes is the sealed size of the whole file.
+// Pure function for any bytes. file_bytes is the sealed size of the whole file.
 [[nodiscard]] std::string refuse_region_header(const RegionHeader& header, std::uint64_t ready,
                                                std::uint64_t file_bytes, const RegionIdentity& wanted);
 

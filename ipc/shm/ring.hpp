@@ -1,9 +1,10 @@
 // A sequence of records from one writer to any number of readers, between processes.
 //
-// Writer   push(): never waits, overwrites the oldest.
-// Reader   owns a RingCursor; next() gives the next record, or says that there is none, or how many the
-//          reader missed because it was lapped. A record is given whole or not at all, in order, once.
-// Death    a writer that dies inside push() has not counted that record; readers never see it.
+// Writer   push(): never waits, overwrites the oldest
+// Reader   owns a RingCursor; next() returns the next record, or false without one, and counts the records
+//          that the reader missed because it was lapped. A record is returned completely or not at all, in
+//          order, once.
+// Death    a writer that dies inside push() has not counted that record; readers never get it
 #pragma once
 
 #include <atomic>
@@ -15,7 +16,7 @@
 namespace tact {
 
 struct RingCursor {
-    std::uint64_t next = 1;    // number of the record wanted; the first is 1
+    std::uint64_t next = 1;    // number of the next record; the first is 1
     std::uint64_t missed = 0;  // records lost to lapping so far
 };
 
@@ -35,9 +36,8 @@ public:
         pushed_.store(n, std::memory_order_release);            // pairs with pushed()
     }
 
-    // False: nothing new. A lapped cursor is moved to the oldest record that is still safe to read, half a
-    // ring behind the newest, and cursor.missed grows. A count that runs backwards (a broken writer) restarts
-    // it.
+    // False: nothing new. A lapped cursor moves to the oldest record that is safe to read, half a ring
+    // behind the newest, and cursor.missed grows. A count that decreases (a faulty writer) resets it.
     [[nodiscard]] bool next(RingCursor& cursor, T& value) const noexcept TACT_RT {
         for (int i = 0; i < 4; ++i) {
             const std::uint64_t n = pushed();
@@ -63,7 +63,7 @@ public:
     [[nodiscard]] std::uint64_t pushed() const noexcept TACT_RT {
         return pushed_.load(std::memory_order_acquire);
     }
-    // A cursor that starts with what comes next.
+    // A cursor at the next record to come.
     [[nodiscard]] RingCursor tail() const noexcept { return {pushed() + 1, 0}; }
 
 private:

@@ -24,7 +24,7 @@ std::string small_text(const fs::path& path) {
     return text;
 }
 
-// Numbers that are all of the text; -1: it is something else.
+// The number if it is the whole text, otherwise -1.
 int whole_number(const std::string& text) {
     int value = -1;
     const char* const end = text.data() + text.size();
@@ -34,7 +34,7 @@ int whole_number(const std::string& text) {
 
 std::string first_line(const std::string& text) { return text.substr(0, text.find('\n')); }
 
-// The core of "Cpus_allowed_list:\t3"; -1: several, or none.
+// The core of "Cpus_allowed_list:\t3"; -1: several or none.
 int only_core(const std::string& status) {
     constexpr const char* kKey = "\nCpus_allowed_list:";
     const auto at = status.find(kKey);
@@ -43,7 +43,7 @@ int only_core(const std::string& status) {
     return begin == std::string::npos ? -1 : whole_number(first_line(status.substr(begin)));
 }
 
-// Of a command line with a zero behind each argument.
+// Session in a command line with a zero after each argument.
 std::string session_of(const std::string& command_line) {
     std::string session = "default";
     bool next = false;
@@ -58,7 +58,7 @@ std::string session_of(const std::string& command_line) {
     return is_session_name(session) ? session : "?";
 }
 
-// each(name, folder) for every folder whose name is a number.
+// Calls each(number, folder) for every folder whose name is a number.
 template <class F>
 void for_numbers(const fs::path& folder, F each) {
     std::error_code gone;

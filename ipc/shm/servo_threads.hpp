@@ -1,8 +1,9 @@
-// Which controllers of this machine have their servo thread pinned to which core: two on one core disturb each other.
+// Finds the controllers of this computer whose servo threads are pinned to a core: two on one core disturb
+// each other.
 //
-// Source   /proc: the thread "servo" of each process "tact-rt" that may run on one core only. Where processes of other users
-//          are hidden (hidepid), theirs are missing.
-// Hostile  texts of other processes are bounded, and a session that is no session name is not repeated.
+// Source   /proc: the thread "servo" of each process "tact-rt" that may run on one core only. Processes of
+//          other users are missing where they are hidden (hidepid).
+// Input    untrusted: texts of other processes are bounded, and an invalid session name is not printed
 // Thread   start-up, and programs for people; never the servo
 #pragma once
 
@@ -15,18 +16,18 @@ namespace tact {
 struct PinnedServo {
     int process = 0;
     int core = -1;
-    std::string session;  // "default", or what --session says
+    std::string session;  // "default", or the value of --session
 };
 
-// By process. proc: stands for /proc.
+// Sorted by process. proc: replaces /proc in tests.
 [[nodiscard]] std::vector<PinnedServo> pinned_servos(const std::filesystem::path& proc = "/proc");
 
-// What a controller should know about others on its core; "" where there is none, or where it is not pinned itself.
+// Warning for a controller about others on its core; "" without others, or if it is not pinned.
 [[nodiscard]] std::string shared_core_text(const std::vector<PinnedServo>& servos, int own_process);
-// The same of all of them, as an observer sees it; "" where no core is shared.
+// The same for all controllers, for an observer; "" if no core is shared.
 [[nodiscard]] std::string shared_cores_text(const std::vector<PinnedServo>& servos);
 
 inline constexpr const char* kSharedCoreFix =
-    "give each session a core of its own: --core N, or servo.core in its configuration";
+    "give each session its own core: --core N, or servo.core in its configuration";
 
 }  // namespace tact

@@ -22,13 +22,13 @@ constexpr std::size_t kSessionNameMax = 48;
 
 std::string runtime_folder() {
     for (const char* const variable : {"TACT_RUNTIME_DIR", "XDG_RUNTIME_DIR"}) {
-        const char* const value = std::getenv(variable);  // start-up, before there are other threads
+        const char* const value = std::getenv(variable);  // at start-up, before other threads exist
         if (value != nullptr && *value != '\0') return value;
     }
     return "/tmp/tact-" + std::to_string(geteuid());
 }
 
-// Nobody but root decides what lies beside it, so nobody else decided who owns it.
+// True if only root can create entries in the parent folder, so that nobody else chose the owner.
 bool placed_by_root(const std::string& folder) {
     struct stat status {};
     return lstat((folder + "/..").c_str(), &status) == 0 && status.st_uid == 0 &&
@@ -49,7 +49,7 @@ SessionPaths session_paths(const std::string& session) {
     const std::string attempt = "find session \"" + session + "\"";
     if (!is_session_name(session))
         throw StartupError(
-            attempt, "that is no session name",
+            attempt, "this is not a valid session name",
             "use 1 to " + std::to_string(kSessionNameMax) + " of a-z A-Z 0-9 - _ . (no leading dot)");
     SessionPaths p;
     p.folder = runtime_folder();
@@ -68,9 +68,9 @@ std::optional<std::uint32_t> session_group() {
     std::uint32_t number = 0;
     const auto [end, error] = std::from_chars(name.data(), name.data() + name.size(), number);
     if (error == std::errc{} && end == name.data() + name.size()) return number;
-    const group* const found = getgrnam(value);  // start-up
+    const group* const found = getgrnam(value);  // at start-up
     if (found == nullptr)
-        throw StartupError("find group " + name + " of TACT_RUNTIME_GROUP", "there is no such group",
+        throw StartupError("find group " + name + " of TACT_RUNTIME_GROUP", "the group does not exist",
                            "create it with tact station setup, or unset TACT_RUNTIME_GROUP");
     return found->gr_gid;
 }
@@ -78,12 +78,12 @@ std::optional<std::uint32_t> session_group() {
 std::string session_socket_path(const std::string& session) { return session_paths(session).socket; }
 
 void make_runtime_folder(const std::string& folder, std::optional<std::uint32_t> group) {
-    const std::string fix = "set TACT_RUNTIME_DIR to a folder of your own (chmod 700)";
+    const std::string fix = "set TACT_RUNTIME_DIR to a folder that you own (chmod 700)";
     const bool made = mkdir(folder.c_str(), 0700) == 0;
-    if (!made && errno != EEXIST) throw StartupError("make folder " + folder, last_error(), fix);
+    if (!made && errno != EEXIST) throw StartupError("create folder " + folder, last_error(), fix);
     if (made && group &&
         (chown(folder.c_str(), static_cast<uid_t>(-1), *group) != 0 || chmod(folder.c_str(), 0750) != 0))
-        throw StartupError("give folder " + folder + " to group " + std::to_string(*group), last_error(),
+        throw StartupError("assign folder " + folder + " to group " + std::to_string(*group), last_error(),
                            "run as a member of that group, or unset TACT_RUNTIME_GROUP");
     const std::string why = distrust_runtime_folder(folder);
     if (!why.empty()) throw StartupError("use folder " + folder, why, fix);
@@ -97,7 +97,7 @@ std::string distrust_runtime_folder(const std::string& folder, std::optional<std
     if (status.st_uid != geteuid() && status.st_uid != 0 && !for_group)
         return "it belongs to user " + std::to_string(status.st_uid) + ", not to user " +
                std::to_string(geteuid());
-    if ((status.st_mode & (S_IWGRP | S_IWOTH)) != 0) return "others may write to it";
+    if ((status.st_mode & (S_IWGRP | S_IWOTH)) != 0) return "other users may write to it";
     return {};
 }
 

@@ -1,4 +1,4 @@
-// What every topic says of itself. The layout hash of a region is computed from these rows.
+// Properties of a topic. The layout hash of a region is computed from these rows.
 #pragma once
 
 #include <cstddef>

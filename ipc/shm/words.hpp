@@ -1,11 +1,11 @@
 // Copying plain data through shared memory without a data race.
 //
 // A record is copied as 64-bit words with atomic loads and stores, so that a torn read is never undefined
-// behaviour; the sequence numbers around the copy say whether the words belong together. Stores release and
-// loads acquire: a reader that saw one word of a newer record is thereby bound to see the odd sequence number
-// that was stored before it. On x86-64 these are plain moves, as relaxed ones would be; fences between
-// relaxed words would be as right, but the thread sanitizer does not understand fences and could prove
-// nothing.
+// behaviour; the sequence numbers around the copy show whether the words belong together. Stores release
+// and loads acquire: a reader that loaded one word of a newer record is thus guaranteed to see the odd
+// sequence number that was stored before it. On x86-64 these are plain moves, as relaxed ones would be.
+// Fences between relaxed words would be correct too, but the thread sanitizer does not support fences and
+// could not verify them.
 #pragma once
 
 #include <atomic>

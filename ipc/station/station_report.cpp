@@ -21,7 +21,7 @@ constexpr std::size_t kBytesMost = 1U << 20U;
 
 double time_us(const json& j) {
     const auto us = j.get<double>();
-    if (!std::isfinite(us) || us < 0.0 || us > 1e12) throw std::invalid_argument("a time that cannot be");
+    if (!std::isfinite(us) || us < 0.0 || us > 1e12) throw std::invalid_argument("an impossible time");
     return us;
 }
 
@@ -52,7 +52,7 @@ std::optional<StationReport> parse_station_report(const std::string& text, std::
         StationReport r;
         r.status = j.at("status");
         if (r.status != "pass" && r.status != "warn" && r.status != "fail")
-            throw std::invalid_argument("a status that is none");
+            throw std::invalid_argument("an unknown status");
         r.verified_at_s = j.at("verified_at_s");
         r.machine = j.at("machine");
         r.kernel = j.at("kernel");
@@ -81,7 +81,7 @@ std::optional<StationReport> read_station_report(const std::string& path, std::s
         return std::nullopt;
     }
     if (!S_ISREG(status.st_mode) || static_cast<std::size_t>(status.st_size) > kBytesMost) {
-        refusal = "it is no file of a sensible size";
+        refusal = "the file is not a regular file of plausible size";
         return std::nullopt;
     }
     std::ifstream in(path, std::ios::binary);
@@ -115,9 +115,9 @@ StationStatement describe_station_report(const StationReport& report, std::int64
     s.text =
         "station report: " + report.status + ", " + age_text(now_s - report.verified_at_s) + ", " + metrics;
     if (report.machine != machine) {
-        s.text += "; it is of another machine";
+        s.text += "; the report is from another machine";
     } else if (report.kernel != kernel) {
-        s.text += "; it is of another kernel: " + report.kernel;
+        s.text += "; the report is from another kernel: " + report.kernel;
     } else {
         s.good = report.status == "pass";
         s.text += "; same machine and kernel";

@@ -1,7 +1,8 @@
-// The report of tact station verify, as the controller and the metrics read it.
+// The report of tact station verify, for the controller and the metrics.
 //
-// File     /var/lib/tact/station-report.json, or what TACT_STATION_REPORT names; written by deploy/tact/station.
-// Hostile  any text: what is not such a report is refused, numbers that cannot be are refused too.
+// File     /var/lib/tact/station-report.json, or the path in TACT_STATION_REPORT; written by
+//          deploy/tact/station
+// Input    untrusted: any text that is not such a report, and impossible numbers, are refused
 // Thread   start-up, or one that may wait for the disk
 #pragma once
 
@@ -25,21 +26,21 @@ struct StationReport {
 };
 
 [[nodiscard]] std::string station_report_path();
-// Nothing: it is no report; `refusal` has the reason.
+// Nothing: not a valid report; `refusal` holds the reason.
 [[nodiscard]] std::optional<StationReport> parse_station_report(const std::string& text,
                                                                 std::string& refusal);
-// Nothing with an empty refusal: there is no such file.
+// Nothing with an empty refusal: the file does not exist.
 [[nodiscard]] std::optional<StationReport> read_station_report(const std::string& path, std::string& refusal);
 
-// A hash of /etc/machine-id, which itself is not for publication; "" where there is none.
+// A hash of /etc/machine-id, which itself must stay private; "" without one.
 [[nodiscard]] std::string machine_identity();
 [[nodiscard]] std::string kernel_identity();  // release and build
 
 struct StationStatement {
-    bool good = false;  // it passed, on this machine with this kernel
+    bool good = false;  // passed, on this machine with this kernel
     std::string text;
 };
-// Which report applies here and now, in a sentence.
+// Describes in one sentence whether the report applies here and now.
 [[nodiscard]] StationStatement describe_station_report(const StationReport& report, std::int64_t now_s,
                                                        const std::string& machine, const std::string& kernel);
 

@@ -26,11 +26,11 @@ struct BonePlaces {  // bytes from the start of the content
 
 std::string bone_head_fault(const BoneRegionHead& head) {
     if (head.bricks == 0 || head.bricks > kBoneRegionBricksMax)
-        return "the number of bricks is " + std::to_string(head.bricks) + ", wanted 1 to " +
+        return "the number of bricks is " + std::to_string(head.bricks) + ", expected 1 to " +
                std::to_string(kBoneRegionBricksMax);
     if (head.brick_bytes == 0 || head.brick_bytes > kBoneRegionBrickBytesMax || head.brick_bytes % 8 != 0)
         return "the size of a brick is " + std::to_string(head.brick_bytes) +
-               ", wanted a multiple of 8 up to " + std::to_string(kBoneRegionBrickBytesMax);
+               ", expected a multiple of 8 up to " + std::to_string(kBoneRegionBrickBytesMax);
     return {};
 }
 
@@ -71,14 +71,14 @@ MappedBoneRegion MappedBoneRegion::map(FileDescriptor fd, std::string& refusal) 
     static_cast<const SharedWords<BoneRegionHead>*>(m.memory_.content())->load(m.head_);
     std::string fault = bone_head_fault(m.head_);
     if (fault.empty() && BonePlaces(m.head_).end != m.memory_.content_bytes())
-        fault = "the content size is " + std::to_string(m.memory_.content_bytes()) + ", its head asks for " +
-                std::to_string(BonePlaces(m.head_).end);
+        fault = "the content size is " + std::to_string(m.memory_.content_bytes()) +
+                ", its header requires " + std::to_string(BonePlaces(m.head_).end);
     if (fault.empty()) return m;
     refusal = std::string("region ") + kBoneRegionName + ": " + fault;
     return {};
 }
 
-// std::atomic_ref asks for memory that could be written; a load writes nothing.
+// std::atomic_ref requires non-const memory; a load writes nothing.
 std::uint32_t MappedBoneRegion::revision(std::uint64_t brick) const noexcept {
     auto* const all = reinterpret_cast<std::uint32_t*>(content_of(memory_) + BonePlaces::kRevisions);
     return std::atomic_ref(all[brick]).load(std::memory_order_acquire);  // pairs with the writer's release

@@ -1,13 +1,14 @@
-// The region "tact.bone": the bone that a run drills, as it is at this moment. Its size depends on the scene.
+// The region "tact.bone": the present state of the bone that a run drills. Its size depends on the scene.
 //
-// Writer    tact-rt, on the servo thread: densities of a brick first, then its revision, one higher (release).
-// Content   BoneRegionHead, one revision a brick, the densities brick by brick; each part at a multiple of 64 bytes.
-//           How voxels lie in bricks: ipc/scene/bone/bone_bricks.
-// Reader    looks at the revisions, then copies. A brick that is written meanwhile is copied half old, half new, and its
-//           revision has moved again at the next look: nothing is missed.
-// Hostile   the head is copied once, when mapped, and judged; counts must fit the sealed size. Densities and revisions
-//           may be any numbers.
-// Thread    create and map off the servo thread; revision() and copy_brick() any.
+// Writer    tact-rt, on the servo thread: densities of a brick first, then its revision, one higher
+//           (release)
+// Content   BoneRegionHead, one revision per brick, the densities brick by brick; each part at a multiple
+//           of 64 bytes. Order of voxels in bricks: ipc/scene/bone/bone_bricks
+// Reader    checks the revisions, then copies. If a brick is written during its copy, the copy is
+//           inconsistent, but its revision differs again at the next check: no change is missed
+// Input     untrusted: the head is copied once, when mapped, and checked; counts must fit the sealed size.
+//           Densities and revisions may have any value
+// Thread    create and map off the servo thread; revision() and copy_brick() any
 #pragma once
 
 #include <cstddef>
@@ -27,7 +28,7 @@ struct BoneRegionHead {
     std::uint64_t bricks;
     std::uint32_t brick_bytes;  // a multiple of 8
     std::uint32_t size[3];      // voxels
-    double voxel_m;             // edge of one, model
+    double voxel_m;             // edge length, model
     double origin_m[3];         // centre of voxel (0, 0, 0), model
     std::uint64_t reserved[8];  // zero
 };
@@ -60,7 +61,7 @@ public:
     [[nodiscard]] bool empty() const { return memory_.empty(); }
     [[nodiscard]] const BoneRegionHead& head() const { return head_; }
     [[nodiscard]] std::uint64_t generation() const { return memory_.generation(); }
-    // brick below head().bricks.
+    // brick must be below head().bricks.
     [[nodiscard]] std::uint32_t revision(std::uint64_t brick) const noexcept;
     void copy_brick(std::uint64_t brick, std::span<std::uint8_t> to) const noexcept;  // head().brick_bytes
 

@@ -1,4 +1,4 @@
-// What a person asks of the controller. Acknowledged in HealthTopic by sequence number.
+// A user's command to the controller. Acknowledged in HealthTopic by sequence number.
 #pragma once
 
 #include <cstddef>
@@ -18,22 +18,22 @@ enum class CommandKind : std::uint16_t {
     set_goal_hz,  // value
     set_level,    // text: path, value: level, used by the law "fixed"
     set_fidelity_auto,
-    // Of the bodies; body is an id of BodiesTopic.
-    select_body,      // takes it into the hand; kNoBody: lets go
+    // For bodies; body is an id of BodiesTopic.
+    select_body,      // takes the body into the hand; kNoBody: releases it
     fix_body,         // value: 1 fixed, 0 free
-    place_body,       // to place; one in the hand is gripped anew there, at zero force
-    add_body,         // body: index of a structure; to place
+    place_body,       // sets the pose; a body in the hand is gripped again there, at zero force
+    add_body,         // body: index of a structure; with its pose
     remove_body,      // never the last one
     set_clash,        // value: 1 on, 0 off
     set_subtraction,  // value: 1 on, 0 off
     set_laplacian,    // value: 1 on, 0 off
-    // Of a surface kept fine around the tool. body: DetailShape, value: width, pos_model_m[0]: error far away, both in
-    // radii of full detail (TouchTopic)
+    // For a surface refined around the tool. body: DetailShape, value: width, pos_model_m[0]: error far
+    // away, both in radii of full detail (TouchTopic)
     set_detail_filter,
-    mark,  // nothing but the event that it is done: a flight recorder keeps what led here
+    mark,  // only its event: triggers a flight recording
 };
 inline constexpr CommandKind kLastCommand = CommandKind::mark;
-// The force model carries it out, and may refuse it; all others concern the loop.
+// True for commands that the force model executes or refuses; all others concern the loop.
 [[nodiscard]] constexpr bool is_for_model(CommandKind kind) {
     return kind >= CommandKind::select_body && kind <= CommandKind::set_detail_filter;
 }

@@ -1,5 +1,5 @@
-// How the devices are, hand by hand, ten times a second: how young their samples are and how warm their motors.
-// State and notice of a device, and what its bus counted, are in the health topic.
+// State of the devices, per hand, ten times per second: age of their samples and heat of their motors. The
+// health topic holds a device's state and notice, and its bus counters.
 #pragma once
 
 #include <cstddef>
@@ -13,16 +13,17 @@ namespace tact {
 inline constexpr std::size_t kDeviceHands = 2;
 
 struct DeviceHand {
-    std::uint64_t samples;     // that it gave, so far
-    std::int64_t age_ns;       // of the newest, in the cycle that publishes; -1: none yet
-    std::int64_t age_ns_most;  // in any cycle since the record before
-    // What the safety chain holds the force to: the square of the force over the one that the device stands for
-    // ever, slow. From 1 on that one is all that is left; 0 where force_n_continuous is 0: no heat is counted.
+    std::uint64_t samples;     // received so far
+    std::int64_t age_ns;       // of the newest, in the publishing cycle; -1: none yet
+    std::int64_t age_ns_most;  // in any cycle since the previous record
+    // Thermal load in the safety chain: low-pass filtered square of the force relative to the continuous
+    // force. From 1 on, the force is limited to the continuous one; 0 where force_n_continuous is 0: no
+    // thermal model.
     float heat;
     float force_n_max, force_n_continuous;
-    // Of the hottest motor's winding, degrees C, as the driver counts it; winding_c_max 0: it does not.
+    // Temperature of the hottest winding in degrees C from the driver's thermal model; winding_c_max 0: no model.
     float winding_c, winding_c_max;
-    std::uint8_t motor;  // which one that is
+    std::uint8_t motor;  // index of the hottest motor
     std::uint8_t there;  // 0 or 1
     std::uint8_t state;  // DeviceState
     std::uint8_t read;   // IoStatus of its last read: ok, stale, lost, fault

@@ -1,8 +1,10 @@
-// The tools in bone, what drives them and what they took, every servo cycle of a scene that is drilled.
+// The tools in bone: motion, drive and removed bone, every servo cycle of a drilling scene.
 //
-// Without such a scene the topic stays unwritten. Velocities and forces as sent to the devices are in ToolTopic.
-// Frames    model for places; the tool's: its head's centre is the origin, the shaft leaves along +z, about which it turns
-// Units     SI; sizes of tools in metres of the hand's space (world). Bone in levels, 255 a voxel of solid bone
+// In other scenes the topic stays unwritten. Velocities and forces sent to the devices are in ToolTopic.
+// Frames    model for poses; tool: origin at the centre of the head, the shaft extends along +z and rotates
+//           about it
+// Units     SI; tool sizes in metres of the hand's space (world). Bone in levels, 255 per voxel of solid
+//           bone
 #pragma once
 
 #include <cstddef>
@@ -16,9 +18,9 @@ namespace tact {
 inline constexpr std::size_t kDrillHands = 2;  // as kHandsMax
 
 enum class DrillKind : std::uint8_t {
-    none,          // this hand holds no tool, or there is no such hand: the rest of it is zero
-    burr,          // turns, cuts and sprays
-    suction_tube,  // a tube that is felt: its tip is a ball of its radius, as its shaft
+    none,          // this hand holds no tool or does not exist: the other fields are zero
+    burr,          // rotates, cuts and irrigates
+    suction_tube,  // a tube with contact force: a sphere of its radius as tip, and its shaft
 };
 enum class DrillShape : std::uint8_t { sphere, cylinder, cone };  // of a burr's head
 
@@ -26,17 +28,17 @@ struct DrillHand {
     double pos_model_m[3];  // of the head's centre
     double quat_model_tool_xyzw[4];
     std::uint64_t removed_levels;  // by this tool, since the controller started
-    float radius_m;                // of the head; of a cone, where it is widest
-    float length_m;                // of a cylinder or cone, round ends included; else the diameter
-    float tip_radius_m;            // of a cone; else the radius
+    float radius_m;                // of the head; for a cone, its largest radius
+    float length_m;                // of a cylinder or cone, including round ends; otherwise the diameter
+    float tip_radius_m;            // of a cone; otherwise the radius
     float shaft_radius_m;          // 0: none
-    float shaft_length_m;          // from the head's centre, as far as it is felt
-    float burr_rad_s;              // now; 0: it stands
-    float suction;                 // 0 to 1 of what the pump can
+    float shaft_length_m;          // from the head's centre, as far as it has contact force
+    float burr_rad_s;              // present speed; 0: stopped
+    float suction;                 // 0 to 1, fraction of the pump's maximum
     float irrigation;              // the same
     float depth;                   // h / R of the head, 0 to 2
-    float elastic_n;               // with which the bone pushes, sum of sizes, before limits
-    float force_n;                 // of the model: friction and impact too, limited
+    float elastic_n;               // elastic force of the bone, sum of magnitudes, before limits
+    float force_n;                 // of the model, with friction and impact, limited
     std::uint32_t cut_levels;      // in this cycle
     DrillKind kind;
     DrillShape shape;
@@ -49,10 +51,10 @@ struct alignas(64) DrillTopic {
     std::int64_t taken_at_ns;
     std::uint64_t cycle;
     std::uint64_t removed_levels;  // by all tools, since the controller started
-    double level_m3;               // of solid bone that one level stands for, in the hand's space
-    float burr_rad_s_most;         // with its pedal down
-    float irrigation_m3_s_most;    // of water, at 1
-    float suction_m3_s_most;       // of what it takes in, at 1
+    double level_m3;               // volume of solid bone per level, in the hand's space
+    float burr_rad_s_most;         // with the pedal down
+    float irrigation_m3_s_most;    // water flow at 1
+    float suction_m3_s_most;       // intake flow at 1
     std::uint8_t reserved[20];     // zero
     DrillHand hand[kDrillHands];
 };

@@ -1,4 +1,4 @@
-// What happened: a code, a cycle and two numbers. Texts for people are in ipc/topics/text.hpp.
+// An event: a code, a cycle and two numbers. Texts for people are in ipc/topics/text.hpp.
 #pragma once
 
 #include <cstddef>
@@ -15,9 +15,9 @@ enum class EventCode : std::uint16_t {
     state_changed,   // a: old RunState, b: new RunState
     fault_latched,   // a: RunReason, b: measured value
     overrun,         // a: overrun in microseconds, b: overruns so far
-    force_limited,   // a: wanted N, b: limit N
-    torque_limited,  // a: wanted N m, b: limit N m
-    slew_limited,    // a: wanted N per cycle, b: limit
+    force_limited,   // a: requested N, b: limit N
+    torque_limited,  // a: requested N m, b: limit N m
+    slew_limited,    // a: requested N per cycle, b: limit
     gui_attached,    // a: generation
     gui_detached,
     gui_silent,     // a: heartbeat age in ms
@@ -27,12 +27,12 @@ enum class EventCode : std::uint16_t {
     model_swapped,
     hand_present,
     hand_left,
-    stopping,             // a: signal number; -1: the run's time was over
-    device_watchdog,      // a: ms since the cycle before; the device dropped its amplifier
-    torque_slew_limited,  // a: wanted N m per cycle, b: limit
+    stopping,             // a: signal number; -1: the run time is over
+    device_watchdog,      // a: ms since the previous cycle; the device switched its amplifier off
+    torque_slew_limited,  // a: requested N m per cycle, b: limit
     body_selected,        // a: id, b: points of its finest level
     bodies_changed,       // a: bodies now, b: options (DockingOption)
-    lines_changed,        // a: LinesShown, b: RunReason of what stops or stopped
+    lines_changed,        // a: LinesShown, b: RunReason of the present or last stop
     device_notice,        // a: DeviceNotice, b: hand
 };
 
@@ -41,17 +41,17 @@ struct EventTopic {
     std::int64_t taken_at_ns;
     std::uint64_t cycle;
     std::uint16_t code;         // EventCode
-    std::uint16_t detail;       // of a code that has one; else zero
+    std::uint16_t detail;       // for codes with a detail; otherwise zero
     std::uint16_t reserved[2];  // zero
     double a;
     double b;
 };
 static_assert(std::is_trivially_copyable_v<EventTopic> && sizeof(EventTopic) == 40);
 
-// Of TraceTopic::status, where bone is drilled by the first hand.
+// Bits of TraceTopic::status, if the first hand drills bone.
 enum TraceFlag : std::uint32_t {
     kTraceBurrTurns = 1U << 16,
-    kTraceCuts = 1U << 17,  // bone went in this cycle
+    kTraceCuts = 1U << 17,  // bone was removed in this cycle
 };
 
 // One servo cycle, for traces, the flight recorder and plots.
@@ -67,8 +67,8 @@ struct TraceTopic {
     float force_world_n[3];
     float torque_world_n_m[3];
     std::uint32_t status;  // RunState in bits 0-7, StepStatus in bits 8-15, TraceFlag
-    float model_error_n;   // bound of the reduced force's distance from the exact one, in this step
-    std::uint32_t items;   // points summed in this step; fewer than the level has where older sums were used
+    float model_error_n;   // bound of the error of the reduced force, in this step
+    std::uint32_t items;   // points summed in this step; fewer than at the level if older sums were used
 };
 static_assert(std::is_trivially_copyable_v<TraceTopic> && sizeof(TraceTopic) == 80);
 

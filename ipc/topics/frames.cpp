@@ -13,7 +13,7 @@ constexpr const char* kPassText[kPasses] = {"ground",  "adapt",  "structures", "
                                             "edges",   "stereo", "dashboard",  "swap"};
 constexpr const char* kVisualPathText[kVisualPaths] = {kMeshPath, kVolumePath, kParticlesPath};
 
-bool time(float s) noexcept { return s >= 0.0F && s < 1e6F; }  // NaN is in no range
+bool time(float s) noexcept { return s >= 0.0F && s < 1e6F; }  // false for NaN
 bool rising(float a, float b) noexcept { return time(a) && time(b) && a <= b; }
 bool known(const PassMetrics& p) noexcept {
     const bool drawn = p.drawn_p50_s < 0.0F ? p.drawn_p99_s < 0.0F && std::isfinite(p.drawn_p99_s) &&

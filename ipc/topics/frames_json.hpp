@@ -1,4 +1,4 @@
-// The figures of frames for reports, in milliseconds; null: not known.
+// Frame metrics for reports, in milliseconds; null: unknown.
 #pragma once
 
 #include <nlohmann/json.hpp>

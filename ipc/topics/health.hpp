@@ -1,4 +1,4 @@
-// How the controller is doing, ten times a second and at every change of state.
+// State of the controller, ten times per second and at every change of state.
 #pragma once
 
 #include <cstddef>
@@ -20,11 +20,11 @@ enum ScheduleFlag : std::uint32_t {
     kScheduleDmaLatency = 1U << 4,  // /dev/cpu_dma_latency held at 0
 };
 
-// Safety lines: LinesState of hal/api/lines.hpp, and none.
+// Safety lines: LinesState of hal/api/lines.hpp, or none.
 enum class LinesShown : std::uint8_t { none, stopped, waiting, permitted };
 
 struct alignas(64) HealthTopic {
-    static constexpr TopicInfo kInfo{.name = "health", .version = 6, .writer = Writer::rt};
+    static constexpr TopicInfo kInfo{.name = "health", .version = 7, .writer = Writer::rt};
     std::int64_t taken_at_ns;
     std::uint64_t cycle;
     std::int64_t period_ns;     // 0: free running
@@ -41,9 +41,9 @@ struct alignas(64) HealthTopic {
     std::uint64_t allocations;  // on the servo thread inside a cycle, since start
     std::uint64_t locks;
     std::uint64_t page_faults;          // minor and major, servo thread, since the loop started
-    std::uint64_t bad_input;            // records from the other process refused
+    std::uint64_t bad_input;            // refused records from the other process
     std::uint64_t events;               // published so far
-    std::uint64_t command_sequence;     // last one handled
+    std::uint64_t command_sequence;     // last command handled
     std::uint32_t command_result;       // CommandResult of it
     std::uint32_t schedule_flags;       // ScheduleFlag
     std::int64_t gui_heartbeat_age_ns;  // -1: never seen
@@ -53,23 +53,34 @@ struct alignas(64) HealthTopic {
     std::uint8_t reason;        // RunReason
     std::uint8_t gui_attached;  // 0 or 1
     std::uint8_t device_state;  // DeviceState
-    // Of the model's work, what the updates did anew: mean and least of the last tenth of a second. Below 1 a
-    // freely running loop kept its rate by using older partial sums.
+    // Fraction of the model's work that the updates recomputed: mean and minimum of the last 0.1 s. Below
+    // 1, a free-running loop kept its rate by using older partial sums.
     float recomputed_fraction_mean, recomputed_fraction_least;
-    float rested;  // of that time; it left this to others while it was ahead of its goal
-    // From the encoders to the motors, of the last second, the slower hand; 0: no device says.
-    float stiffness_n_m_max;  // that walls and model may have at this delay
+    float rested;  // fraction of that time left to other threads while ahead of the goal
+    // Delay from the encoders to the motors in the last second, for the slower hand; 0: no device reports it.
+    float stiffness_n_m_max;  // permitted for walls and model at this delay
     std::int64_t delay_p50_ns;
     std::int64_t delay_p99_ns;
     std::uint8_t lines;             // LinesShown
-    std::uint8_t lines_reason;      // RunReason: what they stop for, or stopped last
+    std::uint8_t lines_reason;      // RunReason of the present or last stop
     std::uint8_t device_notice[2];  // DeviceNotice of each hand
     BusCounts device_bus[2];        // of each hand
-    std::uint8_t reserved[4];       // zero
+    std::uint16_t state_result;     // CommandResult of state_sequence
+    std::uint8_t reserved[2];       // zero
     std::int64_t overrun_at_ns;     // the last one; 0: none
-    std::uint8_t more_reserved[8];  // zero
+    // Of the cycles with force since the loop started (rt/servo/armed_metrics.hpp).
+    std::uint64_t armed_cycles;
+    std::uint64_t deadline_misses;       // steps of the force model that ended after their deadline
+    std::int64_t deadline_missed_at_ns;  // the last one; 0: none
+    float deadline_miss_share;           // of the armed cycles of the last second
+    float force_error_n_p50;             // median of the published error bound
+    float force_step_n_max;              // largest change of the force from one cycle to the next
+    float level_settled_s;      // after arming the level stays within 5 % from then on; negative: not armed
+    std::int64_t model_ns_max;  // deadline of the model's step; 0: none
+    std::uint64_t state_sequence;    // last arm or disarm handled: they overtake other commands
+    std::uint8_t more_reserved[16];  // zero
 };
-static_assert(std::is_trivially_copyable_v<HealthTopic> && sizeof(HealthTopic) == 320);
+static_assert(std::is_trivially_copyable_v<HealthTopic> && sizeof(HealthTopic) == 384);
 static_assert(offsetof(HealthTopic, overrun_at_ns) == 304 && offsetof(HealthTopic, device_bus) == 220 &&
               sizeof(BusCounts) == 40);
 

@@ -1,4 +1,4 @@
-// The governor's word: one level per path. The visual process applies it within a frame.
+// Levels set by the governor, one per path. The visual process applies them within a frame.
 #pragma once
 
 #include <cstddef>
@@ -18,36 +18,37 @@ struct PathLevel {
     char path[kPathNameMax];  // "docking.force", "gui.mesh"; ends with 0
     float level;              // [floor, 1]
     float floor;
-    std::uint32_t items;       // what the level means: vertices, points
-    std::uint32_t items_max;   // at level 1
-    double cost_s;             // measured, last window
-    double error;              // unit of the path
-    std::uint8_t reason;       // LevelReason of the last change
-    std::uint8_t haptic;       // 0 or 1
-    std::uint8_t reserved[6];  // zero
+    std::uint32_t items;         // vertices or points at this level
+    std::uint32_t items_max;     // at level 1
+    double cost_s;               // measured, last window
+    double error;                // unit of the path
+    std::uint8_t reason;         // LevelReason of the last change
+    std::uint8_t haptic;         // 0 or 1
+    std::uint8_t reserved[6];    // zero
+    std::int64_t changed_at_ns;  // the level's last change; 0: never
 };
-static_assert(sizeof(PathLevel) == 64);
+static_assert(sizeof(PathLevel) == 72);
 
 struct alignas(64) LevelsTopic {
-    static constexpr TopicInfo kInfo{.name = "levels", .version = 2, .writer = Writer::rt};
+    static constexpr TopicInfo kInfo{.name = "levels", .version = 3, .writer = Writer::rt};
     std::int64_t taken_at_ns;
     std::uint64_t sequence;  // rises with every change
     double goal_hz;
-    double rate_hz;         // what the law last saw
+    double rate_hz;         // last rate that the law used
     char law[kLawNameMax];  // "elastic", "sensitus", "fixed"; ends with 0
     std::uint32_t count;
-    float display_goal_hz;      // frames a second; 0: none
+    float display_goal_hz;      // frames per second; 0: none
     std::uint32_t reserved[2];  // zero
     PathLevel path[kPathsMax];
 };
-static_assert(std::is_trivially_copyable_v<LevelsTopic> && sizeof(LevelsTopic) == 576);
+static_assert(std::is_trivially_copyable_v<LevelsTopic> && sizeof(LevelsTopic) == 640);
 
-// Places in LevelsTopic::path that are always theirs.
+// Fixed indices in LevelsTopic::path.
 inline constexpr std::size_t kDisplayPathIndex = 0, kForcePathIndex = 1;
-// And where the scene is of bone.
+// In bone scenes.
 inline constexpr std::size_t kParticlesPathIndex = 2;
 
-// The picture's path: of a surface its vertices, of bone the rays through it.
+// The path of the rendering: vertices of a surface, or rays through bone.
 inline constexpr char kMeshPath[] = "gui.mesh", kVolumePath[] = "gui.volume";
 inline constexpr char kParticlesPath[] = "gui.particles";
 inline constexpr char kDockingPath[] = "docking.force";

@@ -1,4 +1,4 @@
-// What the visual process reports, every frame: its load, and by that its heartbeat.
+// Report of the visual process, every frame: its load, which is also its heartbeat.
 #pragma once
 
 #include <cstddef>
@@ -21,12 +21,12 @@ struct alignas(64) LoadTopic {
     double part_s[static_cast<std::size_t>(FramePart::count)];
     double cpu_s;                  // processor time of the process, since start
     double fps;                    // over the last second
-    std::uint32_t vertices_drawn;  // of bone: rays through it, as with vertices_max
+    std::uint32_t vertices_drawn;  // for bone: rays through it, as in vertices_max
     std::uint32_t triangles_drawn;
     std::uint32_t vertices_max;    // of the full mesh
-    std::uint32_t particles;       // that there are
-    std::uint32_t particle_moves;  // made for this frame
-    std::uint32_t particles_max;   // that there may be at level 1
+    std::uint32_t particles;       // existing
+    std::uint32_t particle_moves;  // computed for this frame
+    std::uint32_t particles_max;   // limit at level 1
 };
 static_assert(std::is_trivially_copyable_v<LoadTopic> && sizeof(LoadTopic) == 128);
 

@@ -1,9 +1,9 @@
-// What a servo cycle was given and what came of it, in rings: enough to do every cycle again, to the bit.
+// Inputs and results of a servo cycle, in rings: enough to repeat every cycle bit for bit.
 //
-// Writer   the servo thread. In each cycle first what came by mailbox, then each hand, then the cycle itself: who sees a
-//          step in `cycles` finds the rest of it in the other rings, unless they lapped.
-// Step     counts all cycles, the dry ones before the start too, from 1; it joins the rings.
-// Reader   tact-record, which writes a file (ipc/record), and whoever replays one.
+// Writer   the servo thread. In each cycle it writes mailbox entries first, then each hand, then the cycle:
+//          a reader of a step in `cycles` finds its other records in the other rings, unless these lapped
+// Step     counts all cycles from 1, including the dry ones before the start; key of all rings
+// Reader   tact-record, which writes a file (ipc/record), and tact-replay
 #pragma once
 
 #include <cstddef>
@@ -20,24 +20,24 @@ struct ServoOrder {
     double value;
     std::uint32_t kind;      // CommandKind
     std::uint32_t index;     // path or law
-    std::uint32_t body = 0;  // an id, or a structure; only the model knows which there are
+    std::uint32_t body = 0;  // an id or a structure; only the model can check its existence
     std::uint32_t reserved = 0;
     double pos_model_m[3] = {0.0, 0.0, 0.0};
     double quat_model_body_xyzw[4] = {0.0, 0.0, 0.0, 1.0};  // of unit length
 };
 
-// What the servo is told of the visual process and of itself.
+// Report about the visual process and the controller to the servo.
 struct HousekeepingReport {
-    std::int64_t gui_heartbeat_ns;  // when the GUI last reported; -1: never
+    std::int64_t gui_heartbeat_ns;  // time of the GUI's last report; -1: never
     std::uint64_t gui_generation;
     std::uint64_t bad_input;
-    std::uint64_t page_faults;  // of the servo thread, from /proc, since it asked
+    std::uint64_t page_faults;  // of the servo thread, from /proc, since its request
     double gui_fps;
     double gui_busy_s;
-    std::uint64_t gui_frame;            // of the newest word
+    std::uint64_t gui_frame;            // of the newest report
     std::uint64_t gui_levels_sequence;  // of the levels that this frame applied
     std::int64_t gui_taken_at_ns;
-    double gui_work_s;  // of the frame, without its pause
+    double gui_work_s;  // of the frame, without its wait
     double gui_cpu_s;   // processor time since its start
     std::uint32_t gui_vertices;
     std::uint32_t gui_vertices_max;
@@ -47,28 +47,28 @@ struct HousekeepingReport {
 };
 
 enum CycleFlag : std::uint8_t {
-    kCycleDry = 1U << 0,    // before the start, with the gate closed
-    kCycleLines = 1U << 1,  // safety lines were looked at
+    kCycleDry = 1U << 0,    // before the start, with zero force
+    kCycleLines = 1U << 1,  // safety lines were read
 };
 
 struct CycleTopic {
     static constexpr TopicInfo kInfo{.name = "cycle", .version = 1, .writer = Writer::rt};
     static constexpr std::size_t kTimestampsMax = 5;
     std::uint64_t step;
-    std::uint64_t cycle;                    // of the loop, from 1; of a dry one as counted then
-    std::int64_t clock_ns[kTimestampsMax];  // what the clock said, each time that the servo looked
-    std::int64_t now_ns;                    // the one that the cycle goes by
-    std::int64_t lateness_ns;               // of its beginning
+    std::uint64_t cycle;                    // of the loop, from 1; dry cycles have their own count
+    std::int64_t clock_ns[kTimestampsMax];  // every reading of the clock by the servo
+    std::int64_t now_ns;                    // the reading used by the cycle
+    std::int64_t lateness_ns;               // of its start
     std::int64_t cost_ns;                   // whole cycle
     std::int64_t model_ns;                  // the force models' steps
     float level;                            // of the haptic path
-    float work_fraction;                    // of the level's work that may be done anew
+    float work_fraction;                    // of the level's work to recompute
     std::int64_t lines_taken_at_ns;         // safety lines as read, with kCycleLines
     std::uint64_t lines_sequence, lines_trips;
     std::uint8_t lines_state, lines_cause, lines_inputs, lines_outputs;
     std::uint8_t run_state, run_reason;  // RunState, RunReason, at the end of the cycle
     std::uint8_t flags;                  // CycleFlag
-    std::uint8_t timestamps;             // how many of clock_ns there are
+    std::uint8_t timestamps;             // number of values in clock_ns
 };
 static_assert(std::is_trivially_copyable_v<CycleTopic> && sizeof(CycleTopic) == 128);
 
@@ -76,7 +76,7 @@ static_assert(std::is_trivially_copyable_v<CycleTopic> && sizeof(CycleTopic) == 
 struct HandTopic {
     static constexpr TopicInfo kInfo{.name = "hand", .version = 1, .writer = Writer::rt};
     std::uint64_t step;
-    // As the device gave it (DeviceSample).
+    // From the device (DeviceSample).
     std::int64_t taken_at_ns;
     std::uint64_t sequence;
     double pos_dev_m[3];
@@ -84,20 +84,19 @@ struct HandTopic {
     double velocity_dev_m_s[3];
     double angular_dev_rad_s[3];
     std::int64_t delay_ns;
-    // What came of it.
+    // Results.
     double force_world_n[3];  // as sent to the device, after the safety chain
     double torque_world_n_m[3];
-    double force_model_world_n[3];  // as the force model wants it, before the safety chain
+    double force_model_world_n[3];  // from the force model, before the safety chain
     double torque_model_world_n_m[3];
     float model_error_n;
-    std::uint32_t items;  // felt
+    std::uint32_t items;  // evaluated
     std::uint32_t buttons;
-    std::uint32_t
-        deadline_check;  // the model's look at its deadline that found it passed, from 1; 0: none did
+    std::uint32_t deadline_check;  // number of the deadline check that found it passed, from 1; 0: none
     std::uint8_t read_status, write_status;  // IoStatus
     std::uint8_t hand_present, device_state, notice;
     std::uint8_t step_status;  // StepStatus
-    std::uint8_t at_wall;      // 1: a wall of the workspace pushes back
+    std::uint8_t at_wall;      // 1: a wall of the workspace exerts force
     std::uint8_t reserved;     // zero
 };
 static_assert(std::is_trivially_copyable_v<HandTopic> && sizeof(HandTopic) == 256);
@@ -106,13 +105,13 @@ static_assert(offsetof(HandTopic, force_world_n) == 136);
 enum class MailboxKind : std::uint32_t {
     none,
     order,
-    model_taken,    // a model that was built aside
-    build_refused,  // none could be built
-    stop,           // order.value: signal number; -1: the run's time was over
+    model_taken,    // a model that was built in the background
+    build_refused,  // the model could not be built
+    stop,           // order.value: signal number; -1: the run time is over
     drops,          // order.sequence: drops by the supervisor so far
 };
 
-// What the servo took from others, in the step in which it did.
+// An order to the servo, with the step that took it.
 struct MailboxTopic {
     static constexpr TopicInfo kInfo{.name = "mailbox", .version = 1, .writer = Writer::rt};
     std::uint64_t step;
@@ -134,18 +133,18 @@ enum StartFlag : std::uint32_t {
     kStartLines = 1U << 1,     // safety lines are fitted
 };
 
-// A device, as it introduced itself.
+// A device, with the data from its open().
 struct StartDevice {
     char name[64];  // ends with 0
     double workspace_half_m[3];
     double force_n_max, force_n_continuous, torque_n_m_max, stiffness_n_m_max, position_step_m;
 };
 
-// How the loop began. Once, when its first cycle is about to come.
+// Start of the loop. Written once, before the first cycle.
 struct alignas(64) StartTopic {
     static constexpr TopicInfo kInfo{.name = "start", .version = 1, .writer = Writer::rt};
     std::int64_t started_at_ns;
-    std::uint64_t dry_steps;  // cycles before
+    std::uint64_t dry_steps;  // cycles before the start
     std::int64_t period_ns;   // 0: free running
     std::uint32_t hands;
     std::uint32_t flags;  // StartFlag
@@ -156,11 +155,11 @@ struct alignas(64) StartTopic {
 };
 static_assert(std::is_trivially_copyable_v<StartTopic> && sizeof(StartTopic) == 384);
 
-// How the controller was started, for whoever wants to start it again so. Written before the region is ready.
+// Start of the controller, for a repetition. Written before the region is ready.
 struct RunText {
     static constexpr TopicInfo kInfo{.name = "runtext", .version = 2, .writer = Writer::rt};
     static constexpr std::size_t kArgumentsMax = 4096, kConfigMax = 32768, kPosesMax = 65536;
-    static constexpr std::uint32_t kTooLong = 0xFFFFFFFFU;  // as a count: there was more than fits
+    static constexpr std::uint32_t kTooLong = 0xFFFFFFFFU;  // as a count: the text was too long
     std::uint32_t arguments_bytes;                          // each argument ends with 0
     std::uint32_t config_bytes, poses_bytes;                // 0: no such file
     std::uint32_t reserved;                                 // zero

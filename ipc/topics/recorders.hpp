@@ -1,4 +1,4 @@
-// Who records this run, as the housekeeping thread sees it on the link: at every change.
+// Recorders of this run on the link, from the housekeeping thread: at every change.
 #pragma once
 
 #include <cstdint>

@@ -1,4 +1,4 @@
-// The regions that every run has: which topics lie in them, and in which order. Bone: ipc/topics/bone_region.hpp.
+// The regions of every run, with their topics in order. For bone see ipc/topics/bone_region.hpp.
 //
 // tact.rt   written by tact-rt, read by tact-gui, tact and the recorder
 // tact.gui  written by tact-gui, read by tact-rt
@@ -43,7 +43,7 @@ struct RtRegion {
     Latest<RecordersTopic> recorders;
     Ring<EventTopic, 1024> events;
     Ring<TraceTopic, 16384> trace;
-    // For recordings. 1 kHz: half a minute is kept.
+    // For recordings. At 1 kHz they hold half a minute.
     Latest<StartTopic> start;
     Ring<CycleTopic, 32768> cycles;
     Ring<HandTopic, 32768> hand[kHandsMax];

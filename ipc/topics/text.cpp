@@ -14,7 +14,7 @@ namespace {
 
 constexpr const char* kUnknown = "unknown";
 
-// A number out of a record, as a small unsigned value; what does not fit becomes one that no enum has.
+// Converts a number of a record to an enumerator; a number out of range becomes a value that no enum has.
 template <class E>
 E code_of(double value) {
     return static_cast<E>(value >= 0.0 && value <= 254.0 ? static_cast<unsigned char>(value) : 255U);
@@ -33,7 +33,7 @@ std::string late_text(double us) {
 }
 
 std::string path_text(double index) {
-    if (index == static_cast<double>(kDisplayPathIndex)) return "picture";
+    if (index == static_cast<double>(kDisplayPathIndex)) return "display";
     if (index == static_cast<double>(kForcePathIndex)) return "force";
     if (index == static_cast<double>(kParticlesPathIndex)) return "particles";
     return "path " + number(index);
@@ -96,7 +96,7 @@ const char* run_reason_text(RunReason reason) noexcept {
         case RunReason::lines_lost:
             return "the safety lines cannot be read";
         case RunReason::supervisor:
-            return "the supervisor dropped the enable line: the servo stopped";
+            return "the supervisor lowered the enable line: the servo stopped";
     }
     return kUnknown;
 }
@@ -156,7 +156,7 @@ const char* event_code_text(EventCode code) noexcept {
         case EventCode::stopping:
             return "stopping";
         case EventCode::device_watchdog:
-            return "the device's watchdog dropped its amplifier";
+            return "the device's watchdog switched its amplifier off";
         case EventCode::body_selected:
             return "body held";
         case EventCode::bodies_changed:
@@ -189,6 +189,12 @@ const char* level_reason_text(LevelReason reason) noexcept {
             return "frame rate below goal";
         case LevelReason::picture_high:
             return "frame rate above goal";
+        case LevelReason::cost_high:
+            return "limited by step cost";
+        case LevelReason::cost_low:
+            return "step cost fits";
+        case LevelReason::deadline_missed:
+            return "deadline missed";
     }
     return kUnknown;
 }
@@ -244,9 +250,9 @@ const char* command_result_text(CommandResult result) noexcept {
         case CommandResult::refused_state:
             return "refused: not in this state";
         case CommandResult::refused_value:
-            return "refused: value out of range or name not known";
+            return "refused: value out of range or name unknown";
         case CommandResult::unknown:
-            return "refused: command not known";
+            return "refused: unknown command";
     }
     return kUnknown;
 }
@@ -291,19 +297,19 @@ std::string event_text(const EventTopic& event) {
             return what + ": " + run_state_text(code_of<RunState>(event.a)) + " to " +
                    run_state_text(code_of<RunState>(event.b));
         case EventCode::fault_latched:
-            // What was measured, where the reason is a number too large.
+            // The measured value, if the reason is a number that is too large.
             return what + ": " + run_reason_text(code_of<RunReason>(event.a)) +
                    (event.b == 0.0 ? std::string() : " (" + b + ")");
         case EventCode::overrun:
             return what + ": " + late_text(event.a) + " late, " + b + " so far";
         case EventCode::force_limited:
-            return what + ": " + number(event.a, 3) + " N wanted, " + b + " N allowed";
+            return what + ": " + number(event.a, 3) + " N requested, " + b + " N allowed";
         case EventCode::torque_limited:
-            return what + ": " + number(event.a, 3) + " N m wanted, " + b + " N m allowed";
+            return what + ": " + number(event.a, 3) + " N m requested, " + b + " N m allowed";
         case EventCode::slew_limited:
-            return what + ": " + number(event.a, 3) + " N a cycle wanted, " + b + " N allowed";
+            return what + ": " + number(event.a, 3) + " N per cycle requested, " + b + " N allowed";
         case EventCode::torque_slew_limited:
-            return what + ": " + number(event.a, 3) + " N m a cycle wanted, " + b + " N m allowed";
+            return what + ": " + number(event.a, 3) + " N m per cycle requested, " + b + " N m allowed";
         case EventCode::gui_silent:
             return what + ": for " + late_text(1e3 * event.a);
         case EventCode::command_done:

@@ -1,6 +1,6 @@
-// The topics' codes in words for people: panels, tables, logs.
+// Texts for people for the topics' codes: panels, tables, logs.
 //
-// Hostile  any value may come in, also one that no enumerator has: it reads as "unknown".
+// Input    untrusted: a value without an enumerator reads as "unknown".
 #pragma once
 
 #include <string>
@@ -28,7 +28,7 @@ namespace tact {
 
 // One line with the event's numbers and their units: "overrun: 120 us late, 3 so far".
 [[nodiscard]] std::string event_text(const EventTopic& event);
-// What was wrong on a device's bus: "checksum 3, lost 12, connected again 1"; empty: nothing.
+// Errors on a device's bus: "checksum 3, lost 12, connected again 1"; empty: none.
 [[nodiscard]] std::string bus_text(const BusCounts& counts);
 // "FIFO, pinned, memory locked", or "ordinary scheduling".
 [[nodiscard]] std::string schedule_text(std::uint32_t schedule_flags);

@@ -1,4 +1,4 @@
-// Where a hand is and what it feels, every servo cycle. One per hand.
+// Pose and force of a hand, every servo cycle. One per hand.
 #pragma once
 
 #include <cstddef>
@@ -17,11 +17,11 @@ struct alignas(64) ToolTopic {
     double quat_world_tool_xyzw[4];
     double force_world_n[3];  // as sent to the device, after the safety chain
     double torque_world_n_m[3];
-    double force_model_n[3];  // as the force model wants it, before the safety chain
+    double force_model_n[3];  // from the force model, before the safety chain
     double velocity_world_m_s[3];
     std::uint32_t buttons;      // bit 0: clutch; bit 1: drives the tool
     std::uint8_t device_state;  // DeviceState
-    std::uint8_t at_wall;       // 1: a wall of the workspace pushes back
+    std::uint8_t at_wall;       // 1: a wall of the workspace exerts force
     std::uint8_t reserved[10];  // zero
 };
 static_assert(std::is_trivially_copyable_v<ToolTopic> && sizeof(ToolTopic) == 192);

@@ -1,4 +1,4 @@
-// Where the hand would be and where its proxy is, on a surface that is touched, every servo cycle.
+// Hand and proxy position on a touched surface, every servo cycle.
 //
 // Published by models that touch a surface; without one the topic stays unwritten.
 // Frame     model, metres
@@ -15,43 +15,43 @@ namespace tact {
 inline constexpr std::size_t kTouchPlanesMax = 3;
 
 enum class TouchState : std::uint8_t {
-    settled,  // the proxy is as near to the hand as the surface lets it
-    gliding,  // on its way there, as far as one cycle may take it
-    lagging,  // the time of the cycle was not enough
+    settled,  // the proxy is as close to the hand as the surface allows
+    gliding,  // moving there, limited to one cycle's distance
+    lagging,  // the cycle's time was not enough
 };
 
-// What the force was computed on.
+// Search method of the force computation.
 enum class TouchRegime : std::uint8_t {
     tree,      // the tree over the full mesh
-    adaptive,  // a surface kept fine around the tool, here as in the full mesh
+    adaptive,  // a surface refined around the tool, where it equals the full mesh
     brute,     // every triangle
 };
 
-// How the detail falls off beyond the radius in which it is full.
+// Falloff of the detail beyond the radius of full detail.
 enum class DetailShape : std::uint8_t { bell, multiple_frustum };
 
 struct alignas(64) TouchTopic {
     static constexpr TopicInfo kInfo{.name = "touch", .version = 2, .writer = Writer::rt};
     std::int64_t taken_at_ns;
     std::uint64_t cycle;
-    double probe_model_m[3];   // the tool as the hand holds it, maybe inside the surface
-    double proxy_model_m[3];   // as the surface lets it
+    double probe_model_m[3];   // the tool at the hand's position, possibly inside the surface
+    double proxy_model_m[3];   // constrained by the surface
     double radius_model_m;     // of the tool; 0: a point
-    float normal_model[3][3];  // of what holds the proxy, unit, towards it
-    float push_n[3];           // its share in the force, before friction and damping
-    std::uint32_t planes;      // how many of the three hold; 0: it is free
+    float normal_model[3][3];  // of the planes that hold the proxy, unit, towards it
+    float push_n[3];           // contribution of each plane to the force, before friction and damping
+    std::uint32_t planes;      // number of active planes; 0: free
     TouchState state;
     TouchRegime regime;
-    // Of the surface kept fine around the tool, where there is one.
-    std::uint8_t detail;  // 0: none, and what follows is zero; 1: there; 2: and full within the radius
+    // For the surface refined around the tool, if there is one.
+    std::uint8_t detail;  // 0: none, the following fields are zero; 1: present; 2: and full within the radius
     DetailShape detail_shape;
     float detail_radius_model_m;  // of full detail
-    float detail_width;           // over which it falls off, in radii
+    float detail_width;           // width of the falloff, in radii
     float detail_error_far;       // allowed far away, in radii
-    float deviation_model_m;      // of the surface beyond the radius from the full mesh, at the most
+    float deviation_model_m;      // largest deviation of the surface beyond the radius from the full mesh
     std::uint32_t detail_vertices, detail_triangles;  // active
     std::uint32_t near_triangles;                     // expected around the tool at this level
-    float turn_s, turn_predicted_s;  // of the thread that keeps it: as it is lately, and as predicted
+    float turn_s, turn_predicted_s;  // update time of the adaptive thread: recent, and predicted
     std::uint8_t reserved[28];       // zero
 };
 static_assert(std::is_trivially_copyable_v<TouchTopic> && sizeof(TouchTopic) == 192);

@@ -1,10 +1,10 @@
-// The name of this build, so that a report, a recording or a scene can be traced to its source. Thread-safe, constant.
+// The version of this build, to trace a report, a recording or a scene to its source. Thread-safe, constant.
 //
-//   0.1.0                  the version of CMakeLists.txt alone: built from sources without their history
-//   0.1.0+731.g45fd877     731 commits in, at commit 45fd877
-//   0.1.0+731.g45fd877.dirty   the same with changes that are not committed
+//   0.1.0                  the version of CMakeLists.txt alone: built from sources without their git history
+//   0.1.0+731.g45fd877     731 commits in the history, at commit 45fd877
+//   0.1.0+731.g45fd877.dirty   the same with uncommitted changes
 //
-// -DTACT_BUILD_VERSION=... of CMake replaces all of it (packages do that).
+// CMake's -DTACT_BUILD_VERSION=... replaces all of it (used by packages).
 #pragma once
 
 #include <string>

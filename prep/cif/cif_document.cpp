@@ -11,7 +11,7 @@ namespace cif = gemmi::cif;
 
 struct CifTable::Table {
     cif::Table table;
-    // gemmi's rows are views that want a table that is not const; what they refer to is the document.
+    // gemmi::cif::Table::operator[] is not const; the row only refers to the document.
     [[nodiscard]] cif::Table::Row row(std::size_t row) const {
         return const_cast<cif::Table&>(table)[static_cast<int>(row)];
     }

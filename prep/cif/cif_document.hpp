@@ -1,8 +1,8 @@
-// A CIF document: read, changed in place, written. Wraps gemmi's, whose headers only cif_document.cpp includes.
+// A CIF document: read, change in place, write. Wraps gemmi; only cif_document.cpp includes its headers.
 //
-// Tables    columns are chosen by tag, in any order; a tag that begins with "?" may be absent. A table is empty where a
-//           required column is absent. It refers to its document and is valid while the document lives and no table or
-//           pair is added or erased.
+// Tables    select columns by tag, in any order; a tag that begins with "?" may be absent. A table is empty if a
+//           required column is absent. It refers to its document: it becomes invalid when the document is destroyed
+//           or a table or pair is added or erased.
 // Errors    read() throws std::runtime_error or a class derived from it with line and cause; indices are not checked.
 #pragma once
 
@@ -22,13 +22,13 @@ public:
     CifTable& operator=(const CifTable&) = delete;
     ~CifTable();
     [[nodiscard]] std::size_t rows() const;
-    // Is the column there at all?
+    // True if the column exists.
     [[nodiscard]] bool has(std::size_t column) const;
-    // As it stands in the file, with quotes; the column must be there.
+    // Text as in the file, with quotes; the column must exist.
     [[nodiscard]] const std::string& raw(std::size_t row, std::size_t column) const;
     // Without quotes; "" where the column is absent or the value is "." (not applicable) or "?" (unknown).
     [[nodiscard]] std::string value(std::size_t row, std::size_t column) const;
-    // Is there a value other than "." and "?"?
+    // True if the value is neither "." nor "?".
     [[nodiscard]] bool known(std::size_t row, std::size_t column) const;
     void set(std::size_t row, std::size_t column, std::string raw);
 
@@ -41,9 +41,9 @@ private:
 
 class CifDocument {
 public:
-    // `name` stands in error texts.
+    // Error texts contain `name`.
     static CifDocument read(std::string_view text, const std::string& name);
-    // One empty block.
+    // A document of one empty block.
     static CifDocument with_block(const std::string& name);
     CifDocument(CifDocument&&) noexcept;
     CifDocument& operator=(CifDocument&&) noexcept;
@@ -54,7 +54,7 @@ public:
     [[nodiscard]] std::size_t blocks() const;
     [[nodiscard]] CifTable table(std::size_t block, const std::string& prefix,
                                  const std::vector<std::string>& tags);
-    // Replaces the value where the tag is there. `value` is quoted as needed.
+    // Replaces the value of the tag, or adds the pair if the tag is absent. Quotes `value` as needed.
     void set_pair(std::size_t block, const std::string& tag, const std::string& value);
     // Removes all pairs and tables whose tags begin with one of the prefixes.
     void erase(std::size_t block, const std::vector<std::string>& prefixes);
@@ -69,7 +69,7 @@ private:
     std::unique_ptr<Document> document_;
 };
 
-// With quotes where CIF needs them.
+// Adds quotes where CIF requires them.
 std::string cif_quoted(const std::string& value);
 
 }  // namespace tact

@@ -1,5 +1,4 @@
-// tact-prep bench: how fast and how well this machine simplifies meshes made in code. Part of `tact bench
-// docking`.
+// tact-prep bench: speed and quality of mesh simplification on synthetic meshes. Part of `tact bench docking`.
 #pragma once
 
 #include <CLI/CLI.hpp>
@@ -7,7 +6,7 @@
 
 namespace tact {
 
-// What to call when the subcommand was given. Takes about two seconds.
+// Returns the function to call if the subcommand was given. It takes about two seconds.
 std::function<void()> add_bench(CLI::App& app, CLI::App*& command);
 
 }  // namespace tact

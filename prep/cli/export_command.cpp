@@ -10,7 +10,7 @@
 namespace tact {
 namespace {
 
-constexpr std::uint64_t kPosesBytesMax = std::uint64_t{64} << 20;  // a run's report holds more than places
+constexpr std::uint64_t kPosesBytesMax = std::uint64_t{64} << 20;  // a run report holds more than poses
 
 struct ExportRequest {
     std::string scene, poses;

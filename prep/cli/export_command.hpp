@@ -1,5 +1,5 @@
-// tact-prep export SCENE --poses FILE -o FOLDER: placed structures as files. Runs as the callback of its
-// subcommand, inside of parse().
+// tact-prep export SCENE --poses FILE -o FOLDER: writes placed structures to files. Runs as the callback of its
+// subcommand, inside parse().
 #pragma once
 
 #include <CLI/CLI.hpp>

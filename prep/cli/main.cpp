@@ -1,4 +1,4 @@
-// tact-prep: files in, one baked scene out; or one mesh.
+// tact-prep: converts input files to one baked scene, or to one mesh.
 #include <CLI/CLI.hpp>
 #include <cstdio>
 #include <nlohmann/json.hpp>
@@ -37,9 +37,8 @@ void add_info(CLI::App& app) {
 
 int run(int argc, char** argv) {
     CLI::App app(
-        "Bakes maps, structures, meshes and scans into scenes that tact-rt and tact-gui map into memory; "
-        "simplifies "
-        "meshes.",
+        "Bake maps, structures, meshes and scans into scenes that tact-rt and tact-gui map into memory; "
+        "simplify meshes.",
         "tact-prep");
     app.set_version_flag("--version", program_version("tact-prep"), "Print the version and exit");
     app.footer("Exit codes: 0 done; 1 error; 2 wrong usage; 130 cancelled by Ctrl-C, nothing written.");
@@ -72,10 +71,10 @@ int main(int argc, char** argv) {
     try {
         return tact::run(argc, argv);
     } catch (const tact::Cancelled&) {
-        std::fputs("tact-prep: cancelled, nothing was written\n", stderr);
+        std::fputs("tact-prep: cancelled; nothing was written\n", stderr);
         return 130;
     } catch (const std::bad_alloc&) {
-        std::fputs("tact-prep: out of memory\n  fix: free memory, or crop or bin the map\n", stderr);
+        std::fputs("tact-prep: out of memory\n  fix: free memory, or crop or bin the input\n", stderr);
     } catch (const std::exception& error) {
         std::fprintf(stderr, "tact-prep: %s\n", error.what());
     }

@@ -36,7 +36,8 @@ void simplify_file(const SimplifyOptions& o) {
     const ImportedMesh in = import_mesh(o.in, part(progress, 0.0, 0.2));
     const TriangleMesh mesh = cleaned(in.mesh);
     if (mesh.triangles() == 0)
-        throw StartupError("simplify " + o.in, "every triangle has two equal corners", "export it again");
+        throw StartupError("simplify " + o.in, "no triangle has three different corners",
+                           "export the mesh again");
     const double read_s = seconds_since(begin);
     const auto start = std::chrono::steady_clock::now();
     const Kept kept = simplify_to_keep(mesh, o.settings, part(progress, 0.2, 0.98));
@@ -70,7 +71,7 @@ void simplify_file(const SimplifyOptions& o) {
     if (result.mesh.vertices() > o.settings.vertices_min)
         std::printf(
             "Fewer vertices would change the topology of the mesh%s.\n",
-            o.settings.pair_distance > 0.0 ? "" : "; --pair-distance 1 allows parts to join and vanish");
+            o.settings.pair_distance > 0.0 ? "" : "; --pair-distance 1 allows parts to join or vanish");
 }
 
 }  // namespace
@@ -86,8 +87,7 @@ std::function<void()> add_simplify(CLI::App& app, CLI::App*& command) {
     command
         ->add_option("--boundary-weight", o->settings.boundary_weight,
                      "Weight of boundary edges relative to the surface (published method: 1000; default: "
-                     "100, on open meshes of "
-                     "up to 20000 triangles the best of four values)")
+                     "100, on open meshes of up to 20000 triangles the best of four values)")
         ->check(CLI::Range(0.0, 1e6));
     command
         ->add_option(
@@ -98,8 +98,7 @@ std::function<void()> add_simplify(CLI::App& app, CLI::App*& command) {
     command
         ->add_option("--relax", o->settings.relax_rounds,
                      "Number of rounds that move the remaining vertices towards the original surface; 0: "
-                     "none (default: 1, up to 40 "
-                     "for open meshes with few vertices)")
+                     "none (default: 1; up to 40 for open meshes with few vertices)")
         ->check(CLI::Range(0U, 100U));
     command->add_flag("--json", o->json, "Print the result as JSON");
     return [o] { simplify_file(*o); };

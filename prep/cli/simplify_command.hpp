@@ -1,4 +1,4 @@
-// tact-prep simplify: any triangle mesh in, any level of it out as PLY.
+// tact-prep simplify: reads a triangle mesh and writes a simplified mesh as PLY.
 #pragma once
 
 #include <CLI/CLI.hpp>
@@ -6,7 +6,7 @@
 
 namespace tact {
 
-// What to call when the subcommand was given.
+// Returns the function to call if the subcommand was given.
 std::function<void()> add_simplify(CLI::App& app, CLI::App*& command);
 
 }  // namespace tact

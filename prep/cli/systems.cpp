@@ -30,7 +30,7 @@ const PrepSystem& prep_system(SceneKind kind) {
     const auto* const system = std::find_if(std::begin(kSystems), std::end(kSystems),
                                             [&](const PrepSystem& s) { return s.kind == kind; });
     if (system == std::end(kSystems))
-        throw std::logic_error("a kind of scene without a row in prep/cli/systems.cpp");
+        throw std::logic_error("scene kind without a row in prep/cli/systems.cpp");
     return *system;
 }
 

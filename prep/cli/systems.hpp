@@ -1,7 +1,7 @@
 // The systems that tact-prep bakes scenes for, one row each.
 //
-// A new system adds a row here and a folder of its own with its commands, its bake function and its report. Names, sections
-// and raw files of its scenes are a row of ipc/scene/file/scene_kinds.
+// A new system adds a row here and a folder of its own with its commands, bake function and report. The names, sections
+// and raw file endings of its scenes are a row of ipc/scene/file/scene_kinds.
 #pragma once
 
 #include <CLI/CLI.hpp>
@@ -20,7 +20,7 @@ struct PrepSystem {
 };
 
 [[nodiscard]] std::span<const PrepSystem> prep_systems();
-// Of a kind that read_meta() accepts.
+// `kind` must be one that read_meta() accepts.
 [[nodiscard]] const PrepSystem& prep_system(SceneKind kind);
 
 }  // namespace tact

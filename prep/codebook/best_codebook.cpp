@@ -43,8 +43,8 @@ BestCodebook best_codebook(const Structure& structure, const CodebookSettings& s
     best.restarts = codebook_restarts(structure.size());
     std::vector<Codebook> all(best.restarts);
     std::atomic<bool> stop{false};
-    std::atomic<std::uint32_t> next{1};  // the first is computed here, where progress may be told
-    // Others take what is left, one after the other; a stop ends them at their next level.
+    std::atomic<std::uint32_t> next{1};  // this thread computes codebook 0 and reports progress
+    // Worker threads compute the remaining codebooks one by one; `stop` ends each at its next level.
     const auto work = [&] {
         try {
             for (std::uint32_t i = next++; i < best.restarts; i = next++) {
@@ -52,7 +52,7 @@ BestCodebook best_codebook(const Structure& structure, const CodebookSettings& s
                 own.seed = settings.seed + i;
                 all[i] = build_codebook(structure, own, [&](double, const char*) { return !stop.load(); });
             }
-        } catch (const Cancelled&) {  // somebody else knows why
+        } catch (const Cancelled&) {  // the calling thread rethrows the cause
         }
     };
     std::vector<std::future<void>> others;

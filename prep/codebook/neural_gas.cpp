@@ -1,20 +1,18 @@
 // One level, for N vectors w and atoms v with masses m:
 //
-// 1. Neural gas. T = presentations_per_vector * N atoms are drawn in proportion to mass. For each, the
-// vectors are
-//    ranked by distance, k = 0, 1, …, and moved by  dw = eps(t) exp(-k / lambda(t)) (v - w),  with
+// 1. Neural gas. T = presentations_per_vector * N atoms are drawn with probability proportional to mass. For each
+//    draw the vectors are ranked by distance, k = 0, 1, …, and moved by  dw = eps(t) exp(-k / lambda(t)) (v - w),  with
 //    eps(t) = eps_i (eps_f / eps_i)^(t/T) and lambda alike. Ranks beyond 4 lambda move by less than 2 % of
-//    the first and are left out, so that a draw costs a search among neighbours rather than a sort of all.
-//    Level 0 starts from drawn atoms with a wide lambda; each further level starts from the level before and
-//    as many atoms again, drawn where that level is worst, so a narrow lambda is enough.
-// 2. The limit lambda -> 0: every vector goes to the centre of mass of the atoms nearest to it, a few times
+//    the first and are skipped, so that a draw costs a local search instead of a full sort.
+//    Level 0 starts from drawn atoms with a wide lambda. Each further level starts from the previous level and
+//    as many additional atoms, drawn where that level is worst, so a narrow lambda suffices.
+// 2. The limit lambda -> 0: every vector moves to the centre of mass of the atoms nearest to it, a few times
 //    (batch neural gas with rank 0 only). Weights are the masses of these cells, so sum w_i is 1 and sum w_i
-//    r_i is the centre of mass. The last step keeps the cells that its centres are of, so both sums are
-//    exact.
+//    r_i is the centre of mass. The last step keeps the cells from which the centres were computed, so both sums
+//    are exact.
 // 3. Competitive Hebbian graph: for every atom once, in random order, an edge joins the nearest and the
-//    second nearest vector, with age 0; other edges of the nearest grow older by one, and are cut beyond
+//    second nearest vector, with age 0; the other edges of the nearest vector age by one and are removed beyond
 //    kAgeMax.
-//
 // All in double precision, in units of the structure's radius of gyration; draws by splitmix64.
 #include "prep/codebook/neural_gas.hpp"
 
@@ -36,18 +34,17 @@ namespace {
 
 constexpr double kEpsFirst = 0.5, kEpsLast = 0.005;
 constexpr double kLambdaLast = 0.25;
-constexpr double kLambdaNarrow = 3.0;  // for levels that start from another
+constexpr double kLambdaNarrow = 3.0;  // for levels that start from the previous level
 constexpr double kRanksPerLambda = 4.0;
 constexpr std::size_t kRanksMax = 64;
 constexpr int kCentringSteps = 4;
-// Edges that their vector's last draws did not confirm are cut. At 27 000 atoms and 25 vectors each is drawn
-// a thousand times; at 100 vectors and more hardly any edge reaches this age, and the graph is the atoms'
-// own.
+// Removes edges that recent draws did not confirm. At 27 000 atoms and 25 vectors each vector is drawn a thousand
+// times; at 100 vectors and more hardly any edge reaches this age, and the graph follows the atoms alone.
 constexpr int kAgeMax = 100;
 
 struct Atoms {
     std::vector<Vec3> at;
-    std::vector<double> mass;  // fractions
+    std::vector<double> mass;  // fractions of the total
     std::vector<double> cumulative;
     Vec3 low = Vec3::Zero(), high = Vec3::Zero();
     double unit_m = 1.0;
@@ -67,9 +64,10 @@ Atoms make_atoms(const Structure& s) {
                      static_cast<double>(s.z_m[i]));
         const auto m = static_cast<double>(s.mass_fraction[i]);
         if (!p.allFinite() || !(m >= 0.0)) {
-            throw StartupError("building the codebook of '" + s.name + "'",
-                               "atom " + std::to_string(i) + " has no finite place or no mass",
-                               "fix the structure");
+            throw StartupError(
+                "build the codebook of '" + s.name + "'",
+                "atom " + std::to_string(i) + " has a position that is not finite or a negative mass",
+                "fix the structure");
         }
         atoms.at.push_back(p);
         atoms.mass.push_back(m);
@@ -93,7 +91,7 @@ std::vector<Vec3> first_vectors(const Atoms& atoms, std::size_t count, SeededRan
     return vectors;
 }
 
-// The vectors of the level before and as many atoms, each the worse represented of two drawn ones.
+// The vectors of the previous level and as many atoms, each the worse represented of two drawn atoms.
 std::vector<Vec3> more_vectors(const Atoms& atoms, std::vector<Vec3> vectors, std::size_t count,
                                SeededRandom& random) {
     const VectorGrid grid(vectors, atoms.low, atoms.high);
@@ -131,11 +129,11 @@ void adapt(const Atoms& atoms, VectorGrid& grid, double lambda_first, std::size_
 struct Cells {
     std::vector<Vec3> centre;
     std::vector<double> mass;
-    double error_2 = 0.0;  // mean square distance of the atoms to the centre of their cell
+    double error_2 = 0.0;  // mean square distance of the atoms from the centre of their cell
 };
 
-// Cells of the atoms nearest to each vector, and their centres of mass. A vector without atoms is moved to an
-// atom of the cell that is worst represented, and takes that atom.
+// Cells of the atoms nearest to each vector, and their centres of mass. A vector without atoms moves to the worst
+// represented atom of another cell and takes that atom.
 Cells centre(const Atoms& atoms, const VectorGrid& grid) {
     const std::size_t n = grid.size();
     std::vector<std::uint32_t> owner(atoms.at.size());
@@ -157,7 +155,7 @@ Cells centre(const Atoms& atoms, const VectorGrid& grid) {
             std::stable_sort(worst.begin(), worst.end(), [&](auto a, auto b) { return miss[a] < miss[b]; });
         }
         while (atoms_in[owner[worst.back()]] < 2)
-            worst.pop_back();  // ends: there are more atoms than vectors
+            worst.pop_back();  // terminates: there are more atoms than vectors
         --atoms_in[owner[worst.back()]];
         owner[worst.back()] = j;
         atoms_in[j] = 1;
@@ -170,7 +168,7 @@ Cells centre(const Atoms& atoms, const VectorGrid& grid) {
         cells.mass[owner[i]] += atoms.mass[i];
         plain[owner[i]] += atoms.at[i];
     }
-    for (std::size_t j = 0; j < n; ++j) {  // atoms may have no mass
+    for (std::size_t j = 0; j < n; ++j) {  // all atoms of a cell may have mass 0
         cells.centre[j] = cells.mass[j] > 0.0 ? Vec3(cells.centre[j] / cells.mass[j])
                                               : Vec3(plain[j] / static_cast<double>(atoms_in[j]));
     }
@@ -186,7 +184,7 @@ std::vector<std::array<std::uint32_t, 2>> hebbian_graph(const Atoms& atoms, cons
     std::iota(order.begin(), order.end(), std::size_t{0});
     for (std::size_t i = order.size(); i > 1; --i) std::swap(order[i - 1], order[random.below(i)]);
     std::vector<std::map<std::uint32_t, int>> age(
-        grid.size());  // of the edges of each vector, kept at both ends
+        grid.size());  // ages of the edges of each vector, stored at both ends
     std::array<VectorGrid::Near, 2> near{};
     for (const std::size_t i : order) {
         if (grid.nearest(atoms.at[i], near) < 2) continue;
@@ -249,7 +247,7 @@ Codebook build_codebook(const Structure& structure, const CodebookSettings& sett
             first ? first_vectors(atoms, n, random) : more_vectors(atoms, std::move(vectors), n, random);
         VectorGrid grid(vectors, atoms.low, atoms.high);
         const double lambda = first ? static_cast<double>(n) / 2.0 : kLambdaNarrow;
-        // The first level is small and unordered: ten times the draws cost nothing.
+        // Level 0 is small and starts unordered; ten times the draws cost little.
         adapt(atoms, grid, lambda, n * settings.presentations_per_vector * (first ? 10 : 1), random);
         Cells cells;
         for (int i = 0; i < kCentringSteps; ++i) {

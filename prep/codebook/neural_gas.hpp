@@ -15,12 +15,12 @@
 namespace tact {
 
 struct CodebookSettings {
-    std::uint32_t smallest = 25;  // vectors of level 0; each level doubles it
+    std::uint32_t smallest = 25;  // vectors of level 0; each level doubles the number
     std::uint32_t presentations_per_vector = 20;
     std::uint64_t seed = 1;
 };
 
-// Structures of fewer than twice the smallest level's atoms get no levels: the atoms are few enough.
+// A structure of fewer atoms than twice the smallest level gets no levels.
 Codebook build_codebook(const Structure& structure, const CodebookSettings& settings = {},
                         const Progress& progress = {});
 

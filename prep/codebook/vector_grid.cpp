@@ -14,7 +14,7 @@ VectorGrid::VectorGrid(std::vector<Vec3> vectors, const Vec3& low, const Vec3& h
       home_(at_.size(), 0) {
     const Vec3 extent = (high - low).cwiseMax(Vec3::Constant(1e-12 * (1.0 + (high - low).maxCoeff())));
     const auto n = static_cast<double>(std::max<std::size_t>(at_.size(), 1));
-    // About one vector per cell of the box; molecules fill a fraction of it. No axis beyond 128 cells.
+    // About one vector per cell of the bounding box (molecules fill a part of it). At most 128 cells along an axis.
     width_ = std::max(std::cbrt(extent.prod() / n), extent.maxCoeff() / 128.0);
     for (std::size_t a = 0; a < 3; ++a) {
         count_[a] = std::max(1, static_cast<int>(extent[static_cast<Eigen::Index>(a)] / width_) + 1);
@@ -80,7 +80,7 @@ std::size_t VectorGrid::nearest(const Vec3& point, std::span<Near> found) const 
         }
     };
     for (int ring = 0; ring <= rings; ++ring) {
-        // Whatever lies in this ring or beyond is at least this far; the point may lie outside the box.
+        // Every vector in this ring or beyond is at least this far away; the point may lie outside the box.
         const double reach = (ring - 1) * width_;
         if (have == wanted && reach > 0.0 && found[have - 1].distance_2 < reach * reach) break;
         std::array<int, 3> c{};

@@ -1,6 +1,6 @@
-// Finds the nearest of many moving vectors: a uniform grid of linked lists.
+// Nearest-vector search among many moving vectors: a uniform grid of linked lists.
 //
-// Unit     the caller's. Thread: each object belongs to one.
+// Unit     the caller's. Thread: one per object.
 #pragma once
 
 #include <array>
@@ -20,14 +20,14 @@ public:
         std::uint32_t index;
     };
 
-    // low and high bound all that will be asked for; vectors outside are kept in the outermost cells.
+    // low and high bound all query points; the outermost cells hold the vectors outside.
     VectorGrid(std::vector<Vec3> vectors, const Vec3& low, const Vec3& high);
 
     [[nodiscard]] std::size_t size() const { return at_.size(); }
     [[nodiscard]] const Vec3& operator[](std::size_t i) const { return at_[i]; }
     void move(std::uint32_t index, const Vec3& to);
 
-    // Fills found, nearest first, ties by index; returns how many there are (all vectors, or found.size()).
+    // Fills found, nearest first, ties by index; returns the number found (all vectors, or found.size()).
     std::size_t nearest(const Vec3& point, std::span<Near> found) const;
 
 private:

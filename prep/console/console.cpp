@@ -25,7 +25,7 @@ Console::Console()
       drawn_at_(started_) {
     struct sigaction action {};
     action.sa_handler = on_signal;
-    // A second Ctrl-C ends the program at once; the target is still whole or absent.
+    // A second Ctrl-C ends the program at once; the output file is still either whole or absent.
     action.sa_flags = static_cast<int>(SA_RESETHAND);
     ::sigaction(SIGINT, &action, nullptr);
     ::sigaction(SIGTERM, &action, nullptr);
@@ -50,7 +50,7 @@ bool Console::show(double fraction, const char* what) {
     const double done = std::clamp(fraction, 0.0, 1.0);
     if (terminal_ && (changed || now - drawn_at_ > std::chrono::milliseconds(100))) {
         const double spent_s = std::chrono::duration<double>(now - started_).count();
-        // Too early an estimate only jumps about.
+        // Early estimates fluctuate too much to be useful.
         char left[48] = "";
         if (done > 0.05 && spent_s > 1.0)
             std::snprintf(left, sizeof left, ", about %.0f s left", std::ceil(spent_s * (1.0 - done) / done));

@@ -1,7 +1,7 @@
-// What a person sees while tact-prep works, and how they stop it.
+// Progress display and cancellation of tact-prep.
 //
-// On a terminal one line that is written over, with an estimate of the time left; elsewhere one line for each
-// kind of work and each twentieth of the whole, "[ 45 %] simplify", so that a log stays short. Ctrl-C and SIGTERM make
+// On a terminal: one line that is overwritten, with an estimate of the time left. Elsewhere: one line for each
+// kind of work and each twentieth of the whole, "[ 45 %] simplify", so that logs stay short. Ctrl-C and SIGTERM make
 // the next report() cancel.
 #pragma once
 
@@ -21,7 +21,7 @@ public:
 
     [[nodiscard]] Progress progress();
     [[nodiscard]] static bool cancelled();
-    // Removes the unfinished line, so that what follows begins at the left.
+    // Erases the progress line, so that the next output begins at the left.
     void clear();
 
 private:
@@ -29,7 +29,7 @@ private:
     bool terminal_;
     bool drawn_ = false;
     std::string last_;
-    double told_ = 0.0;  // elsewhere
+    double told_ = 0.0;  // fraction of the last line, if not a terminal
     std::chrono::steady_clock::time_point started_, drawn_at_;
 };
 

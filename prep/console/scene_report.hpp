@@ -1,6 +1,6 @@
-// Contents of a baked scene, as text and as JSON, read from the file itself.
+// Contents of a baked scene as text and as JSON, read from the file itself.
 //
-// add_system adds the keys that only scenes of one kind have (prep/cli/systems).
+// add_system adds the keys that only one kind of scene has (prep/cli/systems).
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>
@@ -15,8 +15,8 @@ using SystemReport = void (*)(const SceneFile& file, nlohmann::ordered_json& rep
 nlohmann::ordered_json scene_json(const SceneFile& file, SystemReport add_system);
 std::string scene_text(const SceneFile& file, SystemReport add_system);
 
-// What a command that has written a scene prints: the note and one line, or with as_json one object of the
-// scene's path, what the system reports of it, and the seconds it took.
+// Prints the result of a command that wrote a scene: the note and one line, or with as_json one object of the
+// scene's path, the report of its system and the time in seconds.
 void print_written_scene(const std::string& scene, const std::string& note, double seconds, bool as_json,
                          const nlohmann::ordered_json& report);
 

@@ -16,16 +16,16 @@ void check_target(const std::string& attempt_in_words, const std::string& path,
     const fs::path folder = target.has_parent_path() ? target.parent_path() : fs::path(".");
     std::error_code ignored;
     if (fs::is_directory(target, ignored))
-        throw StartupError(attempt, "it is a folder", "give the name of a file: -o FOLDER/NAME");
+        throw StartupError(attempt, "the path is a folder", "give the name of a file: -o FOLDER/NAME");
     if (!fs::is_directory(folder, ignored))
         throw StartupError(attempt, "the folder " + folder.string() + " does not exist",
-                           "make it, or give another with -o");
+                           "create the folder, or give another with -o");
     if (::access(folder.c_str(), W_OK) != 0)
-        throw StartupError(attempt, "the folder " + folder.string() + " may not be written to",
-                           "give another with -o");
+        throw StartupError(attempt, "the folder " + folder.string() + " is not writable",
+                           "give another folder with -o");
     for (const std::string& input : inputs) {
         if (!input.empty() && fs::equivalent(input, target, ignored))
-            throw StartupError(attempt, "it is one of the input files", "give another name with -o");
+            throw StartupError(attempt, "the path is one of the input files", "give another name with -o");
     }
 }
 

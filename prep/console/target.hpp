@@ -1,4 +1,4 @@
-// Whether a file can be written where the user wants it: found before minutes of work, not after them.
+// Checks that an output file can be written, before the long work starts.
 #pragma once
 
 #include <string>
@@ -6,8 +6,8 @@
 
 namespace tact {
 
-// `attempt` in words: "write scene". Throws StartupError when `path` is a folder, one of `inputs`, or in a
-// folder that is absent or may not be written to.
+// `attempt` is the first part of the error text: "write scene". Throws StartupError if `path` is a folder, one of
+// `inputs`, or in a folder that is absent or not writable.
 void check_target(const std::string& attempt, const std::string& path,
                   const std::vector<std::string>& inputs);
 

@@ -1,4 +1,4 @@
-// The surface of a baked scene's map at another level, as a file of its own (ipc/scene/density/contour_mesh.hpp).
+// Bakes the surface of a scene's map at another level to a file of its own (ipc/scene/density/contour_mesh.hpp).
 //
 // Fails by  StartupError: the scene has no map, or no surface lies at the level. Cancelled from progress.
 #pragma once
@@ -13,7 +13,7 @@ struct BakedContour {
     std::uint32_t vertices = 0, vertices_min = 0, triangles = 0;
 };
 
-// vertices_max 0: all of them.
+// vertices_max 0: no limit.
 BakedContour bake_contour(const SceneFile& scene, double level, std::uint32_t vertices_max, SceneWriter& out,
                           const Progress& progress = {});
 

@@ -27,7 +27,7 @@ std::string printed(const char* format, Values... values) {
     return text;
 }
 
-// Mean place of the voxels above the contour, each counting by its height above it.
+// Mean position of the voxels above the contour, weighted by their height above it.
 Vec3 centre_of_density(const DensityGrid& grid, double contour) {
     Vec3 sum = Vec3::Zero();
     double weight = 0.0;
@@ -47,7 +47,7 @@ Vec3 centre_of_density(const DensityGrid& grid, double contour) {
 
 void set_title(SceneMeta& meta, const std::string& title) {
     std::size_t length = std::min(title.size(), sizeof meta.title - 1);
-    // Not in the middle of a character of UTF-8.
+    // Do not cut inside a UTF-8 character.
     while (length < title.size() && length > 0 && (static_cast<unsigned char>(title[length]) & 0xC0) == 0x80)
         --length;
     std::memcpy(meta.title, title.data(), length);
@@ -58,36 +58,35 @@ void set_title(SceneMeta& meta, const std::string& title) {
 
 void check_resolution(const std::optional<double>& resolution_m, const char* example) {
     if (resolution_m && !(*resolution_m >= 0.5 * kAngstromM && *resolution_m <= 200.0 * kAngstromM)) {
-        throw StartupError(
-            "bake a docking scene",
-            printed("a resolution of %g Å is outside of 0.5 to 200", *resolution_m / kAngstromM),
-            std::string("give it in ångström: ") + example);
+        throw StartupError("bake a docking scene",
+                           printed("the resolution %g Å is outside 0.5 to 200 Å", *resolution_m / kAngstromM),
+                           std::string("give the resolution in ångström: ") + example);
     }
 }
 
 void check_input(const DockingInput& input) {
     if (input.structures.empty())
-        throw StartupError("bake a docking scene", "there is no structure",
-                           "give one or more PDB or mmCIF files behind the map");
+        throw StartupError("bake a docking scene", "no structure is given",
+                           "give one or more PDB or mmCIF files after the map");
     if (input.structures.size() > kSceneBodiesMax) {
         throw StartupError("bake a docking scene",
                            std::to_string(input.structures.size()) + " structures are more than " +
                                std::to_string(kSceneBodiesMax),
-                           "join some of them into one file, or give fewer");
+                           "join some structures into one file, or give fewer");
     }
     check_resolution(input.resolution_m, "--resolution-a 10");
     check_resolution(input.force_map_resolution_m, "--force-map-resolution-a 12");
 }
 
-// The hand reaches the map and some way around it; a structure that starts beyond cannot be fetched.
+// The hand reaches the map and a margin around it, but not a structure that starts farther away.
 void check_reach(const Structure& s, const DensityGrid& grid, const Vec3& extent_m) {
     const Vec3 from_middle_m = s.home_com_model_m - (grid.origin_m + 0.5 * extent_m);
     const double outside_m = (from_middle_m.cwiseAbs() - 0.5 * extent_m).cwiseMax(0.0).norm();
     if (outside_m > 0.5 * extent_m.maxCoeff()) {
         throw StartupError("bake a docking scene",
-                           s.name + printed(" lies %.0f Å outside of the map, out of the hand's reach",
+                           s.name + printed(" lies %.0f Å outside the map, beyond the reach of the hand",
                                             outside_m / kAngstromM),
-                           "move it near the map first, or correct the map's origin");
+                           "move the structure near the map, or correct the map's origin");
     }
 }
 
@@ -142,7 +141,7 @@ BakedDocking bake_docking(const DockingInput& input, SceneWriter& out, const Pro
     std::string& note = baked.note;
     for (const std::string& line : input.note) note += line + '\n';
 
-    report(progress, 0.0, "looking at the map");
+    report(progress, 0.0, "computing map statistics");
     const MapStatistics statistics = map_statistics(grid);
     const auto say = [&](const std::string& line) { note += line + '\n'; };
     meta.kind = SceneKind::docking;
@@ -153,7 +152,7 @@ BakedDocking bake_docking(const DockingInput& input, SceneWriter& out, const Pro
     set_title(meta, input.title);
     say(printed("map values: %.6g to %.6g, mean %.6g, sigma %.6g (all voxels)", statistics.low,
                 statistics.high, statistics.mean, statistics.sigma));
-    say(printed("map background: %.6g, median of the faces of the box; the map is continued with it",
+    say(printed("map background: %.6g, median of the box faces; it extends the map beyond the box",
                 statistics.background));
     if (input.contour) {
         meta.contour = *input.contour;
@@ -166,7 +165,7 @@ BakedDocking bake_docking(const DockingInput& input, SceneWriter& out, const Pro
     }
     if (!(meta.contour > statistics.low && meta.contour < statistics.high)) {
         throw StartupError("bake a docking scene",
-                           printed("the contour %g is outside of the map's values, %g to %g", meta.contour,
+                           printed("the contour %g is outside the map's values, %g to %g", meta.contour,
                                    statistics.low, statistics.high),
                            "give a contour between them, or none");
     }
@@ -175,7 +174,7 @@ BakedDocking bake_docking(const DockingInput& input, SceneWriter& out, const Pro
         say(printed("resolution: %.4g Å, as given", meta.resolution_m / kAngstromM));
     } else {
         meta.resolution_m = kVoxelsPerResolution * grid.spacing_m.maxCoeff();
-        say(printed("resolution: %.4g Å, guessed as four voxels; give it with --resolution-a",
+        say(printed("resolution: %.4g Å, estimated as four voxels; --resolution-a sets it",
                     meta.resolution_m / kAngstromM));
     }
     const Vec3 extent_m =
@@ -183,15 +182,15 @@ BakedDocking bake_docking(const DockingInput& input, SceneWriter& out, const Pro
     meta.world_per_model = world_per_model_for(extent_m.maxCoeff());
     const Vec3 centre_m = centre_of_density(grid, meta.contour);
     for (int a = 0; a < 3; ++a) meta.centre_model_m[a] = centre_m[a];
-    say(printed("world per model: %g, so that the map is %.3g m wide in the hand's space",
+    say(printed("world per model: %g, so that the map is %.3g m wide in the workspace of the hand",
                 meta.world_per_model, meta.world_per_model * extent_m.maxCoeff()));
     say(printed("centre: (%.4g, %.4g, %.4g) Å, of the density above the contour", centre_m.x() / kAngstromM,
                 centre_m.y() / kAngstromM, centre_m.z() / kAngstromM));
 
     for (const Structure& s : input.structures) check_reach(s, grid, extent_m);
 
-    // The shares are of bakes that take seconds: GroEL, 26 929 atoms, in maps of 100^3 voxels, 2026-11-23, where 92 % are
-    // codebooks. A short one is over before a wrong share is seen.
+    // The progress fractions were measured on bakes that take seconds: GroEL, 26 929 atoms, in maps of 100^3 voxels,
+    // 2026-11-23; codebooks take 92 %. A short bake ends before a wrong fraction matters.
     TriangleMesh surface = isosurface(grid, meta.contour, part(progress, 0.01, 0.05));
     if (surface.triangles() == 0) {
         throw StartupError("bake a docking scene", printed("no surface lies at the contour %g", meta.contour),
@@ -227,10 +226,11 @@ BakedDocking bake_docking(const DockingInput& input, SceneWriter& out, const Pro
         std::string levels;
         for (const std::size_t n : body.codebook) levels += " " + std::to_string(n);
         say(printed("body %zu: ", i) + body.name +
-            printed(", %zu atoms, codebooks of%s", body.atoms, levels.empty() ? " none" : levels.c_str()));
+            printed(", %zu atoms, vectors per codebook level:%s", body.atoms,
+                    levels.empty() ? " none" : levels.c_str()));
         say(
-            printed("body %zu as in its file: mean density %.3g sigma above background, %.0f %% of its atoms "
-                    "above the contour",
+            printed("body %zu at its position in the file: mean density %.3g sigma above background, %.0f %% "
+                    "of its atoms above the contour",
                     i, body.density_home_sigma, 100.0 * body.inside_home));
     }
     DensityGrid force_map_grid;
@@ -239,13 +239,12 @@ BakedDocking bake_docking(const DockingInput& input, SceneWriter& out, const Pro
         force_map_grid =
             low_pass(grid, statistics.background, *input.force_map_resolution_m, part(progress, 0.9, 0.92));
         say(
-            printed("felt map: smoothed with a Gaussian of sigma = 0.225 * %.4g Å; sigma and background of "
-                    "the map as "
-                    "it is",
+            printed("force map: smoothed with a Gaussian of sigma = 0.225 * %.4g Å; sigma and background "
+                    "are those of the original map",
                     *input.force_map_resolution_m / kAngstromM));
         felt.emplace(force_map_grid, statistics.background, statistics.sigma);
     } else {
-        say("felt map: as it is");
+        say("force map: not smoothed");
     }
     const DockingGain gain = docking_gain(felt ? *felt : map, input.structures, codebooks,
                                           meta.world_per_model, {}, part(progress, 0.92, 0.98));

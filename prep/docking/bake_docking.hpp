@@ -1,8 +1,7 @@
-// Puts a docking scene together: map, structures, codebooks, isosurface, gain and how the hand's world maps
-// onto it.
+// Bakes a docking scene: map, structures, codebooks, isosurface, gain, and the transform from model to hand space.
 //
-// Fails by  StartupError; Cancelled when `progress` returns false. Nothing is written here: the caller writes
-//           the sections, whole or not at all.
+// Fails by  StartupError; Cancelled when `progress` returns false. Writes no file: the caller writes the sections,
+//           all or none.
 // Repeats   the same input gives the same sections.
 #pragma once
 
@@ -22,20 +21,20 @@ struct DockingInput {
     std::string title;
     DensityGrid grid;
     std::vector<Structure> structures;
-    std::vector<std::string> note;       // lines "key: value": where map and structures came from
-    std::optional<double> contour;       // in the map's unit; chosen where absent
-    std::optional<double> resolution_m;  // taken as four voxels where absent
+    std::vector<std::string> note;       // lines "key: value": sources of map and structures
+    std::optional<double> contour;       // in the map's unit; default: chosen from the histogram
+    std::optional<double> resolution_m;  // default: four voxels
     std::optional<double>
-        force_map_resolution_m;  // the hand feels the map smoothed to this; as it is where absent
+        force_map_resolution_m;  // resolution of the smoothed force map; default: not smoothed
     std::uint32_t vertices_max = 1'000'000;
 };
 
 struct BakedBody {
     std::string name;
     std::size_t atoms = 0;
-    std::vector<std::size_t> codebook;  // vectors of each level
-    double density_home_sigma = 0.0;    // mean over the atoms in the place that the file has them
-    double inside_home = 0.0;           // share of the atoms above the contour there
+    std::vector<std::size_t> codebook;  // number of vectors of each level
+    double density_home_sigma = 0.0;    // mean over the atoms at their positions in the file
+    double inside_home = 0.0;           // fraction of the atoms above the contour there
 };
 
 struct BakedDocking {
@@ -47,8 +46,8 @@ struct BakedDocking {
 
 BakedDocking bake_docking(const DockingInput& input, SceneWriter& out, const Progress& progress = {});
 
-// The one of 1, 1.5, 2, 2.5, 3, 4, 5, 6, 8 times a power of ten that brings the extent nearest to 0.16 m of
-// the hand's space, the width that small haptic devices reach.
+// The factor among 1, 1.5, 2, 2.5, 3, 4, 5, 6, 8 times a power of ten that brings the extent nearest to 0.16 m in
+// hand space, the width that small haptic devices reach.
 double world_per_model_for(double extent_m);
 
 }  // namespace tact

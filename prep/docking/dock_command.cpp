@@ -38,7 +38,7 @@ struct DockSettings {
     bool json = false;
 };
 
-// Lines of the note hold no control characters, whatever a file is called.
+// Lines of the note hold no control characters, whatever the name of a file.
 std::string dock_plain(std::string text) {
     for (char& c : text) {
         if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) c = '?';
@@ -88,14 +88,14 @@ DockingInput from_files(const DockSettings& o, const Progress& progress) {
 }
 
 DockingInput from_ring(const Progress& progress) {
-    report(progress, 0.0, "making the ring");
+    report(progress, 0.0, "computing the synthetic ring");
     SyntheticRing ring = make_ring();
     DockingInput input;
     input.title = "synthetic ring of six, one subunit free";
     input.note = {"map: made by tact-prep demo dock: six subunits, 12 Å, noise of 1 % of the highest density",
                   "map format: synthetic, " + listed(ring.grid),
                   "map origin: chosen, the axis of the ring is z through (0, 0, 0)",
-                  "structure: subunit A of the same ring, where the map has it"};
+                  "structure: subunit A of the same ring, at its position in the map"};
     input.grid = std::move(ring.grid);
     input.structures.push_back(std::move(ring.subunits.front()));
     input.resolution_m = ring.resolution_m;
@@ -145,8 +145,9 @@ void contour_scene(const DockSettings& o) {
         bake_contour(SceneFile::open(o.source), o.level, o.vertices_max, out, console.progress());
     out.write(o.scene);
     console.clear();
-    std::printf("%s: level %g, %zu vertices found, %u kept, down to %u; %u triangles\n", o.scene.c_str(),
-                o.level, baked.vertices_found, baked.vertices, baked.vertices_min, baked.triangles);
+    std::printf("%s: level %g, %zu vertices found, %u kept, coarsest level %u; %u triangles\n",
+                o.scene.c_str(), o.level, baked.vertices_found, baked.vertices, baked.vertices_min,
+                baked.triangles);
 }
 
 }  // namespace
@@ -195,7 +196,7 @@ void add_contour(CLI::App& app) {
         ->capture_default_str();
     level
         ->add_option("--ends-with", o->ends_with,
-                     "Process that started this one: cancel when it ends (for programs)")
+                     "Cancel when the process with this id ends (for programs that start tact-prep)")
         ->type_name("PID");
     level->callback([o] { contour_scene(*o); });
 }

@@ -1,5 +1,5 @@
-// tact-prep dock MAP MODEL..., tact-prep demo dock and tact-prep contour SCENE: docking scenes, and their surface at another
-// level.
+// tact-prep dock MAP MODEL..., tact-prep demo dock and tact-prep contour SCENE: docking scenes, and their surfaces at
+// other levels.
 #pragma once
 
 #include <CLI/CLI.hpp>

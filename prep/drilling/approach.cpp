@@ -7,8 +7,8 @@
 namespace tact {
 namespace {
 
-constexpr double kEveryM = 1e-3;      // between the places that are looked at
-constexpr double kTimesUneven = 5.0;  // times its mean difference in height a patch may be farther away
+constexpr double kEveryM = 1e-3;      // distance between candidate places
+constexpr double kTimesUneven = 5.0;  // extra distance accepted per unit of mean height difference of a patch
 
 }  // namespace
 
@@ -33,7 +33,7 @@ std::int32_t BoneHeights::top(std::int64_t x, std::int64_t y) const {
     return some_felt_ ? felt_[at] : any_[at];
 }
 
-// column(x, y) for those within a radius, also beyond the volume.
+// Calls column(x, y) for all columns within a radius, including columns outside the volume.
 template <class F>
 void BoneHeights::around(std::uint32_t x, std::uint32_t y, double radius_m, F column) const {
     const double most = std::max(bricks_.size[0], bricks_.size[1]);
@@ -79,7 +79,7 @@ BoneHeights::Place BoneHeights::place(const Vec3& middle_m) const {
     }
     std::int32_t front = top(best[0], best[1]);
     const Vec3 surface_m = bricks_.to_model(Vec3(best[0], best[1], front));
-    // Softer voxels count here: a hand at rest touches nothing.
+    // Voxels of any density count here: a hand at rest touches nothing.
     around(best[0], best[1], kAroundM, [&](std::int64_t ax, std::int64_t ay) {
         if (ax < 0 || ay < 0 || ax >= bricks_.size[0] || ay >= bricks_.size[1]) return;
         front = std::max(front,

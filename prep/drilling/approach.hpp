@@ -1,11 +1,11 @@
-// Where a hand begins: in front of bone that it meets when it goes straight on, away from the user.
+// Start position of the hand: in front of bone that it meets when it moves straight ahead, away from the user (-z).
 //
-// Height    of every column of voxels along z the outermost voxel that is a third solid, as a burr feels; what is
-//           less dense counts only where nothing else is there.
-// Choice    the place nearest to the middle of the bone's outermost plane, in all three directions, about which most
-//           columns hold bone at about that height, rather an even one: a patch that a burr can be set on, not a hole, a
-//           flank or a splinter. Bone that has no such place is met where it is outermost.
-// Thread    one; add_row() in any order of z
+// Height    of a column of voxels along z: the outermost voxel that is solid enough for a burr (density >= kFelt).
+//           Lower densities count only if the volume has no such voxel.
+// Choice    the place nearest to the middle of the bone's outermost plane, in all three directions, around which most
+//           columns hold bone at about the same height; even patches are preferred. A burr can be set on such a patch,
+//           but not on a hole, a flank or a splinter. If there is no such place, the outermost bone is used.
+// Thread    one; add_row() takes the rows in any order.
 #pragma once
 
 #include <cstdint>
@@ -20,19 +20,19 @@ class BoneHeights {
 public:
     static constexpr std::uint8_t kFelt = 77;
     static constexpr double kPatchM = 3e-3;    // radius of the patch
-    static constexpr double kFlatM = 5e-3;     // what belongs to it lies within that of its middle
-    static constexpr double kCovered = 0.75;   // share of its columns
-    static constexpr double kAroundM = 15e-3;  // a resting hand is in front of everything that near
+    static constexpr double kFlatM = 5e-3;     // columns of the patch lie within this height of its middle
+    static constexpr double kCovered = 0.75;   // fraction of the patch's columns that must do so
+    static constexpr double kAroundM = 15e-3;  // a resting hand is in front of all bone within this radius
 
     explicit BoneHeights(const BoneBricks& bricks);
-    // Of bricks.size[0] voxels or more.
+    // `row` holds bricks.size[0] voxels or more.
     void add_row(std::uint32_t y, std::uint32_t z, std::span<const std::uint8_t> row);
 
     struct Place {
-        Vec3 surface_m = Vec3::Zero();  // model
-        double front_m = 0.0;           // z of what is outermost about it
+        Vec3 surface_m = Vec3::Zero();  // model frame
+        double front_m = 0.0;           // z of the outermost voxel around it
     };
-    // There has to be a voxel of bone. middle_m: x and y of the middle.
+    // The volume must hold a voxel of bone. middle_m: x and y of the middle (model frame).
     [[nodiscard]] Place place(const Vec3& middle_m) const;
 
 private:

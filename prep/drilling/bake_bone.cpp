@@ -56,7 +56,7 @@ BoneHeights::Place place_hand(const BoneBricks& bricks, const BoneBox& box, cons
 }  // namespace
 
 double bake_bytes(const BoneBricks& bricks, bool labelled, std::size_t fields) {
-    // Densities or labels, their sections, and the file's bytes; fields as sections and in the file.
+    // Densities or labels, their sections, and the bytes of the file; each distance field as section and in the file.
     const auto voxels = static_cast<double>(bricks.bytes());
     const double step = distance_step(bricks);
     constexpr double kProgramBytes = 2e7;
@@ -68,11 +68,11 @@ BakedBone bake_bone(BoneInput&& input, SceneWriter& out, const Progress& progres
     BakedBone baked;
     BoneData& bone = input.bone;
     const BoneBricks& b = bone.bricks;
-    report(progress, 0.5, "looking at the bone");
+    report(progress, 0.5, "finding the bone surface");
     BoneHeights heights(b);
     const BoneBox box = measure(bone, heights);
     if (box.voxels == 0)
-        throw StartupError("bake a volume of bone", "no voxel of it is bone",
+        throw StartupError("bake a volume of bone", "no voxel is bone",
                            "give a lower --threshold-hu, or another part with --crop");
     baked.meta.kind = SceneKind::drilling;
     const BoneHeights::Place place = place_hand(b, box, heights, baked.meta);
@@ -86,11 +86,12 @@ BakedBone bake_bone(BoneInput&& input, SceneWriter& out, const Progress& progres
     baked.note +=
         note_line("bone: %.4g cm3, %.1f %% of the voxels are not empty\n", 1e6 * baked.bone_m3,
                   100.0 * static_cast<double>(box.voxels) / (double{1} * b.size[0] * b.size[1] * b.size[2]));
-    baked.note += note_line("hand: %.1f mm in front of the bone at model (%.2f, %.2f, %.2f) mm\n",
-                            1e3 * (baked.meta.centre_model_m[2] - place.surface_m.z()),
-                            1e3 * place.surface_m.x(), 1e3 * place.surface_m.y(), 1e3 * place.surface_m.z());
+    baked.note +=
+        note_line("hand: starts %.1f mm in front of the bone at (%.2f, %.2f, %.2f) mm in the model frame\n",
+                  1e3 * (baked.meta.centre_model_m[2] - place.surface_m.z()), 1e3 * place.surface_m.x(),
+                  1e3 * place.surface_m.y(), 1e3 * place.surface_m.z());
     if (bone.view().has_hu())
-        baked.note += note_line("density: 0 is %g HU and below, 255 is %g HU and above\n",
+        baked.note += note_line("density: 0 at %g HU and below, 255 at %g HU and above\n",
                                 static_cast<double>(bone.hu_at_0), static_cast<double>(bone.hu_at_255));
     write_bone_volume(out, bone.view());
     std::vector<std::uint8_t>().swap(bone.density);
@@ -116,8 +117,8 @@ BakedBone bake_bone(BoneInput&& input, SceneWriter& out, const Progress& progres
                                     1e9 * voxel_m3 * static_cast<double>(count[i + 1]),
                                     bone.structure[i].critical ? ", critical" : "");
         if (!critical.empty())
-            baked.note += note_line("distances: every %.3g mm, wrong by %.2g mm at the most\n",
-                                    1e3 * spacing_m, 1e3 * error_m);
+            baked.note += note_line("distances: every %.3g mm, error at most %.2g mm\n", 1e3 * spacing_m,
+                                    1e3 * error_m);
         write_bone_labels(out, b, {bone.structure, bone.label});
     }
     write_meta(out, baked.meta, baked.note);

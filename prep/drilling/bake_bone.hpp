@@ -1,9 +1,9 @@
-// Puts a drilling scene together: densities, labels, distances to critical structures, and where the hand is.
+// Bakes a drilling scene: densities, labels, distances to critical structures, and the start of the hand.
 //
-// Place     a hand's millimetre is a bone's. The middle of the hand's space lies straight before a patch of bone that a
-//           tool can be set on, near the middle (approach.hpp), kInFrontM in front of all bone that is near: a hand at
-//           rest is outside and meets bone when it goes straight on.
-// Fails by  StartupError; Cancelled when `progress` returns false. Nothing is written here.
+// Place     scale 1: one millimetre of the hand is one millimetre of bone. The centre of the hand's workspace lies
+//           in front of a patch of bone near the middle (approach.hpp), kInFrontM in front of all bone near it: a hand
+//           at rest is outside the bone and meets bone when it moves straight ahead.
+// Fails by  StartupError; Cancelled when `progress` returns false. Writes no file.
 // Repeats   the same input gives the same sections.
 #pragma once
 
@@ -27,12 +27,12 @@ struct BoneInput {
 struct BakedBone {
     SceneMeta meta{};
     std::string note;
-    std::uint64_t bone_voxels = 0;  // of any density but 0
-    double bone_m3 = 0.0;           // as if all of it were solid: densities / 255, summed
+    std::uint64_t bone_voxels = 0;  // of density above 0
+    double bone_m3 = 0.0;           // solid-equivalent volume: sum of densities / 255
     std::uint32_t distance_fields = 0;
 };
 
-// The most that bone and scene take side by side, with that many distance fields; without labels: none.
+// Largest memory that bone and scene need together, with `fields` distance fields (0 without labels).
 double bake_bytes(const BoneBricks& bricks, bool labelled, std::size_t fields);
 BakedBone bake_bone(BoneInput&& input, SceneWriter& out, const Progress& progress = {});
 

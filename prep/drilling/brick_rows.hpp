@@ -1,4 +1,4 @@
-// Rows of voxels out of bricks and into them.
+// Copies rows of voxels from bricks and into bricks.
 #pragma once
 
 #include <cstring>
@@ -8,7 +8,7 @@
 
 namespace tact {
 
-// `row` has room for whole bricks: a multiple of 8 voxels, at least bricks.size[0].
+// `row` holds whole bricks: a multiple of 8 voxels, at least bricks.size[0].
 inline void brick_row(const BoneBricks& bricks, std::span<const std::uint8_t> voxel, std::uint32_t y,
                       std::uint32_t z, std::span<std::uint8_t> row) {
     const std::uint8_t* from = voxel.data() + bricks.voxel(0, y, z);

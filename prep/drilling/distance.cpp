@@ -1,8 +1,8 @@
-// Method. The squared distance to a set of cubes is a minimum over each axis in turn (Felzenszwalb, Huttenlocher 2012),
-// as the distance to one cube is: the sum over the axes of max(|d| - 1/2, 0)^2 voxels. So rows are reduced to the grid's
-// points first, then columns, then the rest. What is inside is asked within the structure's box alone. Distances at grid points
-// are exact but for the last half step of their 16 bits. Between them a function that changes by no more than the way
-// is wrong by no more than sqrt(3)/2 of the spacing.
+// Method. The squared distance to one cube is the sum over the axes of max(|d| - 1/2, 0)^2 voxels, so the squared
+// distance to a set of cubes is a minimum over each axis in turn (Felzenszwalb, Huttenlocher 2012). Rows are reduced to
+// grid points first, then columns, then planes. Distances inside the structure are computed within its bounding box
+// only. Distances at grid points are exact to half a quantum of their 16 bits. A distance function changes by no more
+// than the distance moved, so between grid points the error is at most sqrt(3)/2 of the spacing.
 #include "prep/drilling/distance.hpp"
 
 #include <algorithm>
@@ -22,10 +22,10 @@ float gap_squared(std::uint32_t voxels) {
     return d * d;
 }
 
-// Along one axis: from voxels low to high - 1 to the grid's points that lie among them, or beyond the last one.
+// One axis: from voxels low to high - 1 to the grid points that lie among them, or beyond the last voxel.
 struct DistanceAxis {
     std::uint32_t low, high, step, first, points;
-    std::vector<float> gap;  // squared, of each voxel to each point
+    std::vector<float> gap;  // squared distance from each voxel to each point
     DistanceAxis(std::uint32_t from, std::uint32_t to, std::uint32_t each, std::uint32_t end)
         : low(from),
           high(to),
@@ -39,7 +39,7 @@ struct DistanceAxis {
                     gap_squared(i + low > at(j) ? i + low - at(j) : at(j) - i - low);
     }
     [[nodiscard]] std::uint32_t at(std::uint32_t j) const { return (first + j) * step; }
-    // best[j]: the least of value and gap over the voxels that have a value.
+    // best[j]: the minimum of value plus gap over the voxels that have a value.
     void reduce(const float* value, float* best) const {
         std::fill(best, best + points, kNowhere);
         for (std::uint32_t i = 0; i < high - low; ++i) {
@@ -52,7 +52,7 @@ struct DistanceAxis {
 };
 using DistanceAxes = std::array<DistanceAxis, 3>;
 
-// Where a label is: voxels low to high - 1.
+// Bounding box of a label: voxels low to high - 1.
 struct LabelBox {
     std::array<std::uint32_t, 3> low{UINT32_MAX, UINT32_MAX, UINT32_MAX}, high{};
 };
@@ -76,7 +76,7 @@ LabelBox box_of(const BoneBricks& bricks, std::span<const std::uint8_t> label, s
     return box;
 }
 
-// Squared distances of the axes' points to the voxels among them whose label is `of`, or is not.
+// Squared distances from the axes' points to the voxels whose label is `of` (with `inverse`: is not `of`).
 std::vector<float> distances_squared(const BoneBricks& bricks, std::span<const std::uint8_t> label,
                                      std::uint8_t of, bool inverse, const DistanceAxes& axes,
                                      const Progress& progress, double from) {
@@ -88,7 +88,7 @@ std::vector<float> distances_squared(const BoneBricks& bricks, std::span<const s
     std::vector<float> rows(mx * ny), planes(mx * my * nz), result(mx * my * az.points),
         best(std::max(my, std::size_t{az.points}));
     for (std::uint32_t z = 0; z < nz; ++z) {
-        if (z % 16 == 0) report(progress, from + 0.4 * z / nz, "measuring distances to structures");
+        if (z % 16 == 0) report(progress, from + 0.4 * z / nz, "computing distances to structures");
         for (std::uint32_t y = 0; y < ny; ++y) {
             brick_row(bricks, label, ay.low + y, az.low + z, row);
             std::uint32_t seen = kNoneInRow;
@@ -140,7 +140,7 @@ BuiltDistances build_distances(const BoneBricks& bricks, std::span<const std::ui
     std::array<std::uint32_t, 3> points, low, high;
     for (std::size_t a = 0; a < 3; ++a) {
         points[a] = (bricks.size[a] - 1 + step - 1) / step + 1;
-        // One voxel more, as what is not the structure is right beside it.
+        // One voxel wider: the voxels outside the structure begin there.
         low[a] = box.low[a] > 0 ? box.low[a] - 1 : 0;
         high[a] = std::min(box.high[a] + 1, bricks.size[a]);
     }
@@ -157,7 +157,7 @@ BuiltDistances build_distances(const BoneBricks& bricks, std::span<const std::ui
     f.spacing_m = step * bricks.voxel_m;
     f.origin_m = bricks.origin_m;
     const std::uint32_t longest = *std::max_element(bricks.size.begin(), bricks.size.end());
-    // 32 steps a voxel, or fewer where the longest way through the volume would not fit.
+    // 32 quanta per voxel, or fewer if the diagonal of the volume would not fit into 16 bits.
     f.quantum_m = bricks.voxel_m * std::max(1.0 / 32.0, 1.8 * longest / 32767.0);
     f.error_m = 0.87 * f.spacing_m + 0.5 * f.quantum_m;
     const double scale = bricks.voxel_m / f.quantum_m;
@@ -173,7 +173,7 @@ BuiltDistances build_distances(const BoneBricks& bricks, std::span<const std::ui
             for (std::size_t i = 0; i < inner[0].points; ++i, ++from) {
                 const std::size_t to =
                     ((inner[2].first + k) * points[1] + inner[1].first + j) * points[0] + inner[0].first + i;
-                // Where all of the volume is the structure: as far in as can be said.
+                // If the structure fills the whole volume, this clamps to the deepest value.
                 if (inside[from] > 0.0F)
                     built.quanta[to] = quantized(-std::sqrt(static_cast<double>(inside[from])));
             }

@@ -1,4 +1,4 @@
-// The distance field of one structure of a bone volume.
+// Builds the distance field of one structure of a bone volume.
 #pragma once
 
 #include <cstdint>
@@ -11,7 +11,7 @@
 namespace tact {
 
 struct BuiltDistances {
-    DistanceField field;               // without its distances; `view()` has them
+    DistanceField field;               // without its distances; `view()` adds them
     std::vector<std::int16_t> quanta;  // empty: no voxel has the label
     [[nodiscard]] DistanceField view() const {
         DistanceField f = field;
@@ -20,10 +20,10 @@ struct BuiltDistances {
     }
 };
 
-// Voxels from one grid point to the next: 4 where that is below half a millimetre or the volume large, else 2.
+// Voxels between grid points: 4 if that is below half a millimetre or the volume is large, else 2.
 std::uint32_t distance_step(const BoneBricks& bricks);
 
-// Memory beside the result: some 3 bytes for step voxels.
+// Needs about 3 bytes per `step` voxels of memory in addition to the result.
 BuiltDistances build_distances(const BoneBricks& bricks, std::span<const std::uint8_t> label, std::uint8_t of,
                                const Progress& progress = {});
 

@@ -55,12 +55,12 @@ T drill_value(const std::pair<const char*, T> (&table)[n], const std::string& na
         ->second;
 }
 
-// "0:256,0:256,10:90"
+// Parses "0:256,0:256,10:90".
 ScanCrop parse_crop(const std::string& text) {
     ScanCrop crop;
     const auto ends = numbers_between(text, ":,:,:");
     if (!ends)
-        throw StartupError("--crop " + text, "it is not three times first:end",
+        throw StartupError("--crop " + text, "the text is not three ranges first:end",
                            "give columns, rows and slices, as in --crop 0:256,0:256,10:90");
     for (std::size_t axis = 0; axis < 3; ++axis) {
         crop.low[axis] = (*ends)[2 * axis];
@@ -70,7 +70,7 @@ ScanCrop parse_crop(const std::string& text) {
 }
 
 void say_memory(double voxels, double bytes) {
-    std::fprintf(stderr, "%.0f million voxels; about %.0f MB of memory are needed\n", 1e-6 * voxels,
+    std::fprintf(stderr, "%.0f million voxels; about %.0f MB of memory needed\n", 1e-6 * voxels,
                  1e-6 * bytes);
 }
 
@@ -86,7 +86,8 @@ BoneInput drill_made(const DrillSettings& o, Console& console) {
     input.bone = make_temporal_bone(
         made, [&](double fraction, const char* what) { return progress(0.5 * fraction, what); });
     input.title = "synthetic temporal bone, right";
-    input.note = {"bone: made by tact-prep, a right temporal bone of seed " + std::to_string(made.seed)};
+    input.note = {"bone: made by tact-prep, a right temporal bone with random seed " +
+                  std::to_string(made.seed)};
     return input;
 }
 
@@ -104,8 +105,8 @@ BoneInput drill_scan(const DrillSettings& o, Console& console) {
         for (std::size_t a = 0; a < 3; ++a)
             settings.spacing_mm[static_cast<int>(a)] = o.spacing_mm[o.spacing_mm.size() == 1 ? 0 : a];
     else if (!o.spacing_mm.empty())
-        throw StartupError("--spacing-mm", "it has two numbers",
-                           "give one, or one for columns, rows and slices");
+        throw StartupError("--spacing-mm", "two numbers are given",
+                           "give one number, or three for columns, rows and slices");
     for (std::size_t c = 0; c < 3 && o.bone_colour.size() == 3; ++c)
         settings.bone_colour[c] = static_cast<std::uint8_t>(o.bone_colour[c]);
     settings.announce = say_memory;

@@ -1,4 +1,4 @@
-// tact-prep drill CT and tact-prep demo drill: scenes of bone to drill.
+// tact-prep drill CT and tact-prep demo drill: bake drilling scenes.
 #pragma once
 
 #include <CLI/CLI.hpp>

@@ -32,7 +32,7 @@ bool has_pictures(const fs::path& folder) {
 
 OpenedScan open_stack(const fs::path& folder, const Vec3& spacing_mm) {
     if (!(spacing_mm.minCoeff() > 0.0))
-        throw StartupError("read the images in " + folder.string(), "images have no pixel spacing",
+        throw StartupError("read the images in " + folder.string(), "PNG images have no pixel spacing",
                            "give the spacing of columns, rows and slices, as in --spacing-mm 0.2,0.2,0.2");
     PngStack stack = read_png_stack(folder, spacing_mm);
     return {std::move(stack.scan), std::move(stack.palette)};
@@ -41,7 +41,7 @@ OpenedScan open_stack(const fs::path& folder, const Vec3& spacing_mm) {
 OpenedScan open_scan(const fs::path& path, const BoneImport& o, const Progress& progress) {
     const std::string attempt = "read scan " + path.string();
     std::error_code error;
-    if (!fs::exists(path, error)) throw StartupError(attempt, "it does not exist", "check the path");
+    if (!fs::exists(path, error)) throw StartupError(attempt, "the file does not exist", "check the path");
     if (fs::is_directory(path, error)) {
         if (has_pictures(path)) return open_stack(path, o.spacing_mm);
         return {dicom_stack(list_dicom(path, progress), o.series, attempt), nullptr};
@@ -52,7 +52,7 @@ OpenedScan open_scan(const fs::path& path, const BoneImport& o, const Progress& 
     if (ending == ".nii") return {read_raw_scan(path, "NIfTI", nifti_header, o.unit_mm), nullptr};
     if (ending == ".mha" || ending == ".mhd")
         return {read_raw_scan(path, "MetaImage", meta_image_header, o.unit_mm), nullptr};
-    if (is_dicom(path)) {  // the series that it is of
+    if (is_dicom(path)) {  // the series that contains this file
         const fs::path folder = path.has_parent_path() ? path.parent_path() : fs::path(".");
         std::vector<DicomSlice> all = list_dicom(folder, progress);
         std::string uid;
@@ -62,7 +62,7 @@ OpenedScan open_scan(const fs::path& path, const BoneImport& o, const Progress& 
         return {dicom_stack(std::move(all), o.series, attempt), nullptr};
     }
     throw StartupError(
-        attempt, "it is of no format that is known",
+        attempt, "the format is unknown",
         "give a folder of DICOM files or of PNG images, or a .nrrd, .nhdr, .nii, .mha or .mhd file");
 }
 
@@ -74,7 +74,7 @@ struct DensityRange {
 bool reaches_air(const Scan& scan, const Progress& progress) {
     std::vector<float> pixels(scan.pixels());
     for (std::uint32_t k = 0; k < scan.slice.size(); ++k) {
-        report(progress, 0.0, "looking at the scan's values");
+        report(progress, 0.0, "finding the scan's range of values");
         scan.read(k, pixels);
         if (*std::min_element(pixels.begin(), pixels.end()) <= static_cast<float>(kAirHu)) return true;
     }
@@ -89,18 +89,19 @@ DensityRange choose_range(const Scan& scan, const BoneImport& o, const Progress&
     else if (scan.values != ScanValues::grey && !(o.threshold && o.solid))
         throw StartupError(
             "separate bone from other tissue",
-            "no voxel of it is as low as air in Hounsfield units, so its values are of an unknown kind",
-            "give the values of the file for no bone and for solid bone: --threshold-hu and --solid-hu");
+            "no voxel is as low as air in Hounsfield units, so the unit of the values is unknown",
+            "give the file's values for no bone and for solid bone: --threshold-hu and --solid-hu");
     if (o.threshold) range.low = *o.threshold;
     if (o.solid) range.high = *o.solid;
     if (!(range.low < range.high) || std::abs(range.low) > 1e6 || std::abs(range.high) > 1e6)
-        throw StartupError("separate bone from other tissue",
-                           note_line("the threshold is %g and solid bone is %g", range.low, range.high),
-                           "give a --solid-hu above --threshold-hu");
+        throw StartupError(
+            "separate bone from other tissue",
+            note_line("the threshold %g is not below the value of solid bone, %g", range.low, range.high),
+            "give a --solid-hu that is greater than --threshold-hu");
     return range;
 }
 
-// Turns labels of the file to rows of a table, 1 and up, in the order of their values.
+// Converts the label values of the file to rows of a table, 1 and up, in the order of their values.
 void put_structures(BoneData& bone, std::vector<ScanLabel> known, const BoneImport& o) {
     std::array<std::uint64_t, 256> count{};
     for (const std::uint8_t l : bone.label) ++count[l];
@@ -126,7 +127,7 @@ void put_structures(BoneData& bone, std::vector<ScanLabel> known, const BoneImpo
         while (size < s.name.size() && size > 0 &&
                (static_cast<unsigned char>(s.name[size]) & 0xC0U) == 0x80U)
             --size;
-        s.name.resize(size);  // not amid a letter
+        s.name.resize(size);  // do not cut inside a UTF-8 character
         s.critical = critical_name(s.name, o.critical);
         bone.structure.push_back(std::move(s));
         row_of[value] = static_cast<std::uint8_t>(bone.structure.size());
@@ -139,7 +140,7 @@ void put_structures(BoneData& bone, std::vector<ScanLabel> known, const BoneImpo
     }
 }
 
-// A stack whose colours are structures: one of them is bone.
+// A stack of images whose colours mark structures; one of the colours is bone.
 void segmented(const Scan& scan, const SamplePlan& plan, const StackPalette& palette, const BoneImport& o,
                std::vector<ScanLabel> known, BoneData& bone, const Progress& progress) {
     bone.label = sample_labels(scan, plan, scan, progress);
@@ -162,12 +163,13 @@ void segmented(const Scan& scan, const SamplePlan& plan, const StackPalette& pal
         throw StartupError("separate bone from other tissue",
                            note_line("no pixel has the colour of bone, %u,%u,%u", o.bone_colour[0],
                                      o.bone_colour[1], o.bone_colour[2]),
-                           "give --bone-colour RED,GREEN,BLUE");
-    // The number 0 stands for no label: the first colour met, if it is a structure, takes a free one.
+                           "give the colour of bone with --bone-colour RED,GREEN,BLUE");
+    // Label 0 means none: if the first palette colour is a structure, it gets an unused number.
     std::uint8_t first = 0;
     if (!empty[0] && bone_colour != 0) {
         if (palette.rgba.size() == 256)
-            throw StartupError("read the labels", "there are 256 colours", "255 and the empty one can be");
+            throw StartupError("read the labels", "the images have 256 structure colours",
+                               "use at most 255 colours and an empty one");
         first = static_cast<std::uint8_t>(palette.rgba.size());
         colours[0].value = first;
     }
@@ -184,7 +186,7 @@ void segmented(const Scan& scan, const SamplePlan& plan, const StackPalette& pal
             bone.density[i] = kLabelDensity;
         }
     }
-    // Bricks' rest beyond the size was no colour.
+    // Clear the padding of the bricks beyond the size of the volume.
     const auto& n = plan.bricks.size;
     const auto rest = plan.bricks.bricks();
     for (std::uint32_t z = 0; z < 8 * rest[2]; ++z)
@@ -226,7 +228,8 @@ BoneInput import_bone(const BoneImport& o, const Progress& whole) {
     bone.bricks = plan.bricks;
     if (opened.palette) {
         if (!o.labels.empty())
-            throw StartupError("read the labels", "the images are labels already", "leave --labels out");
+            throw StartupError("read the labels", "the scan itself consists of label images",
+                               "omit --labels");
         segmented(scan, plan, *opened.palette, o, std::move(known), bone, progress);
     } else {
         const DensityRange range = choose_range(scan, o, progress);
@@ -243,13 +246,13 @@ BoneInput import_bone(const BoneImport& o, const Progress& whole) {
             OpenedScan labels = open_scan(o.labels, o, part(progress, labels_from, labels_from));
             if (labels.palette)
                 throw StartupError("read the labels", "coloured images cannot be combined with a scan",
-                                   "save them as NRRD, NIfTI or MetaImage");
+                                   "save the labels as NRRD, NIfTI or MetaImage");
             if (o.label_names.empty()) known = labels.scan.label;
             if (o.crop && !(scan.oriented && labels.scan.oriented)) crop_scan(labels.scan, *o.crop);
             bone.label = sample_labels(scan, plan, labels.scan, part(progress, labels_from, 1.0));
             if (std::all_of(bone.label.begin(), bone.label.end(), [](std::uint8_t l) { return l == 0; }))
-                throw StartupError("put labels on the scan", "none of them lies in the volume",
-                                   "give labels that were made on this scan, or another --crop");
+                throw StartupError("put labels on the scan", "no label lies in the volume",
+                                   "give labels of this scan, or another --crop");
             put_structures(bone, std::move(known), o);
         }
     }
@@ -257,17 +260,19 @@ BoneInput import_bone(const BoneImport& o, const Progress& whole) {
     input.note.insert(input.note.begin(),
                       {"scan: " + scan.format + ", " + size,
                        std::string("towards the user: ") +
-                           (scan.oriented ? "the patient's " : "as far as the file tells, the patient's ") +
+                           (scan.oriented ? "the patient's " : "presumably the patient's ") +
                            kFaceNames[static_cast<std::size_t>(o.face)]});
     if (scan.oriented) {
         const Vec3 middle =
             scan.origin_mm + scan.axes * Vec3(plan.start_mm[0] + 0.5 * plan.voxel_mm * (plan.count[0] - 1.0),
                                               plan.start_mm[1] + 0.5 * plan.voxel_mm * (plan.count[1] - 1.0),
                                               plan.start_mm[2] + 0.5 * plan.voxel_mm * (plan.count[2] - 1.0));
-        input.note.push_back(note_line("model (0, 0, 0): %.2f mm left, %.2f mm back, %.2f mm up in the scan",
-                                       middle.x(), middle.y(), middle.z()));
+        input.note.push_back(
+            note_line("model (0, 0, 0): %.2f mm left, %.2f mm back, %.2f mm up from the scan's origin",
+                      middle.x(), middle.y(), middle.z()));
     } else {
-        scan.warning.emplace_back("the file does not name the left side: the bone may be mirrored");
+        scan.warning.emplace_back(
+            "the file does not state the patient's left side: the bone may be mirrored");
     }
     for (const std::string& line : scan.note) input.note.push_back(line);
     for (const std::string& line : scan.warning) {

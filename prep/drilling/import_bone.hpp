@@ -1,13 +1,13 @@
-// A scan in any of the formats, with or without labels, to bone that can be baked.
+// Converts a scan in any supported format, with or without labels, to bone that can be baked.
 //
-// Density   by two values of the scan: no bone at and below the first, solid at and above the second. For Hounsfield
-//           units these are 300 and 1800; for 8-bit grey 0 and 255. Where what the numbers mean is not known and none
-//           reaches that of air, both have to be given: a guess would be felt as wrong bone.
-// Labels    a second file, or the colours of a stack of pictures. Names come from the file (segmentations of 3D Slicer)
-//           or from a list as ITK-SNAP writes it. Critical are those whose name holds a word of kCriticalWords or one
-//           that is given; their voxels are at least kLabelDensity, so that a burr meets them.
-// Private   nothing of a file but geometry, values and the names of its labels goes on, not even its own name.
-// Memory    `announce` is told the voxels and the most bytes before they are taken.
+// Density   from two values of the scan: no bone at and below the first, solid at and above the second. For Hounsfield
+//           units these are 300 and 1800; for 8-bit grey 0 and 255. If the unit is unknown and no voxel is as low as
+//           air, both must be given: a guess would produce bone that feels wrong.
+// Labels    a second file, or the colours of a stack of images. Names come from the file (segmentations of 3D Slicer)
+//           or from an ITK-SNAP label description. A structure is critical if its name contains one of kCriticalWords
+//           or a given word; its voxels have at least kLabelDensity, so that a burr has contact with them.
+// Private   only geometry, values and label names are taken over from a file, not even its own name.
+// Memory    `announce` gets the number of voxels and the peak of bytes before memory is allocated.
 // Fails by  StartupError; Cancelled when `progress` returns false.
 #pragma once
 
@@ -28,21 +28,21 @@ inline constexpr std::uint8_t kLabelDensity = 40;
 struct BoneImport {
     std::filesystem::path scan, labels, label_names;
     std::optional<double> threshold, solid;  // in the scan's values
-    double voxel_mm = 0.0;                   // 0: the scan's finest
+    double voxel_mm = 0.0;                   // 0: the finest spacing of the scan
     std::optional<ScanCrop> crop;
     unsigned series = 0;
-    double unit_mm = 1.0;                                    // of a file that does not say
-    Vec3 spacing_mm = Vec3::Zero();                          // of a stack of pictures: columns, rows, slices
+    double unit_mm = 1.0;                                    // unit of length of a file that states none
+    Vec3 spacing_mm = Vec3::Zero();                          // of a stack of images: columns, rows, slices
     std::array<std::uint8_t, 3> bone_colour{255, 249, 219};  // of a stack of labels
     BoneFace face = BoneFace::front;
-    std::vector<std::string> critical;  // more words
+    std::vector<std::string> critical;  // additional words
     std::function<void(double voxels, double bytes)> announce;
     std::function<void(const std::string&)> warn;
 };
 
 BoneInput import_bone(const BoneImport& settings, const Progress& progress = {});
 
-// Lines "value red green blue opacity visible mesh "name"" as ITK-SNAP writes them; # begins a remark.
+// Parses lines `value red green blue opacity visible mesh "name"` of ITK-SNAP; # begins a comment.
 std::vector<ScanLabel> parse_label_names(std::string_view text, const std::string& attempt);
 bool critical_name(const std::string& name, const std::vector<std::string>& more);
 

@@ -14,7 +14,8 @@ constexpr const char* kCriticalWords[] = {"nerve",   "nerv",   "facial",  "chord
 }  // namespace
 
 std::vector<ScanLabel> parse_label_names(std::string_view text, const std::string& attempt) {
-    HeaderText in(text, attempt);
+    constexpr const char* kFix = "write the list as ITK-SNAP does (Segmentation, Export Label Descriptions)";
+    HeaderText in(text, attempt, kFix);
     std::vector<ScanLabel> labels;
     std::string_view line;
     while (in.line(line)) {
@@ -23,15 +24,14 @@ std::vector<ScanLabel> parse_label_names(std::string_view text, const std::strin
         const std::size_t quote = line.find('"'), end = line.rfind('"');
         const auto words = HeaderText::words(line.substr(0, std::min(quote, line.size())));
         if (quote == std::string_view::npos || end == quote || words.size() < 4)
-            throw StartupError(attempt, "a line is not: value red green blue opacity visible mesh \"name\"",
-                               "write the list as ITK-SNAP does (Segmentation, Export Label Descriptions)");
+            in.fail("a line does not have the form: value red green blue opacity visible mesh \"name\"");
         std::array<std::uint64_t, 4> number{};
         for (std::size_t i = 0; i < 4; ++i) {
             number[i] = in.whole(words[i], "a number of a label");
             if (number[i] > 255)
-                in.fail("a number of a label is " + std::to_string(number[i]) + "; 0 to 255 can be");
+                in.fail("a number of a label is " + std::to_string(number[i]) + ", outside 0 to 255");
         }
-        if (number[0] == 0) continue;  // "clear label"
+        if (number[0] == 0) continue;  // skips "clear label"
         labels.push_back({static_cast<std::uint8_t>(number[0]),
                           std::string(line.substr(quote + 1, end - quote - 1)),
                           {static_cast<std::uint8_t>(number[1]), static_cast<std::uint8_t>(number[2]),

@@ -1,4 +1,4 @@
-// Lines of a scene's note.
+// Formats lines of a scene's note.
 #pragma once
 
 #include <cstdarg>
@@ -7,7 +7,7 @@
 
 namespace tact {
 
-// As printf; what is longer than 319 bytes is cut.
+// Like printf; cuts the text after 319 bytes.
 [[gnu::format(printf, 1, 2)]] inline std::string note_line(const char* format, ...) {
     char text[320];
     va_list arguments;

@@ -1,4 +1,4 @@
-// Bone and labelled structures of a drilling scene in the report of tact-prep info.
+// Reports the bone and the labelled structures of a drilling scene for tact-prep info.
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>
@@ -7,7 +7,7 @@
 
 namespace tact {
 
-// Adds its keys. Fails by StartupError where a section is damaged.
+// Adds the keys of the system to `json`. Throws StartupError if a section is damaged.
 void report_drilling(const SceneFile& file, nlohmann::ordered_json& json);
 
 }  // namespace tact

@@ -11,7 +11,7 @@
 namespace tact {
 namespace {
 
-// Model axes in the patient's frame (LPS), a column each: x, y, z; z looks at the user.
+// Model axes x, y, z as columns, in the patient's frame (LPS); z points at the user.
 Eigen::Matrix3d model_axes(BoneFace face) {
     const Vec3 left(1, 0, 0), back(0, 1, 0), up(0, 0, 1);
     Vec3 y = up, z = -back;
@@ -43,7 +43,7 @@ Eigen::Matrix3d model_axes(BoneFace face) {
     return m;
 }
 
-// The turn by right angles that is nearest to the true one, never a mirror.
+// The rotation by right angles nearest to the true rotation; never a reflection.
 void choose_axes(const Scan& scan, BoneFace face, SamplePlan& plan) {
     const Eigen::Matrix3d r = model_axes(face).transpose() * scan.axes;  // model from scan
     std::array<std::size_t, 3> axis{0, 1, 2};
@@ -69,7 +69,7 @@ struct Tap {
 };
 using Taps = std::vector<Tap>;
 
-// Of a position among evenly spaced ones, in units of these; empty beyond them.
+// Weights of evenly spaced samples around the position `at` (unit: their spacing); empty outside their range.
 void put_taps(double at, double half_width, std::uint32_t count, Taps& taps) {
     taps.clear();
     if (at < -0.5 || at > count - 0.5) return;
@@ -128,7 +128,7 @@ private:
         }
         for (Tap& t : taps_) t.weight /= static_cast<float>(sum);
     }
-    // A slice on the plan's columns and rows: along rows first, then across them.
+    // A slice resampled to the plan's columns and rows: along rows first, then across them.
     const std::vector<float>& slice(std::uint32_t index) {
         const auto [at, fresh] = planes_.try_emplace(index);
         if (!fresh) return at->second;
@@ -202,15 +202,16 @@ SamplePlan plan_samples(const Scan& scan, double voxel_mm, BoneFace face) {
     const double longest = *std::max_element(extent.begin(), extent.end());
     const auto refuse = [&](const std::string& why) {
         char fix[160];
-        std::snprintf(fix, sizeof fix,
-                      "give a larger --voxel-mm (%.2g gives 1024 voxels along the longest side), or --crop",
-                      longest / 1023.0);
+        std::snprintf(
+            fix, sizeof fix,
+            "give a larger --voxel-mm (%.2g gives 1024 voxels along the longest side), or a smaller --crop",
+            longest / 1023.0);
         throw StartupError("resample the scan", why, fix);
     };
     for (const double n : count)
         if (!(n <= kBoneEdgeMax))
-            refuse("it would be " + std::to_string(static_cast<std::uint64_t>(std::min(n, 1e15))) +
-                   " voxels long, " + std::to_string(kBoneEdgeMax) + " can be");
+            refuse("the volume would be " + std::to_string(static_cast<std::uint64_t>(std::min(n, 1e15))) +
+                   " voxels long, more than " + std::to_string(kBoneEdgeMax));
     for (std::size_t a = 0; a < 3; ++a) plan.count[a] = static_cast<std::uint32_t>(count[a]);
     plan.bricks.voxel_m = 1e-3 * plan.voxel_mm;
     for (std::size_t a = 0; a < 3; ++a) {
@@ -263,12 +264,12 @@ std::vector<std::uint8_t> sample_labels(const Scan& scan, const SamplePlan& plan
             if (!(pixels[i] >= 0.0F && pixels[i] <= 255.0F) || pixels[i] != std::floor(pixels[i]))
                 throw StartupError("read the labels",
                                    "a voxel of slice " + std::to_string(k) + " is " +
-                                       std::to_string(pixels[i]) + ", which is no whole number from 0 to 255",
+                                       std::to_string(pixels[i]) + ", not a whole number from 0 to 255",
                                    "give a label volume with --labels, not a scan");
             all[k * pixels.size() + i] = static_cast<std::uint8_t>(pixels[i]);
         }
     }
-    const Scan& place = together ? scan : labels;  // what tells where the labels are
+    const Scan& place = together ? scan : labels;  // the volume that places the labels
     const Eigen::Matrix3d turn = place.axes.transpose() * scan.axes;
     const Vec3 shift = place.axes.transpose() * (scan.origin_mm - place.origin_mm);
     std::vector<double> at_s;
@@ -278,7 +279,7 @@ std::vector<std::uint8_t> sample_labels(const Scan& scan, const SamplePlan& plan
                                : 0.5 * plan.voxel_mm;
     std::vector<std::uint8_t> out(plan.bricks.bytes());
     for (std::uint32_t k = 0; k < plan.count[2]; ++k) {
-        report(progress, 0.5 + 0.5 * k / plan.count[2], "putting the labels on the scan");
+        report(progress, 0.5 + 0.5 * k / plan.count[2], "aligning the labels with the scan");
         for (std::uint32_t v = 0; v < plan.count[1]; ++v) {
             for (std::uint32_t u = 0; u < plan.count[0]; ++u) {
                 const Vec3 p =

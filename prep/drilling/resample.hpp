@@ -1,10 +1,10 @@
-// From a scan's slices to the cubes of a bone volume, turned so that a chosen side of the patient looks at the user.
+// Resamples a scan to the cubes of a bone volume, rotated so that a chosen side of the patient faces the user.
 //
-// Values    linear between voxels where the new voxel is the finer one, else averaged with a tent as wide as it, so
-//           that nothing is skipped. Slices may lie at any distance from each other and be shifted sideways (a tilted
-//           gantry): each is taken from where it is. Labels: the nearest voxel's.
+// Values    linear interpolation if the new voxel is finer, else a tent-weighted mean as wide as the new voxel, so
+//           that no voxel is skipped. Slices may have any spacing and lateral shift (tilted gantry): each is sampled at
+//           its true position. Labels: nearest voxel.
 // Sides     axes are swapped and reversed, never mirrored: left stays left.
-// Memory    the result, and some planes of it; for labels the label file's voxels, a byte each, besides.
+// Memory    the result and some planes of it; for labels also one byte per voxel of the label file.
 #pragma once
 
 #include <cstdint>
@@ -24,15 +24,15 @@ enum class BoneFace : std::uint8_t {
     right,
     top,
     bottom
-};  // of the patient, towards the user
+};  // side of the patient that faces the user
 
 struct SamplePlan {
     BoneBricks bricks;  // the middle of the volume is model (0, 0, 0)
     double voxel_mm = 0.0;
     std::array<std::uint32_t, 3> count{};  // along the scan's columns, rows and normal
-    std::array<double, 3> start_mm{};      // of the first, along these
-    std::array<std::size_t, 3> axis{};     // model axis a is this one of them,
-    std::array<bool, 3> reversed{};        // the other way round
+    std::array<double, 3> start_mm{};      // of the first voxel, along these axes
+    std::array<std::size_t, 3> axis{};     // model axis a is this scan axis,
+    std::array<bool, 3> reversed{};        // reversed if true
     [[nodiscard]] std::size_t voxel(std::uint32_t u, std::uint32_t v, std::uint32_t s) const {
         const std::array<std::uint32_t, 3> from{u, v, s};
         std::array<std::uint32_t, 3> to;
@@ -42,14 +42,14 @@ struct SamplePlan {
     }
 };
 
-// voxel_mm 0: the scan's finest. Throws StartupError where the volume would be too large; takes no memory.
+// voxel_mm 0: the finest spacing of the scan. Throws StartupError if the volume would be too large; allocates nothing.
 SamplePlan plan_samples(const Scan& scan, double voxel_mm, BoneFace face);
 
-// 0 at `low` and below, 255 at `high` and above, at least 1 between them.
+// Density 0 at `low` and below, 255 at `high` and above, at least 1 between.
 std::vector<std::uint8_t> sample_density(const Scan& scan, const SamplePlan& plan, double low, double high,
                                          const Progress& progress);
-// The labels of `labels`, which may lie otherwise than the scan, at the plan's voxels; 0 outside of them.
-// Where one of them does not say where it lies, both have to be of one size, and are taken to lie together.
+// Labels of the volume `labels`, which may be oriented differently from the scan, at the plan's voxels; 0 outside it.
+// If one of the two has no orientation, both must have the same size and are assumed to coincide.
 std::vector<std::uint8_t> sample_labels(const Scan& scan, const SamplePlan& plan, const Scan& labels,
                                         const Progress& progress);
 

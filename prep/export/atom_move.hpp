@@ -17,7 +17,7 @@ struct AtomMove {
     Eigen::Matrix3d turn = Eigen::Matrix3d::Identity();
     Vec3 shift_a = Vec3::Zero();
 
-    // That which takes the file's coordinates to where the body is.
+    // The motion from the coordinates in the file to the pose of the body.
     static AtomMove of(const Pose& T_model_body, const Vec3& home_com_model_m) {
         AtomMove move;
         move.turn = T_model_body.q.normalized().toRotationMatrix();
@@ -25,7 +25,7 @@ struct AtomMove {
         return move;
     }
     [[nodiscard]] Vec3 operator*(const Vec3& place_a) const { return turn * place_a + shift_a; }
-    // U' = R U R^T. Holds for B and beta in Cartesian axes too, as these are proportional to U.
+    // U' = R U R^T. Also valid for B and beta in Cartesian axes, which are proportional to U.
     [[nodiscard]] Adp turned(const Adp& u) const {
         Eigen::Matrix3d m;
         m << u[0], u[3], u[4], u[3], u[1], u[5], u[4], u[5], u[2];

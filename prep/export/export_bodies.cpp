@@ -21,7 +21,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::uint64_t kFileBytesMax = std::uint64_t{1} << 30;
-constexpr char kAttempt[] = "saving the placed structures";
+constexpr char kAttempt[] = "save the placed structures";
 
 struct Source {
     fs::path path;
@@ -43,7 +43,7 @@ std::string stem_of(const fs::path& path) {
     return name.stem().string();
 }
 
-// As the note of the scene has them, in the order of the structures.
+// The source files in the scene's note, in the order of the structures.
 std::vector<Source> sources_of(const SceneFile& scene, std::uint32_t structures) {
     std::vector<std::pair<std::string, std::string>> named;  // path and mark
     std::istringstream lines(read_note(scene));
@@ -55,20 +55,20 @@ std::vector<Source> sources_of(const SceneFile& scene, std::uint32_t structures)
     if (named.size() != structures || named.front().second.empty())
         throw StartupError(kAttempt,
                            scene.name() +
-                               " does not say from which files its structures came; it was made in "
-                               "code, or baked by an older tact-prep",
-                           "bake it from files: tact-prep dock MAP MODEL -o SCENE");
+                               " does not name the files of its structures; it is synthetic, or an older "
+                               "tact-prep baked it",
+                           "bake the scene from files: tact-prep dock MAP MODEL -o SCENE");
     for (const auto& [path, mark] : named) {
         std::error_code ignored;
         if (!fs::exists(path, ignored))
             throw StartupError(kAttempt,
-                               "the file " + path + ", which the scene was baked from, is not there",
-                               "put it back, or bake the scene again from where it is now");
+                               "the file " + path + ", from which the scene was baked, does not exist",
+                               "restore the file, or bake the scene again from its present path");
         if (const std::string now = file_mark(path); now != mark) {
             std::string why = "the file ";
             why.append(path).append(" has changed since the scene was baked: it had ").append(mark);
             throw StartupError(kAttempt, why.append(", and has ").append(now),
-                               "bake the scene again, or put the file back");
+                               "bake the scene again, or restore the file");
         }
         Source s;
         s.path = path;
@@ -90,7 +90,7 @@ std::string matrix_row(const AtomMove& move, int row) {
 }
 
 struct Fit {
-    std::optional<FitOfBodies> numbers;  // nothing where the resolution is not known
+    std::optional<FitOfBodies> numbers;  // absent if the resolution is unknown
     double resolution_a = 0.0;
 };
 
@@ -128,7 +128,7 @@ Remarks remarks_of(const SceneMeta& meta, const Fit& fit, std::size_t index, std
     if (body != nullptr) {
         remarks.emplace_back("body", std::to_string(body->id));
         for (int row = 0; row < 3; ++row)
-            remarks.emplace_back("matrix_row_" + std::to_string(row + 1),  // within a line of PDB
+            remarks.emplace_back("matrix_row_" + std::to_string(row + 1),  // fits a line of PDB
                                  printed("%.8f %.8f %.8f %.4f", move->turn(row, 0), move->turn(row, 1),
                                          move->turn(row, 2), move->shift_a[row]));
         const Eigen::AngleAxisd turn = axis_of(*move);
@@ -185,7 +185,7 @@ std::string csv_row(const PlacedBody& body, const std::string& name, const std::
                          static_cast<unsigned long long>(m.clashes));
 }
 
-// A, B, … Z, a … z, 0 … 9, then AA, AB, … ZZ, AAA, … which only mmCIF has room for.
+// A, B, … Z, a … z, 0 … 9, then AA, AB, … ZZ, AAA, …; only mmCIF has room for ids of two letters and more.
 std::string chain_id(std::size_t n) {
     constexpr std::string_view kLetters = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789";
     if (n < kLetters.size()) return std::string(1, kLetters[n]);
@@ -226,7 +226,7 @@ std::vector<FileAtom> all_atoms(const std::vector<Source>& sources, const std::v
     return all;
 }
 
-// Beside the target first, so that it is whole or absent.
+// Writes to a temporary file first, so that the target is either whole or absent.
 void write_whole(const fs::path& path, const std::string& text) {
     const fs::path part = path.string() + ".part" + std::to_string(::getpid());
     std::error_code ignored;
@@ -236,13 +236,15 @@ void write_whole(const fs::path& path, const std::string& text) {
         out << text << std::flush;
         if (!out) {
             fs::remove(part, ignored);
-            throw StartupError(kAttempt, part.string() + " cannot be written",
-                               "check the space and the permissions of the folder");
+            throw StartupError(kAttempt, part.string() + " could not be written",
+                               "check the free space and the permissions of the folder");
         }
     }
     std::error_code failed;
     fs::rename(part, path, failed);
-    if (failed) throw StartupError(kAttempt, path.string() + ": " + failed.message(), "check the folder");
+    if (failed)
+        throw StartupError(kAttempt, path.string() + ": " + failed.message(),
+                           "check that the folder exists and is writable");
 }
 
 void check_targets(const std::vector<std::pair<fs::path, std::string>>& files,
@@ -251,11 +253,11 @@ void check_targets(const std::vector<std::pair<fs::path, std::string>>& files,
         std::error_code ignored;
         for (const Source& s : sources)
             if (fs::equivalent(path, s.path, ignored))
-                throw StartupError(kAttempt, path.string() + " is the file that the scene was baked from",
+                throw StartupError(kAttempt, path.string() + " is a file from which the scene was baked",
                                    "give another folder with -o");
         if (!force && (fs::exists(path, ignored) || fs::is_symlink(path, ignored)))
-            throw StartupError(kAttempt, path.string() + " exists already",
-                               "give another folder with -o, or --force to write over it");
+            throw StartupError(kAttempt, path.string() + " already exists",
+                               "give another folder with -o, or --force to overwrite the file");
     }
 }
 
@@ -278,7 +280,7 @@ std::vector<fs::path> export_bodies(const SceneFile& scene, const std::vector<Pl
         moves.push_back(AtomMove::of(body.T_model_body, s.home_com_model_m));
         const AtomMove& move = moves.back();
         const Remarks remarks = remarks_of(meta, fit, i, bodies.size(), &body, &move);
-        // Ids are of their own, and so the names are, also where two structures have the same.
+        // The body id makes file names unique, also if two structures have the same name.
         const std::string stem = source.stem + "-body" + std::to_string(body.id);
         std::string name = stem + ".cif", text;
         if (source.mmcif) {
@@ -286,7 +288,7 @@ std::vector<fs::path> export_bodies(const SceneFile& scene, const std::vector<Pl
         } else if (auto pdb = moved_pdb(source.text, source.path.string(), move, remarks)) {
             name = stem + ".pdb";
             text = std::move(*pdb);
-        } else {  // too far out for its columns
+        } else {  // a coordinate does not fit the columns of PDB
             std::vector<FileAtom> atoms = pdb_atoms(source.text, source.path.string());
             for (FileAtom& a : atoms) {
                 a.place_a = move * a.place_a;
@@ -313,7 +315,7 @@ std::vector<fs::path> export_bodies(const SceneFile& scene, const std::vector<Pl
     fs::create_directories(options.folder, failed);
     if (failed)
         throw StartupError(kAttempt, "the folder " + options.folder.string() + ": " + failed.message(),
-                           "give another with -o");
+                           "give another folder with -o");
     std::vector<fs::path> paths;
     for (const auto& [path, text] : files) {
         write_whole(path, text);

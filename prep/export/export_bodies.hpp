@@ -1,13 +1,12 @@
-// Saves placed bodies: each as a structure file of its own in the map's frame, with its matrix, and all in a
-// table.
+// Saves placed bodies: each as a structure file in the map's frame with its matrix, and a table of all.
 //
-//   NAME-bodyID.pdb or .cif     the original file with its atoms moved, the fit in its remarks
-//   NAME-bodyID.matrix.txt      3x4 matrix that takes the file's coordinates there, in ångström; axis, angle
+//   NAME-bodyID.pdb or .cif     the original file with its atoms moved and the fit in its remarks
+//   NAME-bodyID.matrix.txt      3x4 matrix from the file's coordinates to the placed ones, in ångström; axis, angle
 //   bodies.csv                  a row for each body: matrix, axis, angle, fit
-//   combined.pdb or .cif        with `combined`: all bodies in one, every chain with an id of its own
+//   combined.pdb or .cif        with `combined`: all bodies in one file, with a unique id per chain
 //
-// Reads     the files that the scene was baked from, which must be as they were then.
-// Never     overwrites one of those; nor, without `force`, any other file. Refuses before it writes.
+// Reads     the files from which the scene was baked; they must be unchanged.
+// Never     overwrites one of these files, nor, without `force`, any other file. Checks this before it writes.
 // Fails by  StartupError.
 #pragma once
 
@@ -20,12 +19,12 @@
 namespace tact {
 
 struct ExportOptions {
-    std::filesystem::path folder;  // is made where it is not there
+    std::filesystem::path folder;  // created if absent
     bool combined = false;
     bool force = false;
 };
 
-// What was written, in order.
+// Returns the files written, in order.
 std::vector<std::filesystem::path> export_bodies(const SceneFile& scene,
                                                  const std::vector<PlacedBody>& bodies,
                                                  const ExportOptions& options);

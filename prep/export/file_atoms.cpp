@@ -45,7 +45,7 @@ double file_number(std::string_view text, const char* what, const std::string& n
         if (static_cast<unsigned char>(c) < 0x20 || static_cast<unsigned char>(c) >= 0x7f) c = '?';
     throw StartupError("read structure " + name,
                        where + ": " + what + " '" + shown + "' is not a number from -100000 to 100000",
-                       "repair the file, or fetch it again from its source");
+                       "repair the file, or fetch it again");
 }
 
 std::vector<FileAtom> pdb_atoms(std::string_view text, const std::string& name) {
@@ -92,7 +92,7 @@ std::vector<FileAtom> mmcif_atoms(std::string_view text, const std::string& name
     try {
         document = CifDocument::read(text, name);
     } catch (const std::exception&) {
-        throw StartupError("read structure " + name, "it is not mmCIF", "fetch the file again");
+        throw StartupError("read structure " + name, "the file is not mmCIF", "fetch the file again");
     }
     std::vector<FileAtom> atoms;
     for (std::size_t block = 0; block < document->blocks(); ++block) {

@@ -1,5 +1,4 @@
-// All atoms of a structure file with all that PDB and mmCIF say of each: nothing is dropped, unlike at
-// import.
+// All atoms of a structure file with all properties that PDB and mmCIF state; unlike at import, none is dropped.
 #pragma once
 
 #include <cstdint>
@@ -15,7 +14,7 @@ namespace tact {
 struct FileAtom {
     bool het = false;
     int model = 1;
-    std::string name, residue_name, chain, element;  // without blanks
+    std::string name, residue_name, chain, element;  // without spaces
     std::string residue;                             // sequence number
     char insertion = ' ', alternate = ' ';
     Vec3 place_a = Vec3::Zero();
@@ -28,7 +27,7 @@ struct FileAtom {
 std::vector<FileAtom> pdb_atoms(std::string_view text, const std::string& name);
 std::vector<FileAtom> mmcif_atoms(std::string_view text, const std::string& name);
 
-// Throws StartupError naming the file, the place and the text where it is no finite number up to 1e5.
+// Throws StartupError with file, place and text if the text is not a finite number of at most 1e5 in size.
 double file_number(std::string_view text, const char* what, const std::string& name,
                    const std::string& where);
 

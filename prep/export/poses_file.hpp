@@ -1,11 +1,11 @@
-// Where bodies are, as JSON: what a run's report and the visual process write, and `tact run --poses` reads.
+// Poses of bodies as JSON: in run reports and saves of the visual process; `tact run --poses` reads them.
 //
 //   {"bodies": [{"id": 1, "structure": 0, "name": "1oel.pdb", "pos_model_a": [x, y, z],
 //                "quat_model_body_xyzw": [x, y, z, w]}, …]}
 //
-// pos_model_a: of the centre of mass, in the map's frame, ångström. Other keys are passed over.
-// Fails by  StartupError: not JSON, more than 1024 bodies, an id twice, a structure that the scene has not,
-//           a place beyond 1e5 ångström, a quaternion whose norm is not 1 within 0.001.
+// pos_model_a: centre of mass in the map's frame, ångström. Other keys are ignored.
+// Fails by  StartupError: not JSON, more than 1024 bodies, a repeated id, a structure that the scene does not have,
+//           a position beyond 1e5 ångström, a quaternion whose norm is not 1 within 0.001.
 #pragma once
 
 #include <cstdint>

@@ -10,7 +10,7 @@
 namespace tact {
 namespace {
 
-// Hold only where the file had the atoms.
+// Categories that hold only for the original coordinates.
 const std::vector<std::string> kUntrueCategories{"_cell.",
                                                  "_symmetry.",
                                                  "_symmetry_equiv.",
@@ -35,7 +35,7 @@ void put_remarks(CifDocument& document, std::size_t block, const Remarks& remark
     for (const auto& [key, value] : remarks) document.set_pair(block, "_tact_fit." + key, value);
 }
 
-// U[1][1] … or B[1][1] …, whatever the table has; "." and "?" stay.
+// Rotates U[1][1] … or B[1][1] …, whichever columns the table has; keeps "." and "?".
 void turn_adps(CifTable table, std::size_t first, const AtomMove& move, const std::string& name, int digits) {
     for (std::size_t row = 0; row < table.rows(); ++row) {
         Adp u{};
@@ -54,7 +54,7 @@ void turn_adps(CifTable table, std::size_t first, const AtomMove& move, const st
 
 std::string moved_mmcif(std::string_view text, const std::string& name, const AtomMove& move,
                         const Remarks& remarks) {
-    (void)mmcif_atoms(text, name);  // every number checked, and that it is mmCIF
+    (void)mmcif_atoms(text, name);  // checks that the text is mmCIF and every number is valid
     CifDocument document = CifDocument::read(text, name);
     for (std::size_t block = 0; block < document.blocks(); ++block) {
         CifTable places = document.table(
@@ -67,7 +67,7 @@ std::string moved_mmcif(std::string_view text, const std::string& name, const At
             const Vec3 p = move * Vec3(number(0), number(1), number(2));
             for (std::size_t k = 0; k < 3; ++k) {
                 places.set(row, k, fixed(p[static_cast<int>(k)], 3));
-                if (places.has(3 + k)) places.set(row, 3 + k, "?");  // of a cell that is gone
+                if (places.has(3 + k)) places.set(row, 3 + k, "?");  // fractional: the cell is removed
             }
         }
         for (const std::string letter : {"U", "B"}) {
@@ -88,7 +88,7 @@ std::string moved_mmcif(std::string_view text, const std::string& name, const At
 }
 
 std::string new_mmcif(const std::vector<FileAtom>& atoms, const std::string& name, const Remarks& remarks) {
-    std::string block_name = name;  // no blanks in it
+    std::string block_name = name;  // without spaces
     for (char& c : block_name)
         if (static_cast<unsigned char>(c) <= 0x20 || static_cast<unsigned char>(c) >= 0x7f) c = '_';
     CifDocument document = CifDocument::with_block(block_name);

@@ -8,9 +8,9 @@
 namespace tact {
 namespace {
 
-// PDB's free remarks are 6 to 99.
+// PDB allows free remarks with numbers 6 to 99.
 constexpr char kRemark[] = "REMARK   6 TACT ";
-constexpr char kNoCell[] =  // as files of electron microscopy have it
+constexpr char kNoCell[] =  // as in files of electron microscopy
     "CRYST1    1.000    1.000    1.000  90.00  90.00  90.00 P 1           1\n";
 
 constexpr std::array kTitleRecords{"HEADER", "OBSLTE", "TITLE ", "SPLIT ", "CAVEAT", "COMPND",
@@ -34,7 +34,7 @@ std::string remark_lines(const Remarks& remarks) {
         std::string rest = key + ": " + value;
         for (char& c : rest)  // PDB is ASCII
             if (static_cast<unsigned char>(c) < 0x20 || static_cast<unsigned char>(c) >= 0x7f) c = '?';
-        while (!rest.empty()) {  // 80 columns; what is longer goes on in the next line
+        while (!rest.empty()) {  // 80 columns; longer text continues on the next line
             std::size_t room = 80 - (sizeof kRemark - 1);
             if (rest.size() > room)
                 if (const std::size_t blank = rest.rfind(' ', room - 1);
@@ -47,7 +47,7 @@ std::string remark_lines(const Remarks& remarks) {
     return text;
 }
 
-// Three columns of eight; false where one has no room.
+// Writes three columns of eight characters; false if a coordinate does not fit.
 bool put_place(const Vec3& p, char* to) {
     char text[64];
     if (!(p.minCoeff() > -999.9995 && p.maxCoeff() < 9999.9995)) return false;
@@ -71,7 +71,7 @@ bool put_adp(const Adp& u, char* to) {
 
 std::optional<std::string> moved_pdb(std::string_view text, const std::string& name, const AtomMove& move,
                                      const Remarks& remarks) {
-    const std::vector<FileAtom> atoms = pdb_atoms(text, name);  // every number checked
+    const std::vector<FileAtom> atoms = pdb_atoms(text, name);  // checks every number
     std::size_t next = 0;
     bool said = false;
     std::string out;
@@ -106,7 +106,7 @@ std::optional<std::string> new_pdb(const std::vector<FileAtom>& atoms, const Rem
         if (++serial > 99'999 || a.chain.size() > 1 || a.residue.size() > 4 || a.residue_name.size() > 3 ||
             a.name.size() > 4)
             return std::nullopt;
-        // Names begin in column 14, but where the element's symbol has two letters or there are four.
+        // Atom names begin in column 14, except names of four letters and elements of two letters.
         const std::string name = a.name.size() < 4 && a.element.size() < 2 ? " " + a.name : a.name;
         char line[128];
         const auto head = [&](const char* record) {

@@ -1,7 +1,7 @@
-// A structure file again, with its atoms moved: as its own text with other coordinates, or written anew.
+// Writes a structure file with moved atoms: the original text with new coordinates, or a new file.
 //
-// Kept      everything that stays true: names, sequence, secondary structure, waters, hydrogens, all models.
-// Left out  what holds only where the file had the atoms: cell, symmetry, origin and scale matrices,
+// Kept      everything that stays valid: names, sequence, secondary structure, waters, hydrogens, all models.
+// Left out  records that hold only for the original coordinates: cell, symmetry, origin and scale matrices,
 //           assemblies; of PDB files also MASTER, whose counts would be wrong, and the fit of an earlier
 //           save.
 // Precision three digits of an ångström; ADPs four digits of an ångström squared.
@@ -20,13 +20,14 @@ namespace tact {
 
 using Remarks = std::vector<std::pair<std::string, std::string>>;  // key (of _tact_fit. in mmCIF) and value
 
-// Nothing where a coordinate does not fit the columns of PDB.
+// Empty if a coordinate does not fit the columns of PDB.
 std::optional<std::string> moved_pdb(std::string_view text, const std::string& name, const AtomMove& move,
                                      const Remarks& remarks);
 std::string moved_mmcif(std::string_view text, const std::string& name, const AtomMove& move,
                         const Remarks& remarks);
 
-// Nothing where the atoms are too many (99999 with the TER lines), a chain has no letter or a place no room.
+// Empty if there are too many atoms (99999 with the TER lines), a chain id is longer than one letter, or a coordinate
+// does not fit.
 std::optional<std::string> new_pdb(const std::vector<FileAtom>& atoms, const Remarks& remarks);
 std::string new_mmcif(const std::vector<FileAtom>& atoms, const std::string& name, const Remarks& remarks);
 

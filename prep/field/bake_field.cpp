@@ -24,8 +24,8 @@ void put_text(char (&to)[N], const std::string& text) {
         if (static_cast<unsigned char>(to[i]) < 0x20 || to[i] == 0x7f) to[i] = '?';
 }
 
-// Greatest gradient and greatest second derivative (Frobenius norm of the Hessian, which bounds its greatest eigenvalue) by
-// central differences over the inner points.
+// Largest gradient and largest second derivative (Frobenius norm of the Hessian, an upper bound of its largest
+// eigenvalue) by central differences over the inner points.
 struct Slopes {
     double gradient = 0.0, curvature = 0.0;
 };
@@ -37,7 +37,7 @@ Slopes slopes_of(const DensityGrid& grid, const Progress& progress) {
     };
     const Vec3& h = grid.spacing_m;
     for (std::uint32_t z = 1; z + 1 < grid.size[2]; ++z) {
-        report(progress, static_cast<double>(z) / grid.size[2], "measuring the field");
+        report(progress, static_cast<double>(z) / grid.size[2], "computing the slopes of the field");
         for (std::uint32_t y = 1; y + 1 < grid.size[1]; ++y) {
             for (std::uint32_t x = 1; x + 1 < grid.size[0]; ++x) {
                 const double at = value(x, y, z);
@@ -65,8 +65,8 @@ Slopes slopes_of(const DensityGrid& grid, const Progress& progress) {
     return most;
 }
 
-// Continued on kFieldPad layers all round by odd reflection about the faces, v(-i) = 2 v(0) - v(i), axis by axis: the gradient has no
-// kink at a face.
+// Extends the grid by kFieldPad layers on all sides by odd reflection about the faces, v(-i) = 2 v(0) - v(i), axis by
+// axis, so that the gradient is continuous at a face.
 DensityGrid padded(const DensityGrid& grid) {
     DensityGrid out;
     out.spacing_m = grid.spacing_m;
@@ -80,7 +80,7 @@ DensityGrid padded(const DensityGrid& grid) {
         for (std::uint32_t y = 0; y < grid.size[1]; ++y)
             for (std::uint32_t x = 0; x < grid.size[0]; ++x)
                 out.values[index(x + kFieldPad, y + kFieldPad, z + kFieldPad)] = grid.at(x, y, z);
-    // An axis after the other, over what the axes before have filled.
+    // One axis after the other, over the range that the previous axes have filled.
     for (std::size_t a = 0; a < 3; ++a) {
         std::array<std::uint32_t, 3> low{kFieldPad, kFieldPad, kFieldPad}, high{};
         for (std::size_t b = 0; b < 3; ++b) high[b] = kFieldPad + grid.size[b];
@@ -108,7 +108,7 @@ DensityGrid padded(const DensityGrid& grid) {
     return out;
 }
 
-// Two surfaces in one mesh; empty where the field has neither.
+// Two surfaces in one mesh; empty if the field has neither.
 TriangleMesh surfaces_of(const DensityGrid& grid, const Progress& progress) {
     std::vector<float> sorted = grid.values;
     TriangleMesh both;
@@ -120,7 +120,7 @@ TriangleMesh surfaces_of(const DensityGrid& grid, const Progress& progress) {
         const auto first = static_cast<std::uint32_t>(both.vertices());
         both.position_m.insert(both.position_m.end(), one.position_m.begin(), one.position_m.end());
         for (std::size_t i = 0; i < one.triangle.size(); i += 3) {
-            // Around low values the outside is up.
+            // Around low values the outside has the higher values.
             const bool turned = part_of_all < 0.5;
             both.triangle.push_back(first + one.triangle[i]);
             both.triangle.push_back(first + one.triangle[i + (turned ? 2 : 1)]);
@@ -158,7 +158,7 @@ BakedField bake_field(const FieldInput& input, SceneWriter& out, const Progress&
     f.deviation = std::sqrt(sum2 / static_cast<double>(grid.values.size()));
     const Slopes most = slopes_of(grid, part(progress, 0.0, 0.6));
     if (!(f.deviation > 0.0) || !(most.gradient > 0.0))
-        throw StartupError("bake a field", "its values are all " + std::to_string(f.mean),
+        throw StartupError("bake a field", "all values are " + std::to_string(f.mean),
                            "give a potential that changes in space");
 
     const Vec3 extent_m =

@@ -1,7 +1,7 @@
-// The potential of two opposite charges, made in code: for the demo, for tests, and for whoever has no file at hand.
+// The synthetic potential of two opposite charges, for the demo and for tests.
 //
-// Each charge is spread as a Gaussian of width s, so that its potential, q erf(r / (sqrt(2) s)) / r, is smooth at its centre.
-// Source   textbook electrostatics; in units in which 1 / (4 pi epsilon_0) is 1
+// Each charge has a Gaussian density of width s; its potential, q erf(r / (sqrt(2) s)) / r, is smooth at the centre.
+// Source   textbook electrostatics; units with 1 / (4 pi epsilon_0) = 1
 #pragma once
 
 #include <cstdint>
@@ -17,7 +17,7 @@ struct TwoCharges {
 };
 
 [[nodiscard]] double potential(const TwoCharges& charges, const Vec3& at_m);
-// A cube of edge 1 m about the origin, `points` along each axis.
+// A cube of edge 1 m about the origin with `points` points along each axis.
 [[nodiscard]] DensityGrid two_charges_grid(const TwoCharges& charges, std::uint32_t points);
 
 }  // namespace tact

@@ -97,11 +97,11 @@ void add_field(CLI::App& app, CLI::App& demo) {
         sub->add_option("--size-mm", o->size_mm, "Longest edge of the field's box in the workspace (mm)")
             ->check(CLI::Range(1.0, 10000.0))
             ->capture_default_str();
-        sub->add_option("--force-max", o->force_n_max, "Force at the greatest slope of the field (N)")
+        sub->add_option("--force-max", o->force_n_max, "Force at the largest slope of the field (N)")
             ->check(CLI::Range(0.01, 20.0))
             ->capture_default_str();
         sub->add_option("--stiffness-max", o->stiffness_n_m_max,
-                        "Stiffness above which the gain is reduced (N/m)")
+                        "Maximum stiffness of the field (N/m); the gain is reduced to keep it")
             ->check(CLI::Range(1.0, 10000.0))
             ->capture_default_str();
         sub->add_option(
@@ -109,8 +109,7 @@ void add_field(CLI::App& app, CLI::App& demo) {
                "Radius in the workspace of the ball over which the field is averaged (mm); 0: a point")
             ->check(CLI::Range(0.0, 50.0))
             ->capture_default_str();
-        sub->add_option("--value-unit", o->value_unit,
-                        "Unit of the values, as the window shows it; default: none");
+        sub->add_option("--value-unit", o->value_unit, "Unit of the values, for display; default: none");
         sub->add_flag("--json", o->json, "Print the properties of the baked scene as JSON");
     };
     CLI::App* const file = app.add_subcommand("field", "Bake a potential field from values on a grid");

@@ -1,4 +1,4 @@
-// tact-prep field FILE and tact-prep demo field: scenes of a potential field.
+// tact-prep field FILE and tact-prep demo field: bake scenes of a potential field.
 #pragma once
 
 #include <CLI/CLI.hpp>

@@ -15,11 +15,11 @@ namespace {
 
 constexpr std::uint64_t kCsvBytesMax = std::uint64_t{2} << 30;
 constexpr std::uint64_t kPointsMax = std::uint64_t{1} << 26;
-// Of a step: coordinates are often written with three digits.
+// Relative to the step: files often write coordinates with three digits.
 constexpr double kStepTolerance = 0.02;
 
 [[noreturn]] void fail(const std::string& name, const std::string& why, const std::string& fix) {
-    throw StartupError("reading the field " + name, why, fix);
+    throw StartupError("read field " + name, why, fix);
 }
 
 struct Point {
@@ -28,7 +28,7 @@ struct Point {
 
 bool separates(char c) { return c == ',' || c == ';' || c == '\t' || c == ' ' || c == '\r'; }
 
-// Numbers of a line; -1: a word that is no number.
+// Parses the numbers of a line and returns their count, or -1 if a word is not a number.
 int numbers_of(std::string_view line, std::array<double, 5>& number) {
     int count = 0;
     std::size_t at = 0;
@@ -66,19 +66,20 @@ std::vector<Point> points_of(std::string_view text, const std::string& name, boo
         const int count = numbers_of(line, number);
         const std::string where = name + ", line " + std::to_string(line_number);
         if (count < 0) {
-            if (points.empty() && columns == 0) continue;  // names of the columns
-            fail(where, "a word is no number", "write numbers with a point, separated by commas or blanks");
+            if (points.empty() && columns == 0) continue;  // header line
+            fail(where, "the line holds a word that is not a number",
+                 "write numbers with a decimal point, separated by commas or spaces");
         }
         if (columns == 0) columns = count;
         if (count != columns || (count != 3 && count != 4))
-            fail(where, "it has " + std::to_string(count) + " numbers",
-                 "write x y z value, or x y value, in every line");
+            fail(where, "the line has " + std::to_string(count) + " numbers",
+                 "write x y z value, or x y value, on every line");
         const Point p = count == 4 ? Point{number[0], number[1], number[2], number[3]}
                                    : Point{number[0], number[1], 0.0, number[2]};
         if (!std::isfinite(p.x) || !std::isfinite(p.y) || !std::isfinite(p.z) || !std::isfinite(p.value))
-            fail(where, "a number is not finite", "remove the point and give a value for it");
+            fail(where, "a number is not finite", "replace the number by a finite value");
         if (points.size() == kPointsMax)
-            fail(where, "there are more than " + std::to_string(kPointsMax) + " points",
+            fail(where, "the file has more than " + std::to_string(kPointsMax) + " points",
                  "give a coarser grid");
         points.push_back(p);
     }
@@ -91,7 +92,7 @@ struct Axis {
     std::uint32_t count = 0;
 };
 
-// The axis through the values of one coordinate.
+// The grid axis through all values of one coordinate.
 Axis axis_of(const std::vector<Point>& points, double Point::*coordinate, char letter,
              const std::string& name) {
     std::vector<double> values(points.size());
@@ -100,7 +101,7 @@ Axis axis_of(const std::vector<Point>& points, double Point::*coordinate, char l
     std::sort(values.begin(), values.end());
     const double span = values.back() - values.front();
     if (span <= 0.0) return {values.front(), 0.0, 1};
-    // Values closer than a thousandth of the mean step at the finest grid are one place.
+    // Values closer than a thousandth of the mean step of the finest grid are one grid position.
     const double same = 1e-3 * span / kFieldPointsMax;
     std::vector<double> places{values.front()};
     for (const double v : values) {
@@ -108,19 +109,17 @@ Axis axis_of(const std::vector<Point>& points, double Point::*coordinate, char l
         places.push_back(v);
         if (places.size() > kFieldPointsMax)
             fail(name,
-                 std::string("along ") + letter + " there are more than " + std::to_string(kFieldPointsMax) +
-                     " places",
-                 "give a regular grid, at most 512 points along an axis");
+                 std::string("axis ") + letter + " has more than " + std::to_string(kFieldPointsMax) +
+                     " different coordinates",
+                 "give a regular grid of at most 512 points along each axis");
     }
     const auto count = static_cast<std::uint32_t>(places.size());
     const double step = span / (count - 1.0);
     for (std::uint32_t i = 0; i < count; ++i) {
         const double wanted = places.front() + step * i;
         if (std::abs(places[i] - wanted) > kStepTolerance * step)
-            fail(
-                name,
-                std::string("the steps along ") + letter + " are not equal near " + std::to_string(places[i]),
-                "interpolate the values onto a regular grid");
+            fail(name, std::string("axis ") + letter + " has unequal steps near " + std::to_string(places[i]),
+                 "interpolate the values onto a regular grid");
     }
     return {places.front(), step, count};
 }
@@ -128,13 +127,12 @@ Axis axis_of(const std::vector<Point>& points, double Point::*coordinate, char l
 void check_counts(const DensityGrid& grid, const std::string& name) {
     for (std::size_t a = 0; a < 3; ++a)
         if (grid.size[a] < kFieldPointsMin || grid.size[a] > kFieldPointsMax)
-            fail(name,
-                 std::string("along ") + "xyz"[a] + " there are " + std::to_string(grid.size[a]) + " points",
+            fail(name, std::string("axis ") + "xyz"[a] + " has " + std::to_string(grid.size[a]) + " points",
                  "give " + std::to_string(kFieldPointsMin) + " to " + std::to_string(kFieldPointsMax) +
                      " points along each axis");
 }
 
-// One layer becomes a box as deep as its shorter side is wide; the potential is the same at every z.
+// Extends one layer to a box as deep as its shorter side; the potential is the same at every z.
 void continue_along_z(DensityGrid& grid) {
     const double side_m =
         std::min((grid.size[0] - 1.0) * grid.spacing_m.x(), (grid.size[1] - 1.0) * grid.spacing_m.y());
@@ -154,7 +152,8 @@ ImportedField import_nrrd(const std::filesystem::path& path, double unit_m) {
         read_raw_scan(path, "NRRD", &nrrd_header, 1e3 * unit_m, std::numeric_limits<float>::quiet_NaN());
     if (!scan.axes.isApprox(Eigen::Matrix3d::Identity(), 1e-6) &&
         !scan.axes.cwiseAbs().isApprox(Eigen::Matrix3d::Identity(), 1e-6))
-        fail(name, "its axes are not parallel to x, y and z", "resample it onto a grid that is");
+        fail(name, "the axes are not parallel to x, y and z",
+             "resample the field onto axes parallel to x, y and z");
     ImportedField field;
     DensityGrid& grid = field.grid;
     grid.size = {scan.columns, scan.rows, static_cast<std::uint32_t>(scan.slice.size())};
@@ -166,7 +165,7 @@ ImportedField import_nrrd(const std::filesystem::path& path, double unit_m) {
                             scan.slice.front().v_mm * scan.axes.col(1) + first_mm * scan.axes.col(2));
     for (std::uint32_t z = 0; z < grid.size[2]; ++z)
         scan.read(z, std::span(grid.values).subspan(std::size_t{z} * scan.pixels(), scan.pixels()));
-    // An axis that runs backwards is turned round.
+    // Reverse axes with a negative direction.
     for (Eigen::Index a = 0; a < 3; ++a) {
         if (scan.axes(a, a) > 0.0) continue;
         const auto n = grid.size[static_cast<std::size_t>(a)];
@@ -191,7 +190,8 @@ ImportedField import_nrrd(const std::filesystem::path& path, double unit_m) {
 ImportedField import_field_csv(std::string_view text, const std::string& name, double unit_m) {
     bool planar = false;
     const std::vector<Point> points = points_of(text, name, planar);
-    if (points.empty()) fail(name, "it holds no point", "write x y z value, or x y value, in every line");
+    if (points.empty())
+        fail(name, "the file has no points", "write x y z value, or x y value, on every line");
     const Axis x = axis_of(points, &Point::x, 'x', name), y = axis_of(points, &Point::y, 'y', name),
                z = axis_of(points, &Point::z, 'z', name);
     planar = planar || z.count == 1;
@@ -200,7 +200,7 @@ ImportedField import_field_csv(std::string_view text, const std::string& name, d
         fail(name,
              std::to_string(points.size()) + " points do not fill a grid of " + std::to_string(x.count) +
                  " x " + std::to_string(y.count) + " x " + std::to_string(z.count),
-             "give every place of the grid once");
+             "give every grid point exactly once");
     ImportedField field;
     DensityGrid& grid = field.grid;
     grid.size = {x.count, y.count, z.count};
@@ -215,10 +215,11 @@ ImportedField import_field_csv(std::string_view text, const std::string& name, d
             grid.values[(std::size_t{index(p.z, z)} * y.count + index(p.y, y)) * x.count + index(p.x, x)];
         if (!std::isnan(value))
             fail(name,
-                 "a place is given twice, near x = " + std::to_string(p.x) + ", y = " + std::to_string(p.y),
-                 "give every place of the grid once");
+                 "a grid point is given twice, near x = " + std::to_string(p.x) +
+                     ", y = " + std::to_string(p.y),
+                 "give every grid point exactly once");
         value = static_cast<float>(p.value);
-        if (!std::isfinite(value)) fail(name, "a value is too large", "give values below 1e38 in size");
+        if (!std::isfinite(value)) fail(name, "a value is too large", "give values of at most 1e38 in size");
     }
     if (planar) {
         continue_along_z(grid);
@@ -239,12 +240,13 @@ ImportedField import_field(const std::filesystem::path& path, double unit_m) {
         field = import_field_csv({bytes.data(), bytes.size()}, path.filename().string(), unit_m);
     } else {
         fail(path.filename().string(),
-             "its ending " + ending + " is not one of .csv, .txt, .dat, .nrrd, .nhdr",
-             "rename it, or convert it to CSV: x,y,z,value in every line");
+             "the file name ending '" + ending + "' is not one of .csv, .txt, .dat, .nrrd, .nhdr",
+             "rename the file, or convert it to CSV with x,y,z,value on every line");
     }
     for (const float v : field.grid.values)
         if (!std::isfinite(v))
-            fail(path.filename().string(), "a value is not finite", "give a number for every place");
+            fail(path.filename().string(), "a value is not finite",
+                 "give a finite number for every grid point");
     const auto& n = field.grid.size;
     field.format +=
         ", " + std::to_string(n[0]) + " x " + std::to_string(n[1]) + " x " + std::to_string(n[2]) + " points";

@@ -24,22 +24,23 @@ InputBytes::InputBytes(const std::filesystem::path& path, std::uint64_t bytes_ma
             if (fd >= 0) ::close(fd);
         }
     } const file{
-        ::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK)};  // a pipe would wait for its writer
+        ::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK)};  // does not wait for the writer of a pipe
     if (file.fd < 0) fail(std::strerror(errno), "check the path and its permissions");
     struct stat info {};
     if (::fstat(file.fd, &info) != 0) fail(std::strerror(errno), "check the path and its permissions");
     unsigned char magic[2]{};
     const bool packed =
         S_ISREG(info.st_mode) && ::pread(file.fd, magic, 2, 0) == 2 && magic[0] == 0x1f && magic[1] == 0x8b;
-    if (packed || !S_ISREG(info.st_mode) || info.st_size == 0) {  // what is no file is refused there too
+    if (packed || !S_ISREG(info.st_mode) || info.st_size == 0) {  // read_whole_file() also rejects non-files
         unpacked_ = read_whole_file(path, unpacked_max);
         view_ = {unpacked_.data(), unpacked_.size()};
         return;
     }
     const auto size = static_cast<std::size_t>(info.st_size);
     if (size > bytes_max)
-        fail("it holds more than " + std::to_string(bytes_max >> 20) + " MiB, the most that is read",
-             "cut it into parts");
+        fail(
+            "the file is larger than " + std::to_string(bytes_max >> 20) + " MiB, the largest size supported",
+            "split the file into parts");
     mapped_ = ::mmap(nullptr, size, PROT_READ, MAP_PRIVATE, file.fd, 0);
     if (mapped_ == MAP_FAILED) {
         mapped_ = nullptr;

@@ -1,10 +1,10 @@
-// An input file as one run of bytes: mapped where it lies, or unpacked into memory when it is gzip'd.
+// An input file as contiguous bytes: memory-mapped, or unpacked into memory if it is compressed with gzip.
 //
-// Memory    a plain file takes none of its own: its pages are read as they are walked and may be dropped
-//           again. A packed one takes what it unpacks to, at the most `unpacked_max`.
-// Bounds    a plain file of more than `bytes_max` is refused.
-// Fails by  StartupError naming the file. A file that another program cuts short while it is read ends this
-//           one (SIGBUS), as for a baked scene.
+// Memory    a plain file needs none: its pages are loaded on access and may be evicted. A compressed file needs its
+//           unpacked size, at most `unpacked_max`.
+// Bounds    a plain file of more than `bytes_max` is rejected.
+// Fails by  StartupError naming the file. If another program truncates the file during reading, this program ends
+//           with SIGBUS, as for a baked scene.
 #pragma once
 
 #include <cstdint>

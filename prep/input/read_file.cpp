@@ -21,14 +21,15 @@ std::vector<char> read_whole_file(const std::filesystem::path& path, std::uint64
         throw StartupError(attempt, std::strerror(errno), "check the path and its permissions");
     }
     if (!S_ISREG(info.st_mode))
-        throw StartupError(attempt, "it is not a regular file", "give the path of a file");
-    if (info.st_size == 0) throw StartupError(attempt, "it is empty", "fetch the file again");
+        throw StartupError(attempt, "the path is not a regular file", "give the path of a file");
+    if (info.st_size == 0) throw StartupError(attempt, "the file is empty", "fetch the file again");
     const auto too_big = [&] {
         throw StartupError(
-            attempt, "it holds more than " + std::to_string(bytes_max >> 20) + " MiB, the most that is read",
-            "crop it, or bin it to larger voxels");
+            attempt,
+            "the file is larger than " + std::to_string(bytes_max >> 20) + " MiB, the largest size supported",
+            "crop the data, or bin it to larger voxels");
     };
-    // gzread passes files through that are not packed.
+    // gzread passes uncompressed files through.
     const std::unique_ptr<gzFile_s, int (*)(gzFile)> file(::gzopen(path.c_str(), "rb"), &::gzclose);
     if (!file) throw StartupError(attempt, std::strerror(errno), "check the path and its permissions");
     ::gzbuffer(file.get(), 1 << 18);
@@ -46,10 +47,9 @@ std::vector<char> read_whole_file(const std::filesystem::path& path, std::uint64
         const char* const text = ::gzerror(file.get(), &code);
         if (got < 0 || (code != Z_OK && code != Z_STREAM_END)) {
             throw StartupError(attempt,
-                               code == Z_ERRNO
-                                   ? std::strerror(errno)
-                                   : std::string("after ") + std::to_string(used) +
-                                         " bytes the gzip stream is damaged or ends early (" + text + ")",
+                               code == Z_ERRNO ? std::strerror(errno)
+                                               : "the gzip stream is damaged or ends early, after " +
+                                                     std::to_string(used) + " bytes (" + text + ")",
                                "fetch the file again");
         }
         bytes.resize(used + static_cast<std::size_t>(got));
@@ -72,7 +72,7 @@ std::string file_mark(const std::filesystem::path& path) {
         bytes += got;
     }
     if (std::ferror(file.get()) != 0)
-        throw StartupError("read " + path.string(), std::strerror(errno), "check the disk");
+        throw StartupError("read " + path.string(), std::strerror(errno), "check the disk for errors");
     char text[64];
     std::snprintf(text, sizeof text, "%llu bytes, crc32 %08lx", static_cast<unsigned long long>(bytes), sum);
     return text;

@@ -1,7 +1,7 @@
-// A whole input file in memory, unpacked when it is gzip'd.
+// Reads a whole input file into memory and unpacks gzip.
 //
-// Bounds    never more than `bytes_max` after unpacking; a file that unpacks to more is refused while it
-//           unpacks, before memory runs out. Whether it is packed is seen from its first two bytes.
+// Bounds    at most `bytes_max` after unpacking; a larger file is rejected while it unpacks, before memory runs out.
+//           The first two bytes tell whether a file is compressed.
 // Fails by  StartupError naming the file.
 #pragma once
 
@@ -14,7 +14,7 @@ namespace tact {
 
 std::vector<char> read_whole_file(const std::filesystem::path& path, std::uint64_t bytes_max);
 
-// What tells whether a file is still the same: "312255 bytes, crc32 1a2b3c4d", of the file as it lies there.
+// Identifies the content of a file as stored: "312255 bytes, crc32 1a2b3c4d".
 std::string file_mark(const std::filesystem::path& path);
 
 // Lower-case ending of the name without a trailing ".gz": "a.MRC.gz" -> ".mrc".

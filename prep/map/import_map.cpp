@@ -10,7 +10,7 @@
 namespace tact {
 namespace {
 
-// Text of 2^28 values at 14 characters each is beyond what fits; 2 GiB of text is about 150 million voxels.
+// 2^28 values as text of 14 characters each exceed this limit; 2 GiB of text is about 150 million voxels.
 constexpr std::uint64_t kFileBytesMax = std::uint64_t{2} << 30;
 constexpr double kFarthestM = 1e-4;  // a million ångström
 
@@ -21,11 +21,11 @@ bool is_situs(const std::string& ending) { return ending == ".sit" || ending == 
 
 void check_ending(const std::string& ending, const std::string& name) {
     if (is_mrc(ending) || is_situs(ending)) return;
-    throw StartupError("read map " + name, "its ending '" + ending + "' is not that of a map",
-                       "give .mrc, .map, .ccp4, .rec, .sit or .situs, each also with .gz behind it");
+    throw StartupError("read map " + name, "the file name ending '" + ending + "' is not that of a map",
+                       "give a .mrc, .map, .ccp4, .rec, .sit or .situs file, optionally followed by .gz");
 }
 
-// What must hold for every format.
+// Checks for every format.
 void check_values(const DensityGrid& grid, const std::string& name) {
     const std::string attempt = "read map " + name;
     std::size_t bad = 0, first = 0;
@@ -45,15 +45,15 @@ void check_values(const DensityGrid& grid, const std::string& name) {
                                " voxels are not finite numbers, the first at voxel (" +
                                std::to_string(first % nx) + ", " + std::to_string(first / nx % ny) + ", " +
                                std::to_string(first / (nx * ny)) + ")",
-                           "make the map again, or replace those voxels by the background value");
+                           "compute the map again, or set these voxels to the background value");
     }
     if (low == high) {
         throw StartupError(attempt, "all voxels have the same value, " + std::to_string(low),
-                           "give a map with a structure in it");
+                           "give a map that contains density");
     }
     if (!(grid.origin_m.cwiseAbs().maxCoeff() <= kFarthestM)) {
-        throw StartupError(attempt, "its origin lies more than a million ångström away",
-                           "correct the origin in its header");
+        throw StartupError(attempt, "the origin is more than a million ångström from (0, 0, 0)",
+                           "correct the origin in the header");
     }
 }
 

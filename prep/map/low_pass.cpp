@@ -1,11 +1,11 @@
-// Why: from 15 Å and 30 degrees away, the share of seeded starts that climb to the known place, full-gradient
-// ascent over 20 starts (2026-11-20):
-//     felt resolution       as it is   6 Å   10 Å   14 Å   18 Å
+// Purpose: number of 20 random starts, 15 Å and 30 degrees away, from which full-gradient ascent reaches the known
+// position (2026-11-20):
+//     force map resolution  full     6 Å   10 Å   14 Å   18 Å
 //     3MFP in EMD-5168         6        10    13     16     17
-//     1J6Z in EMD-5168         2         8    14     16      0 (drawn 1.8 Å off)
+//     1J6Z in EMD-5168         2         8    14     16      0 (displaced by 1.8 Å)
 //     EMD-5778, one chain     17        20    20     20     20
 //     EMD-5925, one chain      9        20    20     20     20
-// Separable: three passes of lines, each line copied out so that the stride does not matter.
+// Separable: three passes over lines; each line is copied to a contiguous buffer, so the stride does not matter.
 #include "prep/map/low_pass.hpp"
 
 #include <algorithm>
@@ -44,7 +44,7 @@ DensityGrid low_pass(const DensityGrid& grid, double background, double resoluti
         std::vector<double> line(n + 2 * radius, background);
         for (std::size_t j = 0; j < grid.size[v]; ++j) {
             report(progress, (static_cast<double>(axis) + static_cast<double>(j) / grid.size[v]) / 3.0,
-                   "smoothing the felt map");
+                   "smoothing the force map");
             for (std::size_t i = 0; i < grid.size[u]; ++i) {
                 float* const first = out.values.data() + i * stride[u] + j * stride[v];
                 for (std::size_t x = 0; x < n; ++x)

@@ -1,9 +1,9 @@
-// A map smoothed to a coarser resolution, for the hand: fine maps are full of small hollows in which a
-// structure that is still far from its place gets caught.
+// Smooths a map to a coarser resolution for the force map. A fine map has many small local maxima that trap a
+// structure far from its position.
 //
-// Filter   Gaussian, sigma = 0.225 * resolution, cut at four sigma; as everywhere in Tact, the map goes on
-//          with its background outside its box. Grid, unit and frame stay.
-// Thread   slow (a second for 512^3); never on the servo thread. Allocates one copy of the map.
+// Filter   Gaussian, sigma = 0.225 * resolution, truncated at four sigma. The map continues with its background value
+//          outside its box. Grid, unit and frame are unchanged.
+// Thread   slow (1 s for 512^3), never the servo thread. Allocates one copy of the map.
 #pragma once
 
 #include "ipc/base/progress.hpp"

@@ -1,6 +1,6 @@
-// Why Otsu. A fixed share of the voxels or a multiple of sigma depends on how much empty box is around the
-// structure; the best parting of the histogram hardly does. tests/unit/prep_real_files_test.cpp holds what
-// share of the atoms of fitted structures lies inside the level for each published map.
+// Why Otsu: the contour of a fixed fraction of the voxels or a multiple of sigma depends on the amount of empty box
+// around the structure; Otsu's threshold hardly does. tests/unit/prep_real_files_test.cpp states the fraction of the
+// atoms of fitted structures inside the contour for each published map.
 #include "prep/map/map_statistics.hpp"
 
 #include <algorithm>
@@ -76,9 +76,9 @@ ContourChoice choose_contour(const DensityGrid& grid, const MapStatistics& stati
                                       [&](float v) { return static_cast<double>(v) >= choice.level; });
     char text[200];
     std::snprintf(text, sizeof text,
-                  "%.5g, best parting of the histogram (Otsu)%s; %.2f sigma above the mean, %.2f %% of the "
+                  "%.5g, Otsu's threshold of the histogram%s; %.2f sigma above the mean, %.2f %% of the "
                   "voxels inside",
-                  choice.level, masked ? " of the voxels that a mask left" : "",
+                  choice.level, masked ? " of the voxels inside the mask" : "",
                   (choice.level - statistics.mean) / statistics.sigma,
                   100.0 * static_cast<double>(inside) / static_cast<double>(grid.values.size()));
     choice.rule = text;

@@ -1,5 +1,4 @@
-// What a scene needs to know about a map's values: mean, spread, what it continues with, where its surface
-// is.
+// Statistics of a map's values that a scene needs: mean, spread, background and contour.
 #pragma once
 
 #include <string>
@@ -11,16 +10,16 @@ namespace tact {
 struct MapStatistics {
     double mean = 0.0, sigma = 0.0;  // over all voxels
     double low = 0.0, high = 0.0;
-    double background = 0.0;  // median of the faces of the box: the map is continued with it outside
+    double background = 0.0;  // median of the box faces; the map's value outside the box
 };
 MapStatistics map_statistics(const DensityGrid& grid);
 
 struct ContourChoice {
     double level = 0.0;  // in the map's unit
-    std::string rule;    // in words
+    std::string rule;    // explanation for the note
 };
-// The level that parts structure from solvent best (Otsu 1979: the largest variance between the two classes).
-// In a masked map, where at least a fifth of the voxels has exactly the background value, those do not count.
+// The level that best separates structure from solvent (Otsu 1979: largest variance between the two classes).
+// Voxels with exactly the background value are excluded if they are at least a fifth of all (a masked map).
 ContourChoice choose_contour(const DensityGrid& grid, const MapStatistics& statistics);
 
 }  // namespace tact

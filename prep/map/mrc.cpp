@@ -1,15 +1,13 @@
 // MRC2014 / CCP4 maps.
 //
-// Division of work. gemmi converts the modes and puts the axes into the order x, y, z. Before it sees the
-// file, everything its header says is checked here, because gemmi believes the machine stamp (real files
-// have 0 there), cannot swap 16-bit data and takes memory for whatever size is declared.
+// Division of work. gemmi converts the modes and orders the axes as x, y, z. The header is checked here first, because
+// gemmi trusts the machine stamp (0 in real files), cannot swap 16-bit data and allocates whatever size is declared.
 //
-// Byte order. The stamp (word 54) is not looked at. Of both orders, the one is taken in which sizes, mode and
-// axis words make sense.
+// Byte order. The stamp (word 54) is ignored. The byte order is the one in which sizes, mode and axis words are valid.
 //
-// Place of voxel (0,0,0). Where ORIGIN (words 50-52) is not zero it is right; else NSTART (words 5-7) x
-// voxel. Among the maps that this was checked on with structures, some have an NSTART that contradicts a
-// right ORIGIN, none the other way round. Voxel = cell / M (words 8-10), not cell / N.
+// Position of voxel (0,0,0). ORIGIN (words 50-52) if it is not zero, else NSTART (words 5-7) x voxel. Of the maps that
+// were checked against structures, some have an NSTART that contradicts a correct ORIGIN, none the other way round.
+// Voxel = cell / M (words 8-10), not cell / N.
 #include <algorithm>
 #include <bit>
 #include <cmath>
@@ -29,7 +27,7 @@ constexpr std::size_t kHeaderBytes = 1024;
 constexpr std::int32_t kSizeMax = 16384;
 constexpr std::int32_t kExtendedMax = 1 << 28;
 
-// Words count from 1, as in the format's description.
+// Words count from 1, as in the format description.
 struct Header {
     std::int32_t word[256];
     [[nodiscard]] std::int32_t i(int w) const { return word[w - 1]; }
@@ -84,78 +82,81 @@ std::size_t bytes_of_mode(const Reader& reader, std::int32_t mode) {
         case 3:
         case 4:
             reader.fail("word 4: mode " + std::to_string(mode) + " is a Fourier transform, not a density",
-                        "transform it to a density first");
+                        "convert the file to a density map of mode 2");
         case 12:
-            reader.fail("word 4: mode 12 (16-bit floats) is not read",
-                        "convert it to mode 2, for example with e2proc3d.py or relion_image_handler");
+            reader.fail("word 4: mode 12 (16-bit floats) is not supported",
+                        "convert the map to mode 2, for example with e2proc3d.py or relion_image_handler");
         default:
             break;
     }
-    reader.fail("word 4: mode " + std::to_string(mode) + " is not read; modes 0, 1, 2 and 6 are",
-                "convert it to mode 2");
+    reader.fail("word 4: mode " + std::to_string(mode) + " is not supported; modes 0, 1, 2 and 6 are",
+                "convert the map to mode 2");
 }
 
-// Sizes, cell and bytes agree with each other and with the file.
+// Checks that sizes, cell and number of bytes agree.
 void check_header(const Reader& reader, const Header& h, std::size_t file_bytes) {
     std::uint64_t voxels = 1;
     for (int w = 1; w <= 3; ++w) {
         if (h.i(w) < 4 || h.i(w) > kSizeMax) {
-            reader.fail("word " + std::to_string(w) + ": " + std::to_string(h.i(w)) +
-                            " voxels along an axis, outside of 4 to " + std::to_string(kSizeMax),
-                        "give a three-dimensional map");
+            reader.fail("word " + std::to_string(w) + ": the map has " + std::to_string(h.i(w)) +
+                            " voxels along an axis, outside 4 to " + std::to_string(kSizeMax),
+                        "give a three-dimensional map of 4 to " + std::to_string(kSizeMax) +
+                            " voxels along each axis");
         }
         voxels *= static_cast<std::uint64_t>(h.i(w));
     }
     if (voxels > kMapVoxelsMax) {
         reader.fail("words 1-3: " + std::to_string(h.i(1)) + " x " + std::to_string(h.i(2)) + " x " +
                         std::to_string(h.i(3)) + " voxels are more than " + std::to_string(kMapVoxelsMax),
-                    "crop it, or bin it to larger voxels");
+                    "crop the map, or bin it to larger voxels");
     }
     if (h.i(24) < 0 || h.i(24) > kExtendedMax) {
-        reader.fail("word 24: an extended header of " + std::to_string(h.i(24)) + " bytes",
-                    "repair its header");
+        reader.fail("word 24: the extended header has " + std::to_string(h.i(24)) + " bytes, outside 0 to " +
+                        std::to_string(kExtendedMax),
+                    "fetch the file again, or correct word 24 of the header");
     }
     const std::uint64_t expected =
         kHeaderBytes + static_cast<std::uint64_t>(h.i(24)) + voxels * bytes_of_mode(reader, h.i(4));
     if (file_bytes != expected) {
-        reader.fail("its header declares " + std::to_string(h.i(1)) + " x " + std::to_string(h.i(2)) + " x " +
-                        std::to_string(h.i(3)) + " voxels of mode " + std::to_string(h.i(4)) +
-                        ", which with the headers is " + std::to_string(expected) + " bytes, but it has " +
+        reader.fail("the header declares " + std::to_string(h.i(1)) + " x " + std::to_string(h.i(2)) + " x " +
+                        std::to_string(h.i(3)) + " voxels of mode " + std::to_string(h.i(4)) + ", together " +
+                        std::to_string(expected) + " bytes with the headers, but the file has " +
                         std::to_string(file_bytes) +
                         (file_bytes < expected ? " (truncated)" : " (oversized)"),
-                    "fetch the file again, or repair its header");
+                    "fetch the file again, or repair the header");
     }
     for (int w = 11; w <= 13; ++w) {
         if (!(h.f(w) > 0.0 && h.f(w) < 1e6)) {
-            reader.fail(
-                "word " + std::to_string(w) + ": a cell edge of " + std::to_string(h.f(w)) + " ångström",
-                "set the cell in its header (voxel size x M)");
+            reader.fail("word " + std::to_string(w) + ": the cell edge is " + std::to_string(h.f(w)) +
+                            " ångström, outside 0 to 1000000",
+                        "set the cell in the header (voxel size x M)");
         }
     }
     for (int w = 8; w <= 10; ++w) {
         if (h.i(w) < 0 || h.i(w) > 1'000'000)
-            reader.fail(
-                "word " + std::to_string(w) + ": " + std::to_string(h.i(w)) + " intervals along the cell",
-                "repair its header");
+            reader.fail("word " + std::to_string(w) + ": the cell has " + std::to_string(h.i(w)) +
+                            " intervals along an edge, outside 0 to 1000000",
+                        "set MX, MY and MZ in the header to the numbers of voxels of the cell");
     }
     for (int w = 5; w <= 7; ++w) {
         if (std::abs(static_cast<std::int64_t>(h.i(w))) > 10'000'000) {
-            reader.fail("word " + std::to_string(w) + ": a start at voxel " + std::to_string(h.i(w)),
-                        "repair its header");
+            reader.fail("word " + std::to_string(w) + ": the map starts at voxel " + std::to_string(h.i(w)) +
+                            ", beyond 10000000",
+                        "correct NXSTART, NYSTART and NZSTART in the header");
         }
     }
     for (int w = 50; w <= 52; ++w) {
         if (!std::isfinite(h.f(w)))
-            reader.fail("word " + std::to_string(w) + ": the origin is not a number",
-                        "set ORIGIN in its header");
+            reader.fail("word " + std::to_string(w) + ": the origin is not a finite number",
+                        "set ORIGIN in the header");
     }
     bool no_angles = true;
     for (int w = 14; w <= 16; ++w) no_angles = no_angles && h.f(w) == 0.0;
     for (int w = 14; w <= 16; ++w) {
         if (!no_angles && !(h.f(w) >= 30.0 && h.f(w) <= 150.0)) {
-            reader.fail(
-                "word " + std::to_string(w) + ": a cell angle of " + std::to_string(h.f(w)) + " degrees",
-                "set the angles to 90 in its header");
+            reader.fail("word " + std::to_string(w) + ": the cell angle is " + std::to_string(h.f(w)) +
+                            " degrees, outside 30 to 150",
+                        "set the cell angles in the header to 90");
         }
     }
 }
@@ -169,7 +170,7 @@ void swap_data(char* data, std::size_t bytes, std::size_t each) {
 ImportedMap read_mrc(std::vector<char> bytes, const std::string& name) {
     const Reader reader{name};
     if (bytes.size() < kHeaderBytes) {
-        reader.fail("it has " + std::to_string(bytes.size()) +
+        reader.fail("the file has " + std::to_string(bytes.size()) +
                         " bytes, fewer than the header of an MRC or CCP4 map (1024)",
                     "fetch the file again");
     }
@@ -183,9 +184,9 @@ ImportedMap read_mrc(std::vector<char> bytes, const std::string& name) {
                    std::to_string(h.i(3)) + ", mode " + std::to_string(h.i(4)) + ", axes " +
                    std::to_string(h.i(17)) + ", " + std::to_string(h.i(18)) + ", " + std::to_string(h.i(19));
         };
-        reader.fail("its header makes sense in neither byte order: as little endian " + say(little) +
+        reader.fail("the header is invalid in both byte orders: as little endian " + say(little) +
                         "; as big endian " + say(big),
-                    "check that it is an MRC or CCP4 map and fetch it again");
+                    "check that the file is an MRC or CCP4 map, and fetch it again");
     }
     Header h = swap ? big : little;
     check_header(reader, h, bytes.size());
@@ -193,7 +194,7 @@ ImportedMap read_mrc(std::vector<char> bytes, const std::string& name) {
     ImportedMap map;
     map.format = "MRC/CCP4 mode " + std::to_string(h.i(4)) + (swap ? ", big endian" : ", little endian");
     if (h.i(17) == 0) {
-        map.notes.push_back("axis words 17-19 are zero: taken as x, y, z");
+        map.notes.push_back("axis words 17-19 are zero; the axes are assumed to be x, y, z");
         for (int a = 0; a < 3; ++a) h.set(17 + a, a + 1);
     }
     int position[3];  // of x, y, z among columns, rows, sections
@@ -203,17 +204,18 @@ ImportedMap read_mrc(std::vector<char> bytes, const std::string& name) {
         std::int32_t intervals = h.i(8 + a);
         if (intervals == 0) {
             intervals = h.i(1 + position[a]);
-            map.notes.push_back("word " + std::to_string(8 + a) +
-                                " (intervals along the cell) is zero: taken as the voxels along that axis");
+            map.notes.push_back(
+                "word " + std::to_string(8 + a) +
+                " (intervals along the cell) is zero; the number of voxels along that axis is used");
         }
         voxel_m[a] = h.f(11 + a) / intervals * kAngstromM;
         nstart[a] = h.i(5 + position[a]);
         h.set(8 + a, intervals);
     }
     if (!(voxel_m.minCoeff() > 1e-13))
-        reader.fail("words 8-13: a voxel is below a thousandth of an ångström", "set the cell in its header");
+        reader.fail("words 8-13: the voxel size is below 0.001 ångström", "set the cell in the header");
 
-    // gemmi gets a plain file: this machine's byte order, no extended header, no symmetry.
+    // Pass gemmi a plain file: the machine's byte order, no extended header, no symmetry.
     const std::size_t each = bytes_of_mode(reader, h.i(4));
     bytes.erase(bytes.begin() + kHeaderBytes,
                 bytes.begin() + static_cast<std::ptrdiff_t>(kHeaderBytes) + h.i(24));
@@ -231,7 +233,7 @@ ImportedMap read_mrc(std::vector<char> bytes, const std::string& name) {
         bytes = {};
         file.setup(0.0F, gemmi::MapSetup::ReorderOnly);
     } catch (const std::runtime_error& error) {
-        reader.fail(error.what(), "check that it is an MRC or CCP4 map and fetch it again");
+        reader.fail(error.what(), "check that the file is an MRC or CCP4 map, and fetch it again");
     }
     const std::array<std::uint32_t, 3> size{static_cast<std::uint32_t>(file.grid.nu),
                                             static_cast<std::uint32_t>(file.grid.nv),
@@ -249,7 +251,7 @@ ImportedMap read_mrc(std::vector<char> bytes, const std::string& name) {
             step_m.col(c) = kAngstromM * Vec3(step.x, step.y, step.z);
         }
         if (!step_m.allFinite() || !(step_m.determinant() > 0.05 * voxel_m.prod())) {
-            reader.fail("words 14-16: the cell angles make no cell", "set the angles to 90 in its header");
+            reader.fail("words 14-16: no cell has these angles", "set the cell angles in the header to 90");
         }
     }
     Vec3 origin_m;

@@ -24,13 +24,13 @@ double mean_of_faces(const SkewGrid& g) {
     return sum / static_cast<double>(count);
 }
 
-// Cells of crystals need less than eight times the voxels; a small hostile file must not fill the memory.
+// Crystal cells need less than eight times the voxels. The limit keeps a small malicious file from exhausting memory.
 constexpr double kGrowthMax = 64.0;
 
 }  // namespace
 
 DensityGrid resample(const SkewGrid& skew, const std::string& name) {
-    // Box around the eight corners.
+    // Bounding box of the eight corners.
     Vec3 low = Vec3::Constant(1e300), high = -low;
     const Vec3 last(skew.size[0] - 1.0, skew.size[1] - 1.0, skew.size[2] - 1.0);
     for (int corner = 0; corner < 8; ++corner) {
@@ -54,9 +54,9 @@ DensityGrid resample(const SkewGrid& skew, const std::string& name) {
         std::min(static_cast<double>(kMapVoxelsMax), kGrowthMax * static_cast<double>(skew.values.size()));
     if (!(voxels <= voxels_max)) {
         throw StartupError("read map " + name,
-                           "its skew cell would need " + std::to_string(voxels) +
-                               " voxels at right angles, allowed are " + std::to_string(voxels_max),
-                           "resample it yourself to larger voxels and angles of 90 degrees");
+                           "the skew cell would need " + std::to_string(voxels) +
+                               " voxels on axes at right angles, more than " + std::to_string(voxels_max),
+                           "resample the map to larger voxels and cell angles of 90 degrees");
     }
     const double outside = mean_of_faces(skew);
     const Eigen::Matrix3d to_index = skew.step_m.inverse();
@@ -68,7 +68,7 @@ DensityGrid resample(const SkewGrid& skew, const std::string& name) {
         for (std::uint32_t y = 0; y < out.size[1]; ++y) {
             for (std::uint32_t x = 0; x < out.size[0]; ++x) {
                 const Vec3 index = to_index * (low + step_m * Vec3(x, y, z) - skew.origin_m);
-                // A corner of the box may miss the grid by rounding.
+                // Rounding may put a corner of the box outside the grid.
                 if ((index.array() < -1e-6).any() || (index.array() > last.array() + 1e-6).any()) {
                     out.values.push_back(static_cast<float>(outside));
                     continue;

@@ -11,7 +11,7 @@
 namespace tact {
 namespace {
 
-constexpr double kPoints = 2000.0;  // over the whole border
+constexpr double kPoints = 2000.0;  // sample points over the whole border
 
 using Vec = Eigen::Vector3d;
 using Edge = std::array<Vec, 2>;

@@ -1,7 +1,7 @@
-// How far the borders of two surfaces are apart: the root mean square of the distances of points of each to
-// the other, over the length, in metres. 0 where one of them has none.
+// Distance between the borders of two surfaces, in metres: root mean square over sample points of each border of their
+// distance to the other border, weighted by length. 0 if one surface has no border.
 //
-// Every edge is compared with every edge: for borders of some thousand edges.
+// Compares every edge with every edge: for borders of some thousand edges.
 #pragma once
 
 #include "ipc/scene/mesh/progressive_mesh.hpp"

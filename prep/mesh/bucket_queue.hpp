@@ -1,8 +1,8 @@
 // A priority queue of pairs for costs that need no exact order: push and pop take constant time.
 //
-// Costs are sorted into buckets by exponent and the upper bits of the mantissa, 1/64 apart; within a bucket
-// the last in is the first out. So a pop returns a pair that is at most 1.6 % dearer than the cheapest.
-// Chunks are recycled, hence memory follows the largest number of pairs waiting. Repeats exactly.
+// Buckets are half an octave wide (exponent and one bit of the mantissa); within a bucket the last pair in is the
+// first out. So the cost of a popped pair is at most 1.5 times the lowest. Chunks are recycled, so memory follows the
+// largest number of queued pairs. Repeats exactly.
 #pragma once
 
 #include <array>
@@ -34,7 +34,7 @@ public:
         if (bucket >> 6U < low_) low_ = bucket >> 6U;
     }
 
-    // False when empty. `cost` becomes the lower bound of the pair's bucket.
+    // False if empty. `cost` becomes the lower bound of the pair's bucket.
     bool pop(QueuedPair& pair, float& cost) {
         while (low_ < kWords && word_[low_] == 0) ++low_;
         if (low_ == kWords) return false;
@@ -51,12 +51,12 @@ public:
         }
         return true;
     }
-    // Whether a pair of this cost belongs into the bucket that begins at `due`, or below.
+    // True if a pair of this cost belongs to the bucket that begins at `due`, or to a lower one.
     [[nodiscard]] static bool in_bucket(float cost, float due) {
         return std::bit_cast<std::uint32_t>(cost) >> kDropBits <= std::bit_cast<std::uint32_t>(due) >>
                kDropBits;
     }
-    // What pop() is likely to return some calls later, for prefetching.
+    // The pair that pop() is likely to return some calls later, for prefetching.
     [[nodiscard]] const QueuedPair* ahead(std::uint32_t places) const {
         if (low_ >= kWords || word_[low_] == 0) return nullptr;
         const std::uint32_t bucket = low_ * 64 + static_cast<std::uint32_t>(std::countr_zero(word_[low_]));
@@ -69,7 +69,7 @@ public:
 
 private:
     static constexpr std::uint32_t kNone = UINT32_MAX;
-    static constexpr std::uint32_t kDropBits = 22;  // of 31: 8 exponent and 1 mantissa bits stay
+    static constexpr std::uint32_t kDropBits = 22;  // of 31: keeps 8 exponent bits and 1 mantissa bit
     static constexpr std::uint32_t kBuckets = 1U << (31 - kDropBits);
     static constexpr std::uint32_t kWords = kBuckets / 64;
     static constexpr std::uint32_t kChunk = 21;
@@ -91,7 +91,7 @@ private:
 
     std::array<std::uint32_t, kBuckets> head_{};
     std::array<std::uint64_t, kWords> word_{};  // bit set: the bucket has pairs
-    std::uint32_t low_ = kWords;                // no word below it has a bit
+    std::uint32_t low_ = kWords;                // no lower word has a bit set
     std::uint32_t free_ = kNone;
     HugeVector<Chunk> chunks_;
 };

@@ -8,9 +8,9 @@
 namespace tact {
 namespace {
 
-constexpr float kRefusedFactor = 2.0F;  // a refused pair waits until pairs of twice its cost are due
+constexpr float kRefusedFactor = 2.0F;  // a refused pair is queued again at twice its cost
 constexpr float kCostMax = 1e6F;
-// Pairs on their way: from the queue, and of those the ones that are due; after how many of these the next hop is called.
+// Prefetch pipeline: number of pairs popped and of due pairs, and the lag of each further stage.
 constexpr std::uint32_t kPoppedDepth = 10, kDueDepth = 12, kTrianglesBack = 3, kNeighboursBack = 7;
 
 }  // namespace
@@ -43,7 +43,7 @@ bool Contractor::try_pair(std::uint32_t u, std::uint32_t v) {
         keep_volume(sum, u, across, place);
     else
         keep_border(sum, u, v, place);
-    // A part that hangs on another by a vertex may vanish into it.
+    // A part that touches another at a vertex may be absorbed by it.
     const bool joint =
         settings_.pair_distance > 0.0 && ((vertex_[u].stamp | vertex_[v].stamp) & kBorder) != 0;
     if (spoils(u, v, across, place.shift, joint)) {
@@ -63,7 +63,7 @@ void Contractor::drop_touch(std::uint32_t w, std::uint32_t t) {
         touch_[vertex.first + i] = touch_[vertex.first + --vertex.count];
         break;
     }
-    if (vertex.count == 0) {  // only where parts hang together by a vertex
+    if (vertex.count == 0) {  // only if parts meet at a single vertex
         vertex.first = w;
         --alive_;
     }
@@ -101,7 +101,7 @@ void Contractor::record(std::uint32_t kept, std::uint32_t gone, float cost, floa
 void Contractor::contract(std::uint32_t u, std::uint32_t v, const Quadric& sum, const Place& place) {
     note_bends(u);
     if (touch_.size() > touch_limit_) compact_touch();
-    // Triangles of both go; those of v alone become u's. The new list of u lies at the end of touch_.
+    // Removes the triangles of both; those of v alone go to u. The new list of u lies at the end of touch_.
     const auto first = static_cast<std::uint32_t>(touch_.size());
     for (const Wing& wing : star_u_) {
         if (wing.next == v || wing.last == v) {
@@ -128,8 +128,8 @@ void Contractor::contract(std::uint32_t u, std::uint32_t v, const Quadric& sum, 
     a.stamp = ((a.stamp + 1) & ~kBorder) | ((a.stamp | b.stamp) & kBorder);
     record(u, v, place.cost, sum.trace());
 
-    // Pairs of u wait with their old cost, which is a lower bound of the new one, as quadrics only grow: they
-    // are looked at again when they come up. Those of v alone get their new name now.
+    // Queued pairs of u keep their old cost, a lower bound of the new cost because quadrics only grow; is_due() updates
+    // it on pop. Pairs of v alone are queued under u now.
     ++epoch_;
     mark_[u] = mark_[v] = epoch_;
     for (const Wing& wing : star_u_) mark_[wing.next] = mark_[wing.last] = epoch_;
@@ -169,11 +169,10 @@ void Contractor::fetch_neighbours(const QueuedPair& pair) const {
     }
 }
 
-// Takes pairs from the queue some turns before they are tried and calls for the memory that they will need, one
-// hop a stage: their vertices first; once these are there, most turn out to wait for a later turn; of the others
-// lists, triangles, neighbours.
+// Pops pairs some iterations before they are tried and prefetches their memory in stages: first the vertices; then most
+// pairs turn out not to be due; for the others lists, triangles and neighbours.
 bool Contractor::ahead(QueuedPair& pair, float& due) {
-    // Near the end two dozen pairs out of order would matter, and everything is in the cache.
+    // Near the end the order of two dozen pairs would matter, and all data is in the cache.
     const bool far = alive_ > 8192;
     const std::uint32_t popped_depth = far ? kPoppedDepth : 1, due_depth = far ? kDueDepth : 1;
     while (due_.size() < due_depth) {
@@ -204,7 +203,7 @@ bool Contractor::ahead(QueuedPair& pair, float& due) {
     return true;
 }
 
-// Whom a vertex that is gone went into in the end; none where its last triangle went without it.
+// The vertex that a removed vertex was finally merged into; kNone if its last triangle vanished with it.
 std::uint32_t Contractor::heir(std::uint32_t v) const {
     while (!alive(v)) {
         if (vertex_[v].first == v) return kNone;
@@ -213,7 +212,7 @@ std::uint32_t Contractor::heir(std::uint32_t v) const {
     return v;
 }
 
-// Whether the pair is still to be tried at this cost; queues it again where it has become dearer.
+// True if the pair is to be tried at this cost; otherwise queues it again if its cost has increased.
 bool Contractor::is_due(QueuedPair& pair, float due) {
     const std::uint32_t flag = pair.u & kNoEdge;
     std::uint32_t u = pair.u & ~kNoEdge, v = pair.v;

@@ -1,9 +1,9 @@
-// The working state of simplify(): vertices with quadrics, triangles, who touches whom, and the queue.
+// Working state of simplify(): vertices with quadrics, triangles, their adjacency, and the queue.
 //
-//   contractor_start.cpp   planes, borders, the pairs to begin with
-//   contractor.cpp         the loop over the queue, and what a contraction changes
-//   contractor_checks.cpp  what it must not do: pinch, turn over, fold
-//   contractor_place.cpp   where volume and border ask for another place than the quadric
+//   contractor_start.cpp   planes, borders, initial pairs
+//   contractor.cpp         the loop over the queue, and the changes of a contraction
+//   contractor_checks.cpp  prevents pinches, flipped triangles and folds
+//   contractor_place.cpp   preserves volume and border area
 //   contractor_join.cpp    pairs without an edge: surfaces that join, small parts that vanish
 #pragma once
 
@@ -29,18 +29,18 @@ private:
     static constexpr std::uint32_t kBorder = 1U << 31;  // in a stamp
     static constexpr std::uint32_t kNoEdge = 1U << 31;  // in QueuedPair::u: the two share no triangle
 
-    // One cache line: what a look at a neighbour needs.
+    // One cache line: all data of a neighbour.
     struct alignas(64) Vertex {
         std::array<float, 3> p;      // scaled to the unit cube, about its centre
         Quadric q;                   // about p
-        std::uint32_t stamp;         // rises when the vertex changes; the top bit: on a border
-        std::uint32_t first, count;  // its triangles, in touch_; once gone: whom it went into, and 0
+        std::uint32_t stamp;         // changes with the vertex; top bit: on a border
+        std::uint32_t first, count;  // its triangles in touch_; once removed: the vertex it went into, and 0
         [[nodiscard]] Eigen::Vector3f at() const { return {p[0], p[1], p[2]}; }
     };
     static_assert(sizeof(Vertex) == 64);
     using Corners = std::array<std::uint32_t, 3>;
 
-    // A triangle at a vertex as seen from it; positions are relative to the kept vertex of the pair.
+    // A triangle at a vertex; positions are relative to the kept vertex of the pair.
     struct Wing {
         std::uint32_t triangle, next, last;  // corners in order after the vertex itself
         Eigen::Vector3f p_next, p_last;
@@ -48,9 +48,9 @@ private:
     using Star = std::vector<Wing>;
     struct Leaf {
         std::uint32_t next, last;
-        std::uint32_t other;             // the vertex of the pair that it did not touch
+        std::uint32_t other;             // the vertex of the pair that it does not touch
         float turn;                      // |normal - before|
-        Eigen::Vector3f normal, before;  // unit; before is zero where it meant nothing
+        Eigen::Vector3f normal, before;  // unit vectors; before is zero if undefined
     };
     struct Joint {  // an edge between the new vertex and w
         std::uint32_t w;
@@ -124,18 +124,18 @@ private:
     Eigen::Vector3d centre_ = Eigen::Vector3d::Zero();
     double extent_ = 1.0;
     HugeVector<Vertex> vertex_;
-    HugeVector<Corners> triangle_;     // dead: first corner is kNone
+    HugeVector<Corners> triangle_;     // removed: first corner is kNone
     HugeVector<std::uint32_t> touch_;  // triangles of each vertex; a list that grows moves to the end
     std::size_t touch_limit_ = 0;
     float locality_ = 0.0F;  // the square of the setting
     HugeVector<float>
-        reach_;  // of each vertex: how far those went that it stands for; empty without locality
-    // Of each vertex: the sum of the double areas that it stands for, as vectors, and of their sizes.
+        reach_;  // per vertex: distance of the farthest vertex that it represents; empty without locality
+    // Per vertex: sum of the double areas that it represents, as vectors, and of their norms.
     HugeVector<Eigen::Vector4f> facing_;
-    HugeVector<std::uint8_t> bend_;  // of each vertex: an upper bound, see contractor_checks.cpp
+    HugeVector<std::uint8_t> bend_;  // per vertex: an upper bound, see contractor_checks.cpp
     Star star_u_, star_v_;
-    std::vector<Leaf> leaf_;    // the triangles that a contraction would leave at the new vertex
-    std::vector<Joint> joint_;  // the edges between them, found by folds()
+    std::vector<Leaf> leaf_;    // triangles that a contraction would leave at the new vertex
+    std::vector<Joint> joint_;  // edges between these triangles, found by folds()
     struct Blade {
         std::uint32_t next, last;
         Eigen::Vector3f normal;
@@ -164,7 +164,7 @@ private:
         std::array<Waiting, 32> at_{};
         std::uint32_t first_ = 0, end_ = 0;
     };
-    Line popped_, due_;  // taken from the queue, their memory on its way
+    Line popped_, due_;  // taken from the queue, memory being prefetched
     Simplified result_;
     float error_ = 0.0F;
 };

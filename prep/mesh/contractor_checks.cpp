@@ -1,9 +1,9 @@
-// What a contraction must not do.
+// Checks that reject a contraction.
 //
-// Folds over the edges opposite the new vertex would need a look at triangles further away, which is dear. So
-// each vertex keeps an upper bound of |n - m| over the pairs of unit normals that meet at its edges. A
-// contraction turns a normal by a chord that is known, so the bound grows by that much; only where it says
-// that there might be a fold is the true value looked up. A few of a hundred contractions need that.
+// Detecting folds over the edges opposite the new vertex needs triangles farther away, which is expensive. So each
+// vertex keeps an upper bound of |n - m| over the pairs of unit normals at its edges. A contraction turns a normal by
+// a known chord, so the bound grows by that chord; the true value is computed only if the bound permits a fold, which
+// is the case in a few of a hundred contractions.
 #include <algorithm>
 #include <cmath>
 
@@ -12,7 +12,7 @@
 namespace tact {
 namespace {
 
-constexpr float kFoldChord = 1.94F;  // |n - m| at kFoldCosine, and a little less
+constexpr float kFoldChord = 1.94F;  // |n - m| at kFoldCosine, minus a margin
 constexpr float kThin = 1e-3F;
 constexpr float kBendUnit = 2.0F / 255.0F;
 
@@ -30,19 +30,19 @@ std::uint8_t rounded_up(float bend) {
 
 }  // namespace
 
-// The link condition: the pair's common neighbours are those across its own triangles, no more.
+// Link condition: the common neighbours of the pair are exactly those opposite it in its own triangles.
 bool Contractor::topology_allows(std::uint32_t u, std::uint32_t v) {
     const Vertex &a = vertex_[u], &b = vertex_[v];
     std::uint32_t shared = 0, common = 0;
     for (const Wing& wing : star_u_) shared += (wing.next == v || wing.last == v) ? 1 : 0;
     if (shared == 0) return false;
     const bool both_border = (a.stamp & b.stamp & kBorder) != 0;
-    // Would pinch the sheet, as pairs without an edge may.
+    // Would pinch the sheet; allowed only together with pairs without an edge.
     if (both_border && shared == 2 && !(settings_.pair_distance > 0.0)) return false;
     if (a.count + b.count <= 2 * shared + 1) return false;
-    if (!both_border && a.count == 3 && b.count == 3) return false;  // a tetrahedron would fold flat
+    if (!both_border && a.count == 3 && b.count == 3) return false;  // would flatten a tetrahedron
     if (((a.stamp | b.stamp) & kBorder) == 0 && a.count <= 24) {
-        // Around an inner vertex every neighbour is the next corner of one triangle.
+        // Around an inner vertex every neighbour is the `next` corner of one triangle.
         for (const Wing& wing : star_v_) {
             for (const Wing& other : star_u_) common += wing.next == other.next ? 1 : 0;
         }
@@ -68,7 +68,7 @@ bool Contractor::turns_over(const Star& star, std::uint32_t other, const Eigen::
         const float area = after.norm(), was = before.norm();
         const float cosine = before.dot(after) * (1.0F / (was * area));
         const bool turns = !(cosine > kTurnCosine<float>);
-        // The direction of a triangle that was a needle already means nothing.
+        // The normal of a needle-shaped triangle is undefined.
         if (turns || roundness(wing.p_next - to, wing.p_last - to, area) < kThin) {
             if (roundness(wing.p_next - from, wing.p_last - from, was) > kThin) return true;
         }
@@ -84,8 +84,8 @@ bool Contractor::turns_over(const Star& star, std::uint32_t other, const Eigen::
     return false;
 }
 
-// Two neighbours at the new vertex, or one of them and the triangle across, would lie nearly face to face. A
-// fold that was there before may stay.
+// True if two neighbouring triangles at the new vertex, or one of them and the triangle across its outer edge, would be
+// nearly face to face. A fold that existed before may stay.
 bool Contractor::folds(std::uint32_t u, std::uint32_t v, bool joining) {
     joint_.clear();
     for (const Leaf& a : leaf_) {
@@ -120,7 +120,7 @@ bool Contractor::folds_outward(const Leaf& leaf, std::uint32_t u, std::uint32_t 
     return false;
 }
 
-// Sets the bound of w to what is true now.
+// Sets the bound of w to the present value.
 void Contractor::measure_bend(std::uint32_t w) {
     float bend = 0.0F;
     fan_.clear();
@@ -146,7 +146,7 @@ void Contractor::measure_bend(std::uint32_t w) {
     bend_[w] = rounded_up(bend);
 }
 
-// After a contraction has passed: what the bounds around the new vertex are now.
+// Updates the bounds around the new vertex after an accepted contraction.
 void Contractor::note_bends(std::uint32_t u) {
     const auto add = [&](std::uint32_t w, float turn) {
         const unsigned sum = unsigned{bend_[w]} + rounded_up(turn);
@@ -160,7 +160,7 @@ void Contractor::note_bends(std::uint32_t u) {
     }
     bend_[u] = rounded_up(largest);
     if (joint_.size() == leaf_.size()) return;
-    for (const Leaf& leaf : leaf_) {  // at a border some edges have one triangle
+    for (const Leaf& leaf : leaf_) {  // at a border, some edges have only one triangle
         add(leaf.next, leaf.turn);
         add(leaf.last, leaf.turn);
     }

@@ -1,6 +1,5 @@
-// Pairs without an edge. Two surfaces that come together are first joined at points; where their triangles
-// meet face to face these go, and a passage is left. A part that has shrunk to a tetrahedron or less goes
-// whole, into the partner.
+// Pairs without an edge. Two approaching surfaces are first joined at points; where their triangles meet face to face,
+// these are removed and leave a passage. A part that has shrunk to a tetrahedron or less is absorbed by the partner.
 #include <algorithm>
 
 #include "prep/mesh/contractor.hpp"
@@ -9,11 +8,11 @@ namespace tact {
 namespace {
 
 constexpr std::size_t kSmallPart =
-    4;  // vertices; no closed part has fewer, none of these gets smaller over edges
+    4;  // vertices; every closed part has at least 4, and edge contraction cannot reduce such a part further
 
 }  // namespace
 
-// Whether v belongs to a part of no more than kSmallPart vertices, which are left in part_, v first.
+// True if v belongs to a part of at most kSmallPart vertices; part_ then holds them, v first.
 bool Contractor::small_part(std::uint32_t v, std::uint32_t apart_from) {
     part_.assign(1, v);
     for (std::size_t i = 0; i < part_.size(); ++i) {
@@ -61,8 +60,7 @@ Contractor::Tried Contractor::try_apart(QueuedPair& pair, float due) {
     const Eigen::Vector3f across = vertex_[v].at() - origin;
     look(u, origin, star_u_);
     look(v, origin, star_v_);
-    // A neighbour of both means that the pair spans a notch of one surface, unless it is at a border or a
-    // joint.
+    // A common neighbour means that the pair spans a notch of one surface, except at a border or a joint.
     gather(u);
     for (const Wing& wing : star_v_) {
         for (const std::uint32_t w : {wing.next, wing.last}) {
@@ -79,8 +77,8 @@ Contractor::Tried Contractor::try_apart(QueuedPair& pair, float due) {
     return Tried::done;
 }
 
-// Of triangles with the same corners at u, two that look away from each other go both, of two that look alike
-// one. Vertices that lose their last triangle so go into u.
+// Among triangles with the same corners at u, removes both of two that face opposite ways, and one of two that face the
+// same way. Vertices that lose their last triangle merge into u.
 void Contractor::drop_coincident(std::uint32_t u) {
     look(u, vertex_[u].at(), star_u_);
     const auto remove = [&](Wing& wing) {
@@ -104,7 +102,7 @@ void Contractor::drop_coincident(std::uint32_t u) {
     }
 }
 
-// Where surfaces have been sewn, vertices are inside that were on a border.
+// Clears the border flag of vertices that became inner vertices when surfaces joined.
 void Contractor::clear_borders(std::uint32_t u) {
     gather(u);
     part_ = ring_;

@@ -1,13 +1,13 @@
-// The optimum of the quadric lies outside of rounded surfaces and borders. Both are kept in the mean by a
-// condition that is linear in the new place (Lindstrom, Turk 1998), met along the way that costs least.
+// The optimum of the quadric lies outside rounded surfaces and borders. Volume and border area are preserved by a
+// condition that is linear in the new position (Lindstrom, Turk 1998), reached along the cheapest direction.
 #include "prep/mesh/contractor.hpp"
 
 namespace tact {
 
-// The volume on either side of the surface stays as it is.
+// Preserves the volume on either side of the surface.
 void Contractor::keep_volume(const Quadric& sum, std::uint32_t u, const Eigen::Vector3f& across,
                              Place& place) const {
-    Eigen::Vector3f g = Eigen::Vector3f::Zero();  // g . d = h keeps the volume
+    Eigen::Vector3f g = Eigen::Vector3f::Zero();  // g . d = h preserves the volume
     float h = 0.0F;
     for (const Wing& wing : star_u_) g += wing.p_next.cross(wing.p_last);
     for (const Wing& wing : star_v_) {
@@ -19,16 +19,16 @@ void Contractor::keep_volume(const Quadric& sum, std::uint32_t u, const Eigen::V
     move_to_plane(sum, across, g, h, place);
 }
 
-// A border that runs through the pair, or past one of its ends, keeps the area beside it. Where borders meet
-// or branch nothing moves.
+// Preserves the area beside a border that runs through the pair or past one of its ends. Where borders meet or branch
+// the position is unchanged.
 void Contractor::keep_border(const Quadric& sum, std::uint32_t u, std::uint32_t v, Place& place) {
     const Eigen::Vector3f origin = vertex_[u].at();
     struct End {
         std::uint32_t count = 0;
         std::array<std::uint32_t, 2>
-            along{};  // neighbours over border edges, the other end of the pair left out
+            along{};  // neighbours along border edges, except the other end of the pair
     };
-    bool between = false;  // the pair is a border edge itself
+    bool between = false;  // the pair itself is a border edge
     const auto end = [&](std::uint32_t self, std::uint32_t other) {
         End found;
         if ((vertex_[self].stamp & kBorder) == 0) return found;

@@ -52,7 +52,7 @@ void Contractor::touch() {
         if (v.count > 0) ++alive_;
         v.count = 0;
     }
-    // Half as much again is filled by appended lists before the live ones are moved together.
+    // Appended lists may use half of the size again before the lists are compacted.
     touch_limit_ = first + first / 2;
     touch_.reserve(touch_limit_ + 4096);
     touch_.resize(first);
@@ -80,7 +80,7 @@ void Contractor::add_planes() {
             facing_[v] += Eigen::Vector4f(normal.x(), normal.y(), normal.z(), area);
         }
     }
-    // The first bound of bend_: twice the largest distance from the mean.
+    // Initial bound of bend_: twice the largest distance from the mean normal.
     for (Eigen::Vector3f& m : mean) {
         const float length = m.norm();
         m *= length > 0.0F ? 1.0F / length : 0.0F;
@@ -97,7 +97,7 @@ void Contractor::add_planes() {
     }
 }
 
-// An edge with other than two triangles is a border.
+// An edge with a number of triangles other than two is a border.
 void Contractor::add_borders() {
     for (std::uint32_t u = 0; u < vertex_.size(); ++u) {
         gather(u);
@@ -110,7 +110,7 @@ void Contractor::add_borders() {
     }
 }
 
-// A plane through the edge, upright on its triangle, holds the border.
+// Adds a plane through the edge, perpendicular to its triangle, which holds the border.
 void Contractor::add_border(std::uint32_t u, std::uint32_t w) {
     const Eigen::Vector3f edge = vertex_[w].at() - vertex_[u].at();
     for (std::uint32_t i = 0; i < vertex_[u].count; ++i) {
@@ -158,7 +158,7 @@ void Contractor::push(std::uint32_t u, std::uint32_t v, std::uint32_t flag) {
     queue_.push(cost(u, v), {u | flag, v, vertex_[u].stamp + vertex_[v].stamp});
 }
 
-// Pairs without an edge, of vertices that are near in space and not over the surface.
+// Queues pairs without an edge: vertices that are near in space but not connected by an edge.
 void Contractor::queue_near() {
     double edges = 0.0, sum = 0.0;
     for (const Corners& c : triangle_) {
@@ -176,7 +176,7 @@ void Contractor::queue_near() {
         at.push_back(vertex_[v].at());
     }
     const auto distance = static_cast<float>(settings_.pair_distance * sum / edges);
-    // Vertices over the surface are the nearest of all: more are asked for than are kept.
+    // Connected vertices are the nearest of all, so more are requested than are kept.
     near_pairs(at, distance, settings_.pairs_per_vertex_max + 24, [&](std::uint32_t i, const auto& near) {
         const std::uint32_t u = used[i];
         gather(u);

@@ -1,6 +1,6 @@
-// How far two surfaces are apart: distances of random surface points of each to the other, in metres.
+// Distance between two surfaces: distances of random surface points of each to the other, in metres.
 //
-// The nearest triangle is looked for in a uniform grid, in shells around the point until none can be nearer.
+// The nearest triangle is found in a uniform grid, in shells around the point until no nearer one is possible.
 #pragma once
 
 #include <Eigen/Geometry>
@@ -27,10 +27,10 @@ public:
             high = high.cwiseMax(corner(mesh, v));
         }
         diagonal_m_ = (high - low_).norm();
-        // A surface fills about n² of n³ cells; this leaves a few triangles in each of those.
+        // A surface occupies about n² of n³ cells; this leaves a few triangles in each of them.
         const double cells = std::clamp(std::sqrt(static_cast<double>(mesh.triangles())), 4.0, cells_most);
         const double widest = (high - low_).maxCoeff();
-        if (widest > 0.0) cell_ = widest / cells;  // else all of it is one point
+        if (widest > 0.0) cell_ = widest / cells;  // otherwise all vertices coincide
         for (int i = 0; i < 3; ++i) size_[i] = static_cast<int>((high - low_)[i] / cell_) + 1;
         list_.resize(static_cast<std::size_t>(size_[0]) * size_[1] * size_[2]);
         for (std::uint32_t t = 0; t < mesh.triangles(); ++t) {
@@ -68,7 +68,7 @@ public:
         return best;
     }
 
-    // Of `count` points spread over `mesh` by area.
+    // Adds the distances of `count` points, spread over `mesh` by area.
     template <class Add>
     static void sample(const TriangleMesh& mesh, std::size_t count, Add&& add) {
         std::vector<double> until;
@@ -115,7 +115,7 @@ private:
     }
     std::vector<std::uint32_t>& list(int x, int y, int z) { return list_[number(x, y, z)]; }
 
-    // Ericson, Real-Time Collision Detection, 5.1.5: by the region of the triangle's plane.
+    // Ericson, Real-Time Collision Detection, 5.1.5: selects the Voronoi region in the triangle's plane.
     [[nodiscard]] double to_triangle(const Eigen::Vector3d& p, std::uint32_t t) const {
         const Eigen::Vector3d a = at(t, 0), b = at(t, 1), c = at(t, 2);
         const Eigen::Vector3d ab = b - a, ac = c - a, ap = p - a, bp = p - b, cp = p - c;
@@ -139,7 +139,7 @@ private:
     std::vector<std::vector<std::uint32_t>> list_;
 };
 
-// Both ways; rms over all points of both.
+// Both directions; rms over all points of both.
 inline MeshDistance two_sided(const TriangleMesh& a, const TriangleMesh& b, std::size_t points = 50000) {
     MeshDistance d;
     const auto one_way = [&](const TriangleMesh& from, const TriangleMesh& to) {

@@ -33,7 +33,7 @@ std::size_t count_folds(const TriangleMesh& mesh) {
     for (std::size_t i = 0, end = 0; i < side.size(); i = end) {
         while (end < side.size() && side[end].edge == side[i].edge) ++end;
         if (end - i != 2) continue;
-        // Neighbours that disagree about the direction of the edge look to opposite sides.
+        // Neighbours that use the edge in the same direction face opposite sides.
         const float sign = side[i].forward == side[i + 1].forward ? -1.0F : 1.0F;
         const Eigen::Vector3f &m = unit[side[i].triangle], &n = unit[side[i + 1].triangle];
         if (sign * m.dot(n) < -0.9F || m.isZero() || n.isZero()) ++folds;

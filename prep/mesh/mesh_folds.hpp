@@ -1,4 +1,4 @@
-// Pairs of triangles at an edge that lie nearly face to face: their normals are more than 154 degrees apart.
+// Counts pairs of triangles at an edge that are nearly face to face: their normals differ by more than 154 degrees.
 #pragma once
 
 #include <cstddef>
@@ -7,7 +7,7 @@
 
 namespace tact {
 
-// Edges with two triangles alone; triangles without area count as folded on each of their neighbours.
+// Counts edges with exactly two triangles; a triangle without area counts as folded with each neighbour.
 [[nodiscard]] std::size_t count_folds(const TriangleMesh& mesh);
 
 }  // namespace tact

@@ -1,5 +1,4 @@
-// Who touches whom in a mesh that stays as it is: the triangles of each vertex, and its next vertex along the
-// border.
+// Adjacency of a constant mesh: the triangles of each vertex, and its next vertex along the border.
 #pragma once
 
 #include <algorithm>
@@ -28,7 +27,7 @@ public:
     [[nodiscard]] std::span<const std::uint32_t> triangles(std::uint32_t v) const {
         return std::span(list_).subspan(first_[v], first_[v + 1] - first_[v]);
     }
-    // Of each vertex: where a border edge that begins there leads, or kNoIndex.
+    // Per vertex: the end of the border edge that begins there, or kNoIndex.
     [[nodiscard]] std::span<const std::uint32_t> border() const { return border_; }
     [[nodiscard]] bool has(std::uint32_t t, std::uint32_t v) const {
         return corner_[3 * std::size_t{t}] == v || corner_[3 * std::size_t{t} + 1] == v ||

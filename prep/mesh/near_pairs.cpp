@@ -7,7 +7,7 @@
 namespace tact {
 namespace {
 
-constexpr std::int64_t kSide = std::int64_t{1} << 20;  // cells along an axis at the most
+constexpr std::int64_t kSide = std::int64_t{1} << 20;  // maximum number of cells along an axis
 constexpr std::uint32_t kLookMax = 512;
 
 struct Entry {
@@ -17,8 +17,8 @@ struct Entry {
 
 }  // namespace
 
-// Cells as wide as the distance, points sorted by cell. The neighbours of a cell are three cells in each of
-// nine rows, and a row's three lie together: nine cursors that only move forward find them.
+// Cells are as wide as the distance; points are sorted by cell. The neighbours of a cell are three adjacent cells in
+// each of nine rows, so nine cursors that only move forward find them.
 void near_pairs(std::span<const Eigen::Vector3f> point, float distance, std::uint32_t count,
                 const std::function<void(std::uint32_t, const std::vector<std::uint32_t>&)>& take) {
     if (point.empty() || !(distance > 0.0F) || count == 0) return;

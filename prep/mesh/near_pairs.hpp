@@ -1,7 +1,6 @@
-// Points that are near each other: for each point i, up to `count` points j > i within a distance, the
-// nearest first.
+// Finds points that are near each other: for each point i, up to `count` points j > i within a distance, nearest first.
 //
-// Bounds  looks at no more than 512 points around each, however crowded it is.  Cost  sorts the points once.
+// Bounds  compares at most 512 points with each, however dense the points.  Cost  one sort of the points.
 #pragma once
 
 #include <Eigen/Core>

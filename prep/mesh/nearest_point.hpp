@@ -1,5 +1,4 @@
-// The point of a triangle nearest to a point, by the region of the triangle's plane (Ericson, Real-Time
-// Collision Detection, 5.1.5).
+// The point of a triangle nearest to a given point, by Voronoi region (Ericson, Real-Time Collision Detection, 5.1.5).
 #pragma once
 
 #include <Eigen/Geometry>
@@ -8,8 +7,8 @@
 namespace tact {
 
 struct NearestPoint {
-    double square = 1e300;                // distance, squared
-    std::array<double, 3> part{0, 0, 0};  // barycentric
+    double square = 1e300;                // squared distance
+    std::array<double, 3> part{0, 0, 0};  // barycentric coordinates
 };
 
 inline NearestPoint nearest_point(const Eigen::Vector3d& p, const Eigen::Vector3d& a,

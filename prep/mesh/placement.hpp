@@ -1,4 +1,4 @@
-// Where the vertex that replaces a pair is put, and what that costs.
+// Position of the vertex that replaces a pair, and its cost.
 //
 // Frames  displacements from the first vertex of the pair, in the units of the quadrics.
 #pragma once
@@ -14,11 +14,11 @@ struct Place {
     float cost;
 };
 
-// The optimum of the quadric. Its condition is tested relative to the sum of its weights: planes that leave a
-// direction open let a pull of kPull towards the middle of the pair decide there, and an optimum further than
-// kFar pair lengths from the middle is refused for the best point on the pair.
+// The optimum of the quadric. Its condition is tested relative to the sum of its weights: if the planes leave a
+// direction undetermined, a pull of kPull towards the middle of the pair decides. An optimum farther than kFar pair
+// lengths from the middle is replaced by the best point on the pair.
 inline Place best_place(const Quadric& sum, const Eigen::Vector3f& across) {
-    constexpr float kPull = 1e-5F;  // 1e-5 to 1e-2 differ by 3 % in RMS; more displaces corners
+    constexpr float kPull = 1e-5F;  // 1e-5 to 1e-2 differ by 3 % in RMS; larger values displace corners
     constexpr float kFar = 2.0F;
     const Eigen::Vector3f middle = 0.5F * across;
     Place place{minimum(sum, middle, kPull), 0.0F};
@@ -31,13 +31,13 @@ inline Place best_place(const Quadric& sum, const Eigen::Vector3f& across) {
     return place;
 }
 
-// Moves the place onto the plane normal . d = height (not unit, not zero) by the way that costs least in the
-// quadric. Left as it is where that way is longer than the pair, across.
+// Moves the place onto the plane normal . d = height (normal not unit, not zero) along the cheapest direction of the
+// quadric. Does nothing if the move is longer than the pair (across).
 inline void move_to_plane(const Quadric& sum, const Eigen::Vector3f& across, const Eigen::Vector3f& normal,
                           float height, Place& place) {
     const float length = normal.norm();
     if (!(length > 0.0F)) return;
-    const float scale = 1.0F / length;  // divisions of whole vectors would divide the unused lane, 0 by 0
+    const float scale = 1.0F / length;  // dividing a whole vector would divide its unused lane, 0 by 0
     const Eigen::Vector3f g = normal * scale;
     Quadric pulled = sum;
     pulled.bx = -g.x();
@@ -52,9 +52,8 @@ inline void move_to_plane(const Quadric& sum, const Eigen::Vector3f& across, con
     place.cost = sum(place.shift);
 }
 
-// Moves the place onto the line parallel to a - b on which the curve a ... b keeps its area as a vector
-// (Lindstrom, Turk 1998), to the cheapest point there. area: the sum of a x u + u x v + ... + w x b over the
-// curve as it was.
+// Moves the place onto the line parallel to a - b on which the curve a ... b keeps its vector area (Lindstrom, Turk
+// 1998), to the cheapest point of it. area: the sum of a x u + u x v + ... + w x b over the original curve.
 inline void move_to_line(const Quadric& sum, const Eigen::Vector3f& across, const Eigen::Vector3f& a,
                          const Eigen::Vector3f& b, const Eigen::Vector3f& area, Place& place) {
     const Eigen::Vector3f d = a - b;

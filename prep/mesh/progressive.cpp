@@ -32,7 +32,7 @@ std::array<std::int16_t, 4> packed(const Eigen::Vector3d& sum, const std::array<
     return {pack(0), pack(1), pack(2), 0};
 }
 
-// The lowest level that still has the triangle: one above the contraction that makes two corners meet.
+// The lowest level that contains the triangle: one above the contraction that merges two of its corners.
 std::uint32_t birth_level(std::array<std::uint32_t, 3> v, const ProgressiveMeshData& data) {
     for (;;) {
         const std::size_t last = static_cast<std::size_t>(std::max_element(v.begin(), v.end()) - v.begin());
@@ -50,14 +50,14 @@ ProgressiveMeshData make_progressive(const TriangleMesh& raw, const SimplifySett
     const TriangleMesh mesh = cleaned(raw);
     if (mesh.triangles() == 0) {
         throw StartupError("bake a progressive mesh", "the surface has no triangle",
-                           "choose a contour level that lies between the lowest and the highest density");
+                           "choose a contour level between the lowest and the highest density");
     }
     const std::vector<Contraction> steps = simplify(mesh, settings, progress).contraction;
     const auto n = static_cast<std::uint32_t>(mesh.vertices());
     ProgressiveMeshData data;
     data.base_vertices = n - static_cast<std::uint32_t>(steps.size());
 
-    // New numbers: the base first, then in the reverse order of contraction.
+    // New numbers: the base mesh first, then in reverse order of contraction.
     std::vector<std::uint32_t> number(n, kNoIndex);
     for (std::size_t s = 0; s < steps.size(); ++s)
         number[steps[s].gone] = n - 1 - static_cast<std::uint32_t>(s);
@@ -88,7 +88,7 @@ ProgressiveMeshData make_progressive(const TriangleMesh& raw, const SimplifySett
         data.error_m[k] = step.error_m;
     }
 
-    // Triangles by counting sort on the level that they are born at; the order within one is kept.
+    // Counting sort of the triangles by the level in which they appear; stable.
     const std::size_t triangles = mesh.triangles();
     std::vector<std::uint32_t> level(triangles);
     data.triangle_count.assign(steps.size() + 1, 0);

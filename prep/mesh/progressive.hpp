@@ -1,9 +1,9 @@
-// Bakes a triangle mesh into a progressive mesh: simplify() as far as it goes, in reverse.
+// Bakes a triangle mesh into a progressive mesh: simplify() to the coarsest level, stored in reverse.
 //
-// Normals   a vertex of any level shows the mean normal, by area, of the original surface that it stands
-//           for, so shading stays smooth at coarse levels.
+// Normals   at every level a vertex has the area-weighted mean normal of the original surface that it represents, so
+//           shading stays smooth at coarse levels.
 // error_m   of a level: the largest error_m of the contractions below it.
-// Fails by  StartupError; a mesh without triangles is refused.
+// Fails by  StartupError for a mesh without triangles.
 #pragma once
 
 #include "ipc/scene/mesh/progressive_mesh.hpp"

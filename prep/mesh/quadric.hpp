@@ -1,8 +1,8 @@
-// The sum of weighted squared distances to planes, kept about a point near them.
+// Sum of weighted squared distances to planes, stored about a point near them.
 //
-// q(d) = dᵀ A d + 2 bᵀ d + c for a displacement d from that point. As every plane of a vertex passes near it,
-// b and c are as small as the error itself, so single precision keeps its relative accuracy: a quadric and
-// its vertex fit one cache line. About the origin, as Garland and Heckbert wrote it, this would need doubles.
+// q(d) = dᵀ A d + 2 bᵀ d + c for a displacement d from that point. Every plane of a vertex passes near the point, so
+// b and c are as small as the error itself and single precision keeps its relative accuracy: a quadric and its vertex
+// fit one cache line. About the origin (Garland, Heckbert) this would need double precision.
 #pragma once
 
 #include <Eigen/Core>
@@ -14,7 +14,7 @@ struct Quadric {
     float bx = 0, by = 0, bz = 0;
     float c = 0;
 
-    // A plane through the reference point.
+    // Adds a plane through the reference point.
     void add_plane(const Eigen::Vector3f& unit_normal, float weight) {
         const Eigen::Vector3f w = weight * unit_normal;
         xx += w.x() * unit_normal.x();
@@ -32,9 +32,9 @@ struct Quadric {
     [[nodiscard]] float trace() const { return xx + yy + zz; }  // the sum of the weights
     [[nodiscard]] float operator()(const Eigen::Vector3f& d) const {
         const float value = d.dot(times(d) + 2.0F * b()) + c;
-        return value > 0.0F ? value : 0.0F;  // below zero by rounding alone
+        return value > 0.0F ? value : 0.0F;  // negative only by rounding
     }
-    // The same function about the point that lies `shift` from the present one.
+    // The same function about the point at `shift` from the present one.
     [[nodiscard]] Quadric about(const Eigen::Vector3f& shift) const {
         Quadric moved = *this;
         const Eigen::Vector3f b_new = times(shift) + b();
@@ -59,8 +59,8 @@ struct Quadric {
     }
 };
 
-// The displacement that minimizes q(d) + pull * trace * |d - anchor|². The pull keeps the solution where the
-// planes alone do not fix it (flat and cylindrical places) and moves it by a like part elsewhere.
+// The displacement that minimizes q(d) + pull * trace * |d - anchor|². The pull fixes the solution in directions that
+// the planes leave undetermined (flat and cylindrical regions) and hardly moves it otherwise.
 inline Eigen::Vector3f minimum(const Quadric& q, const Eigen::Vector3f& anchor, float pull) {
     const double p = static_cast<double>(pull) * static_cast<double>(q.trace());
     const double xx = q.xx + p, yy = q.yy + p, zz = q.zz + p, xy = q.xy, xz = q.xz, yz = q.yz;

@@ -1,14 +1,13 @@
-// Each round finds the nearest point of every sample, starting from the vertex that its own vertex went into,
-// and then solves one linear least-squares problem for the displacements of all vertices by conjugate
-// gradients:
+// Each round finds the nearest point of every sample, starting from the vertex that represents its original vertex.
+// Then conjugate gradients solve one linear least-squares problem for the displacements of all vertices:
 //
 //   sum_s w_s (n_s . (b_1 d_1 + b_2 d_2 + b_3 d_3) - n_s . e_s)^2  +  mu sum_v a_v |d_v|^2
 //
-// with the sample's normal n_s, its barycentric place b and offset e_s. Border edges are sampled too and pull
-// on the border, across their own direction.
+// with the sample's normal n_s, its barycentric coordinates b and its offset e_s. Border edges are sampled too and
+// attract the border perpendicular to their own direction.
 //
-// Nothing here holds a vertex that slides along the surface, and in many rounds that is where the gain is. So
-// that none slides off it, each stays as near to the original as it was, or as the typical offset.
+// Nothing in the sum prevents a vertex from sliding along the surface; over many rounds this brings the gain. To keep
+// vertices on the surface, each may move no farther from the original than it was, or than the typical offset.
 #include "prep/mesh/relax.hpp"
 
 #include <Eigen/Geometry>
@@ -29,8 +28,8 @@ constexpr std::uint32_t kSamplesPerVertex = 20;
 constexpr int kSolverSteps = 12;
 constexpr double kStay = 0.02;  // mu
 constexpr double kBorderWeight = 6.0;
-constexpr double kStray = 16.0;            // of the mean of the squared offsets
-constexpr double kStartCosine = 0.3;       // a triangle may turn by 72 degrees in all rounds
+constexpr double kStray = 16.0;            // times the mean squared offset
+constexpr double kStartCosine = 0.3;       // a triangle may turn by 72 degrees over all rounds
 constexpr std::uint32_t kRoundsMost = 40;  // by default
 constexpr std::size_t kPullsMost = 60000;
 constexpr std::size_t kHeldMost = 200000;  // triangles of the original
@@ -39,9 +38,9 @@ using Vec = Eigen::Vector3d;
 using Corners = std::array<std::uint32_t, 3>;
 
 struct Sample {
-    Vec at, normal;  // on a border: the direction of the edge
+    Vec at, normal;  // on a border: direction of the edge
     double weight;
-    std::uint32_t near;  // vertex to search from
+    std::uint32_t near;  // vertex where the search starts
     bool border;
 };
 struct Row {
@@ -88,10 +87,10 @@ private:
     MeshStars star_;
     std::vector<Sample> sample_;
     std::vector<Row> row_;
-    std::vector<Side<double>> side_;          // of each vertex
-    std::vector<std::array<Vec, 2>> border_;  // edges of the original
-    std::optional<MeshGrid> grid_;            // of the original, where vertices are held to it
-    std::vector<double> stray_;               // of each vertex: how far from it, squared
+    std::vector<Side<double>> side_;          // per vertex
+    std::vector<std::array<Vec, 2>> border_;  // border edges of the original
+    std::optional<MeshGrid> grid_;            // of the original, if vertices must stay near it
+    std::vector<double> stray_;               // per vertex: allowed squared distance from the original
 };
 
 std::vector<Corners> corners(const TriangleMesh& mesh) {
@@ -120,7 +119,7 @@ Relaxer::Relaxer(const TriangleMesh& original, Simplified& simplified)
     take_border_samples();
 }
 
-// Coarse, as the queries are few.
+// A coarse grid, because there are few queries.
 void Relaxer::hold() { grid_.emplace(original_, 64.0); }
 
 void Relaxer::take_sides() {
@@ -138,7 +137,7 @@ void Relaxer::take_sides() {
     for (std::size_t v = 0; v < at_.size(); ++v) side_.emplace_back(facing[v], area[v]);
 }
 
-// Centres of triangles, weighted by area; of every so many where there are more than are worth their time.
+// Samples the centres of triangles, weighted by area; skips triangles if there are more than needed.
 void Relaxer::take_samples() {
     const std::size_t most = std::size_t{kSamplesPerVertex} * at_.size();
     const std::size_t stride =
@@ -169,8 +168,8 @@ void Relaxer::take_border_samples() {
     }
 }
 
-// The nearest triangle around the vertex the sample starts from, then around that triangle's corners while it
-// gets nearer.
+// Finds the nearest triangle around the vertex where the sample starts, then around that triangle's corners as long as
+// the distance decreases.
 void Relaxer::pull(Sample& sample) {
     NearestPoint best;
     std::uint32_t triangle = kNoIndex;
@@ -198,7 +197,7 @@ void Relaxer::pull(Sample& sample) {
         static_cast<std::size_t>(std::max_element(best.part.begin(), best.part.end()) - best.part.begin());
     sample.near = c[largest];
     const Vec n = double_area(c);
-    if (!(n.dot(sample.normal) > 0.2 * n.norm())) return;  // another side of the body, or a part that is gone
+    if (!(n.dot(sample.normal) > 0.2 * n.norm())) return;  // another side of the body, or a removed part
     const Vec foot = best.part[0] * at_[c[0]] + best.part[1] * at_[c[1]] + best.part[2] * at_[c[2]];
     row_.push_back({c, best.part, sample.normal, sample.weight, sample.normal.dot(sample.at - foot)});
 }
@@ -242,7 +241,7 @@ std::vector<Vec> Relaxer::solve() {
             r[row.corner[i]] += row.weight * row.part[i] * row.offset * row.normal;
         }
     }
-    // Scaled by the weight that each vertex carries, which differs with the size of its triangles.
+    // Preconditioner: the weight of each vertex, which differs with the size of its triangles.
     const auto scaled = [&](const std::vector<Vec>& from) {
         std::vector<Vec> to(n);
         for (std::size_t v = 0; v < n; ++v) to[v] = stay[v] > 0.0 ? Vec(from[v] / stay[v]) : Vec(Vec::Zero());
@@ -279,7 +278,7 @@ std::vector<Vec> Relaxer::solve() {
     return x;
 }
 
-// Squared.
+// Squared distance.
 double Relaxer::from_border(const Vec& p) const {
     double best = 1e300;
     for (const auto& [a, b] : border_) {
@@ -292,7 +291,7 @@ double Relaxer::from_border(const Vec& p) const {
 void Relaxer::limit_stray() {
     double surface = 0.0, border = 0.0, surface_weight = 0.0, border_weight = 0.0;
     for (const Row& row : row_) {
-        const bool on_border = row.corner[1] == row.corner[2];  // two rows a sample
+        const bool on_border = row.corner[1] == row.corner[2];  // border samples have two rows
         (on_border ? border : surface) += row.weight * row.offset * row.offset;
         (on_border ? border_weight : surface_weight) += on_border ? 0.5 * row.weight : row.weight;
     }
@@ -303,7 +302,7 @@ void Relaxer::limit_stray() {
             std::max(from_original(v, at_[v]), star_.border()[v] != kNoIndex ? border : surface));
 }
 
-// False, and nothing done, where a triangle would turn over or two would come to lie on each other.
+// Returns false and changes nothing if a triangle would flip or two would fold onto each other.
 bool Relaxer::move(std::uint32_t v, const Vec& to) {
     const Vec from = at_[v];
     if (grid_ && from_original(v, to) > stray_[v]) return false;
@@ -376,7 +375,7 @@ void relax(const TriangleMesh& original, Simplified& simplified, std::uint32_t r
     Relaxer relaxer(original, simplified);
     if (rounds > 1 && original.triangles() <= kHeldMost) relaxer.hold();
     for (std::uint32_t i = 0; i < rounds; ++i) {
-        report(progress, static_cast<double>(i) / rounds, "simplify: moving vertices to the original");
+        report(progress, static_cast<double>(i) / rounds, "simplify: moving vertices towards the original");
         relaxer.round();
     }
     relaxer.store();

@@ -1,12 +1,11 @@
-// Moves the vertices of a simplified mesh to where it lies nearest to the original, in the mean of squares.
+// Moves the vertices of a simplified mesh to minimize the mean squared distance to the original.
 //
-// Contraction puts a vertex where the planes of its neighbourhood want it; between the vertices the surface
-// follows as it can. Here samples of the original pull on the triangle that is nearest to each. The triangles
-// stay as they are.
+// Contraction places a vertex by the planes around it; the surface between the vertices follows. Here samples of the
+// original attract the triangle nearest to each. The triangles are unchanged.
 //
-// Topology  unchanged; a vertex does not move where a triangle would turn over or fold onto its neighbour,
-//           nor, in more rounds than one, away from the original.
-// Cost      about 20 samples a vertex and round, not more than the original has.
+// Topology  unchanged; a vertex does not move if a triangle would flip or fold onto its neighbour, nor, with more than
+//           one round, away from the original.
+// Cost      about 20 samples per vertex and round, at most as many as the original has triangles.
 // Thread    any but the servo's.
 #pragma once
 
@@ -14,11 +13,10 @@
 
 namespace tact {
 
-// How many rounds are worth their time: one, and up to 40 where a mesh with borders has few vertices, as its
-// border comes nearer to the original's slowly.
+// Useful number of rounds: one, and up to 40 for a mesh with borders and few vertices, whose border converges slowly.
 std::uint32_t relax_rounds(const TriangleMesh& original, const Simplified& simplified);
 
-// `simplified` comes from `original`. Two rounds bring most of the gain.
+// `simplified` must come from `original`. Two rounds bring most of the gain.
 void relax(const TriangleMesh& original, Simplified& simplified, std::uint32_t rounds,
            const Progress& progress = {});
 

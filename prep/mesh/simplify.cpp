@@ -12,19 +12,19 @@ namespace {
 
 void check(const TriangleMesh& mesh) {
     const auto refuse = [](const std::string& why) {
-        throw StartupError("simplify a mesh", why, "repair the mesh or extract it again");
+        throw StartupError("simplify a mesh", why, "repair the mesh, or export it again");
     };
     const std::size_t n = mesh.vertices();
     if (n >= kNoIndex / 4 || mesh.triangles() >= kNoIndex / 4)
-        refuse("it has more than 2^30 vertices or triangles");
+        refuse("the mesh has more than 2^30 vertices or triangles");
     for (std::size_t i = 0; i < mesh.triangle.size(); ++i) {
         if (mesh.triangle[i] >= n)
-            refuse("triangle " + std::to_string(i / 3) + " names vertex " + std::to_string(mesh.triangle[i]) +
-                   " of " + std::to_string(n));
+            refuse("triangle " + std::to_string(i / 3) + " refers to vertex " +
+                   std::to_string(mesh.triangle[i]) + ", but the mesh has " + std::to_string(n));
     }
     for (std::size_t i = 0; i < mesh.position_m.size(); ++i) {
         if (!(std::abs(mesh.position_m[i]) <= 1e6F))
-            refuse("vertex " + std::to_string(i / 3) + " is not finite");
+            refuse("vertex " + std::to_string(i / 3) + " has a coordinate that is not finite");
     }
 }
 
@@ -37,7 +37,7 @@ Simplified simplify(const TriangleMesh& mesh, const SimplifySettings& settings, 
 
 TriangleMesh cleaned(const TriangleMesh& mesh) {
     check(mesh);
-    std::vector<std::array<std::uint32_t, 3>> key;  // corners in rising order, and where they came from
+    std::vector<std::array<std::uint32_t, 3>> key;  // sorted corners, and the triangle of each key
     std::vector<std::uint32_t> order;
     for (std::uint32_t t = 0; t < mesh.triangles(); ++t) {
         std::array<std::uint32_t, 3> v{mesh.triangle[3 * t], mesh.triangle[3 * t + 1],

@@ -31,7 +31,7 @@ bool is_open(const TriangleMesh& mesh) {
                        [](auto next) { return next != UINT32_MAX; });
 }
 
-// Of what is the best of all tried; where that is 0 there is nothing to compare.
+// Distance as a multiple of the best try; 0 if the best is 0.
 double multiple(double distance, double best) { return best > 0.0 ? distance / best : 0.0; }
 
 }  // namespace

@@ -1,4 +1,4 @@
-// One function per mesh format, and what they share: building a mesh that is checked as it grows.
+// One function per mesh format, and their shared code: builds a mesh and checks it as it grows.
 #pragma once
 
 #include <algorithm>
@@ -32,7 +32,7 @@ class MeshBuilder {
 public:
     explicit MeshBuilder(const MeshSource& source) : source_(source) {}
 
-    // Says what will be needed, then takes it. The counts are such as the file can hold, and may be estimates.
+    // Announces the memory needed, then reserves it. The counts are bounded by the file's size and may be estimates.
     void reserve(std::size_t vertices, std::size_t triangles) {
         vertices = std::min<std::size_t>(vertices, kMeshElementsMax);
         triangles = std::min<std::size_t>(triangles, kMeshElementsMax);
@@ -42,10 +42,11 @@ public:
     }
     [[nodiscard]] std::size_t vertices() const { return mesh_.vertices(); }
     [[nodiscard]] const std::vector<float>& position_m() const { return mesh_.position_m; }
-    // `where` is called for the words of a complaint: "line 7".
+    // `where` returns the place for error texts: "line 7". It is called only on an error.
     template <class Where>
     void vertex(const std::array<double, 3>& p, Where&& where) {
-        if (mesh_.vertices() >= kMeshElementsMax) source_.refuse("it has more than 2^28 vertices", kSmaller);
+        if (mesh_.vertices() >= kMeshElementsMax)
+            source_.refuse("the mesh has more than 2^28 vertices", kSmaller);
         check(source_, p, where);
         for (const double x : p) mesh_.position_m.push_back(static_cast<float>(x));
     }
@@ -53,18 +54,18 @@ public:
     static void check(const MeshSource& source, const std::array<double, 3>& p, Where&& where) {
         for (const double x : p) {
             if (!(std::abs(x) <= 1e6))
-                source.refuse(where() + ": a coordinate is not a number or beyond 1e6",
-                              "move the mesh near its origin, or repair it");
+                source.refuse(where() + ": a coordinate is not a number of at most 1e6 in size",
+                              "move the mesh near the origin, or repair it");
         }
     }
     template <class Where>
     void face(std::span<const std::int64_t> corner, Where&& where) {
-        if (corner.size() < 3) source_.refuse(where() + ": a face has fewer than three corners");
+        if (corner.size() < 3) source_.refuse(where() + ": the face has fewer than three corners");
         if (mesh_.triangles() + corner.size() > kMeshElementsMax)
-            source_.refuse("it has more than 2^28 triangles", kSmaller);
+            source_.refuse("the mesh has more than 2^28 triangles", kSmaller);
         for (const std::int64_t v : corner) {
             if (v < 0 || v >= kMeshElementsMax)
-                source_.refuse(where() + ": a face names an impossible vertex");
+                source_.refuse(where() + ": the face refers to a vertex that does not exist");
             largest_ = std::max(largest_, v);
         }
         for (std::size_t i = 2; i < corner.size(); ++i) {
@@ -74,17 +75,17 @@ public:
     }
     TriangleMesh finish() {
         if (mesh_.triangles() == 0)
-            source_.refuse("it has no faces", "export a surface, not points or lines");
+            source_.refuse("the file has no faces", "export a surface, not points or lines");
         if (largest_ >= static_cast<std::int64_t>(mesh_.vertices()))
-            source_.refuse("a face names vertex " + std::to_string(largest_) + " (from 0) of " +
-                           std::to_string(mesh_.vertices()));
+            source_.refuse("a face refers to vertex " + std::to_string(largest_) +
+                           " (from 0), but the number of vertices is " + std::to_string(mesh_.vertices()));
         return std::move(mesh_);
     }
 
     static constexpr std::size_t kCornersMax = 255;
 
 private:
-    static constexpr const char* kSmaller = "cut the mesh into parts";
+    static constexpr const char* kSmaller = "split the mesh into parts";
     const MeshSource& source_;
     TriangleMesh mesh_;
     std::int64_t largest_ = -1;

@@ -18,8 +18,9 @@ const Format& format_of(const std::string& ending, const std::string& name) {
     for (const Format& format : kFormats) {
         if (ending == format.ending) return format;
     }
-    throw StartupError("read mesh " + name, "its ending \"" + ending + "\" is none of .ply .obj .stl .off",
-                       "convert it, or give the file its right ending");
+    throw StartupError("read mesh " + name,
+                       "the file name ending '" + ending + "' is none of .ply .obj .stl .off",
+                       "convert the file, or correct the ending of its name");
 }
 
 }  // namespace
@@ -32,7 +33,7 @@ ImportedMesh import_mesh_bytes(std::string_view bytes, const std::string& name, 
 ImportedMesh import_mesh(const std::filesystem::path& path, const Progress& progress,
                          const AnnounceMesh& announce) {
     const std::string ending = format_ending(path);
-    format_of(ending, path.string());  // before gigabytes are read
+    format_of(ending, path.string());  // checks the ending before reading gigabytes
     report(progress, 0.0, "reading the mesh");
     const InputBytes bytes(path, kMeshFileBytesMax, kMeshUnpackedBytesMax);
     return import_mesh_bytes(bytes.view(), path.string(), ending, progress, announce);

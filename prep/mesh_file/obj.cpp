@@ -1,5 +1,5 @@
-// Wavefront OBJ: lines "v x y z" and "f a b c" with corners a, a/t, a//n or a/t/n, counted from 1, or back
-// from the last vertex where negative. All else (normals, groups, materials, curves) is passed over.
+// Wavefront OBJ: lines "v x y z" and "f a b c" with corners a, a/t, a//n or a/t/n, counted from 1, or backwards
+// from the last vertex if negative. All other lines (normals, groups, materials, curves) are skipped.
 #include <vector>
 
 #include "prep/mesh_file/formats.hpp"
@@ -8,7 +8,7 @@
 namespace tact {
 namespace {
 
-// Counts the lines of vertices and faces, so that memory is taken once and can be told.
+// Counts the lines of vertices and faces, to announce and reserve the memory once.
 void reserve_for_obj(const MeshSource& source, MeshBuilder& builder) {
     const std::string_view text = source.bytes;
     std::size_t vertices = 0, faces = 0;
@@ -38,21 +38,23 @@ ImportedMesh read_obj(const MeshSource& source) {
             std::array<double, 3> p{};
             for (double& x : p) {
                 if (!TextScan::number(scan.word(), x))
-                    source.refuse(where() + ": a vertex without three numbers");
+                    source.refuse(where() + ": the vertex does not have three numbers");
             }
             builder.vertex(p, where);
         } else if (kind == "f") {
             corner.clear();
             for (std::string_view word = scan.word(); !word.empty(); word = scan.word()) {
-                if (word == "\\" && scan.next_line()) continue;  // the face goes on in the next line
+                if (word == "\\" && scan.next_line()) continue;  // the face continues on the next line
                 std::int64_t v = 0;
                 if (!TextScan::number(word.substr(0, word.find('/')), v) || v == 0)
-                    source.refuse(where() + ": a face with a corner that is no number from 1");
+                    source.refuse(where() + ": a corner of the face is not a vertex number of at least 1");
                 if (corner.size() == MeshBuilder::kCornersMax)
-                    source.refuse(where() + ": a face has more than 255 corners", "divide it into triangles");
+                    source.refuse(where() + ": the face has more than 255 corners",
+                                  "divide the face into triangles");
                 const auto known = static_cast<std::int64_t>(builder.vertices());
                 if (v < 0 && v < -known)
-                    source.refuse(where() + ": a face counts back before the first vertex");
+                    source.refuse(where() +
+                                  ": a negative vertex number of the face lies before the first vertex");
                 corner.push_back(v > 0 ? v - 1 : known + v);
             }
             builder.face(corner, where);

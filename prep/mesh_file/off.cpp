@@ -1,6 +1,6 @@
-// OFF (Geomview): an optional keyword, the counts of vertices, faces and edges, then a line a vertex and a
-// line a face. Of COFF, NOFF, CNOFF, STOFF and their like the position is kept: the first three numbers of
-// the line. Colours of faces, too, are passed over. Empty lines and what follows a # mean nothing.
+// OFF (Geomview): an optional keyword, the counts of vertices, faces and edges, then one line per vertex and one per
+// face. Of COFF, NOFF, CNOFF, STOFF and similar the position is kept: the first three numbers of the line. Face colours
+// are skipped. Empty lines and text after # are ignored.
 #include "prep/mesh_file/formats.hpp"
 #include "prep/mesh_file/text_scan.hpp"
 
@@ -17,8 +17,8 @@ public:
         // "0 0 0\n" and "3 0 1 2\n" are the shortest lines.
         const std::uint64_t left = source_.bytes.size();
         if (vertices > left / 6 || faces > left / 8)
-            source_.refuse("it declares " + std::to_string(vertices) + " vertices and " +
-                               std::to_string(faces) + " faces in a file of " + std::to_string(left) +
+            source_.refuse("the file declares " + std::to_string(vertices) + " vertices and " +
+                               std::to_string(faces) + " faces, too many for its " + std::to_string(left) +
                                " bytes",
                            "fetch the file again");
         builder_.reserve(vertices, faces);
@@ -27,7 +27,7 @@ public:
             std::array<double, 3> p{};
             std::string_view word = first_word();
             for (double& x : p) {
-                if (!TextScan::number(word, x)) refuse("a vertex without three numbers");
+                if (!TextScan::number(word, x)) refuse("the vertex does not have three numbers");
                 word = scan_.word();
             }
             builder_.vertex(p, where_);
@@ -44,7 +44,7 @@ private:
     void step(std::uint64_t i) const {
         if (i % 65536 == 0) source_.at(scan_.place());
     }
-    // Of the next line that says something.
+    // The first word of the next line that is neither empty nor a comment.
     std::string_view first_word() {
         while (scan_.next_line()) {
             const std::string_view word = scan_.word();
@@ -57,22 +57,23 @@ private:
         if (word.ends_with("OFF")) {
             const std::string_view kind = word.substr(0, word.size() - 3);
             if (kind.find_first_of("4n") != std::string_view::npos)
-                source_.refuse("its vertices have not three dimensions", "export it as OFF");
-            if (kind.find_first_not_of("CNST") != std::string_view::npos) refuse("an unknown keyword");
+                source_.refuse("the vertices do not have three dimensions", "export the mesh as OFF");
+            if (kind.find_first_not_of("CNST") != std::string_view::npos) refuse("the keyword is unknown");
             word = scan_.word();
-            if (word == "BINARY") source_.refuse("it is a binary OFF file", "export it as text, or as PLY");
+            if (word == "BINARY")
+                source_.refuse("binary OFF is not supported", "export the mesh as text, or as PLY");
             if (word.empty() || word[0] == '#') word = first_word();
         }
         if (!TextScan::number(word, vertices) || !TextScan::number(scan_.word(), faces))
-            refuse("no keyword OFF and no counts of vertices and faces");
+            refuse("neither the keyword OFF nor the counts of vertices and faces are found");
     }
     void read_face() {
         std::size_t count = 0;
         if (!TextScan::number(first_word(), count) || count > MeshBuilder::kCornersMax)
-            refuse("a face without its number of corners, or with more than 255");
+            refuse("the number of corners of the face is missing or more than 255");
         std::array<std::int64_t, MeshBuilder::kCornersMax> corner{};
         for (std::size_t k = 0; k < count; ++k) {
-            if (!TextScan::number(scan_.word(), corner[k])) refuse("a face with a corner that is no number");
+            if (!TextScan::number(scan_.word(), corner[k])) refuse("a corner of the face is not a number");
         }
         builder_.face(std::span(corner).first(count), where_);
     }

@@ -1,5 +1,5 @@
-// PLY 1.0 (Turk). The header declares elements and their properties; of these x, y, z of "vertex" and the
-// list "vertex_indices" (or "vertex_index") of "face" are kept and all else is passed over.
+// PLY 1.0 (Turk). The header declares elements and their properties. Only x, y, z of "vertex" and the list
+// "vertex_indices" (or "vertex_index") of "face" are kept.
 #include <bit>
 #include <limits>
 #include <vector>
@@ -26,7 +26,7 @@ constexpr std::size_t size_of(Type type) {
 
 enum class Use : std::uint8_t { none, x, y, z, corners };
 struct Property {
-    Type type = Type::u8, count = Type::u8;  // count: of lists
+    Type type = Type::u8, count = Type::u8;  // count: type of a list's length
     bool list = false;
     Use use = Use::none;
 };
@@ -41,7 +41,7 @@ struct Header {
     std::size_t bytes = 0;
 };
 
-// "it declares" limits keep a header from asking for work that no file of its size can hold.
+// Limits of the header, so that it cannot request work beyond the size of the file.
 constexpr std::size_t kHeaderLinesMax = 4096, kPropertiesMax = 256;
 
 class HeaderReader {
@@ -49,7 +49,7 @@ public:
     explicit HeaderReader(const MeshSource& source) : source_(source), scan_(source.bytes) {}
 
     Header read() {
-        if (!scan_.next_line() || scan_.word() != "ply") refuse("it does not begin with \"ply\"");
+        if (!scan_.next_line() || scan_.word() != "ply") refuse("the file does not begin with \"ply\"");
         bool formatted = false;
         while (scan_.line_number() < kHeaderLinesMax && scan_.next_line()) {
             const std::string_view key = scan_.word();
@@ -58,21 +58,21 @@ public:
                 header_.format = format == "binary_little_endian" ? Header::little
                                  : format == "binary_big_endian"  ? Header::big
                                                                   : Header::ascii;
-                if (header_.format == Header::ascii && format != "ascii") refuse("an unknown format");
+                if (header_.format == Header::ascii && format != "ascii") refuse("the format is unknown");
                 formatted = true;
             } else if (key == "element") {
                 add_element();
             } else if (key == "property") {
                 add_property();
             } else if (key == "end_header") {
-                if (!formatted) refuse("a header without its format");
+                if (!formatted) refuse("the header has no format");
                 header_.bytes = std::min(scan_.place(), source_.bytes.size());
                 return header_;
             } else if (key != "comment" && key != "obj_info" && !key.empty()) {
-                refuse("an unknown keyword in the header");
+                refuse("the header has an unknown keyword");
             }
         }
-        refuse("the header has no end");
+        refuse("the header does not end");
     }
 
 private:
@@ -81,10 +81,11 @@ private:
     }
     void add_element() {
         Element element{std::string(scan_.word()), 0, {}};
-        if (!TextScan::number(scan_.word(), element.count)) refuse("an element without its count");
+        if (!TextScan::number(scan_.word(), element.count)) refuse("the element has no count");
         if (element.count > source_.bytes.size())
-            source_.refuse("it declares " + std::to_string(element.count) + " elements \"" + element.name +
-                               "\" in a file of " + std::to_string(source_.bytes.size()) + " bytes",
+            source_.refuse("the header declares " + std::to_string(element.count) + " elements \"" +
+                               element.name + "\", but the file has only " +
+                               std::to_string(source_.bytes.size()) + " bytes",
                            "fetch the file again");
         header_.element.push_back(std::move(element));
     }
@@ -93,18 +94,18 @@ private:
         for (const TypeName& t : kTypes) {
             if (word == t.name || word == t.other) return t.type;
         }
-        refuse("an unknown type of property");
+        refuse("the type of the property is unknown");
     }
     void add_property() {
-        if (header_.element.empty()) refuse("a property before the first element");
+        if (header_.element.empty()) refuse("the property stands before the first element");
         Element& element = header_.element.back();
-        if (element.property.size() == kPropertiesMax) refuse("an element with more than 256 properties");
+        if (element.property.size() == kPropertiesMax) refuse("the element has more than 256 properties");
         Property property;
         if (scan_.line().find(" list ") != std::string_view::npos) {
             scan_.word();
             property.list = true;
             property.count = type();
-            if (property.count >= Type::f32) refuse("a list whose length is not an integer");
+            if (property.count >= Type::f32) refuse("the length of a list is not an integer");
         }
         property.type = type();
         const std::string_view name = scan_.word();
@@ -172,13 +173,13 @@ private:
     bool big_;
 };
 
-// The fewest bytes that a row can take: lists that are kept have three entries, others may be empty.
+// Minimum bytes of a row: lists that are kept have three entries, others may be empty.
 std::uint64_t row_bytes_min(const Element& element, bool text) {
     std::uint64_t sum = 0;
     for (const Property& property : element.property) {
         const std::size_t kept = property.use == Use::corners ? 3 : 0;
         if (text)
-            sum += 2 * (property.list ? 1 + kept : 1);  // a digit and what ends it
+            sum += 2 * (property.list ? 1 + kept : 1);  // a digit and its separator
         else
             sum += property.list ? size_of(property.count) + kept * size_of(property.type)
                                  : size_of(property.type);
@@ -186,15 +187,15 @@ std::uint64_t row_bytes_min(const Element& element, bool text) {
     return std::max<std::uint64_t>(sum, 1);
 }
 
-// Refuses what the rest of the file cannot hold; then memory for it may be taken.
+// Rejects counts that exceed the rest of the file; then memory may be reserved.
 void reserve_for_ply(const MeshSource& source, const Header& header, MeshBuilder& builder) {
     std::uint64_t left = source.bytes.size() + 1 - header.bytes, vertices = 0, faces = 0;
     for (const Element& element : header.element) {
         if (element.property.empty()) continue;
         const std::uint64_t row = row_bytes_min(element, header.format == Header::ascii);
         if (element.count > left / row)
-            source.refuse("it declares " + std::to_string(element.count) + " elements \"" + element.name +
-                              "\" and ends early",
+            source.refuse("the header declares " + std::to_string(element.count) + " elements \"" +
+                              element.name + "\", but the file ends early",
                           "fetch the file again");
         left -= element.count * row;
         if (element.name == "vertex") vertices = element.count;
@@ -209,7 +210,7 @@ TriangleMesh read_body(const MeshSource& source, const Header& header, Body&& bo
     reserve_for_ply(source, header, builder);
     std::vector<std::int64_t> corner;
     for (const Element& element : header.element) {
-        if (element.property.empty()) continue;  // nothing of it is in the file
+        if (element.property.empty()) continue;  // the file has no data for it
         const bool vertices = element.name == "vertex";
         for (std::uint64_t n = 0; n < element.count; ++n) {
             if (n % 65536 == 0) source.at(header.bytes + body.place());
@@ -217,7 +218,7 @@ TriangleMesh read_body(const MeshSource& source, const Header& header, Body&& bo
             const auto next = [&](Type type) {
                 double value = 0.0;
                 if (!body.number(type, value))
-                    source.refuse(where() + ": the file ends early, or something is not a number",
+                    source.refuse(where() + ": the file ends early, or a value is not a number",
                                   "fetch the file again");
                 return value;
             };
@@ -232,12 +233,13 @@ TriangleMesh read_body(const MeshSource& source, const Header& header, Body&& bo
                 const double length = next(property.count);
                 const bool kept = property.use == Use::corners;
                 if (!(length >= 0.0) || (kept && length > static_cast<double>(MeshBuilder::kCornersMax)))
-                    source.refuse(where() + ": a list of impossible length", "divide faces into triangles");
+                    source.refuse(where() + ": the length of a list is negative or above 255",
+                                  "divide the faces into triangles");
                 corner.clear();
                 for (double i = 0.0; i < length; i += 1.0) {
                     const double value = next(property.type);
                     if (!kept) continue;
-                    if (!(std::abs(value) < 1e15)) source.refuse(where() + ": a corner is no number");
+                    if (!(std::abs(value) < 1e15)) source.refuse(where() + ": a corner is not a number");
                     corner.push_back(static_cast<std::int64_t>(value));
                 }
                 if (kept) builder.face(corner, where);
@@ -255,9 +257,10 @@ void check_kept(const MeshSource& source, const Header& header) {
         vertices += element.name == "vertex" ? 1 : 0;
         for (const Property& property : element.property) found |= 1U << static_cast<unsigned>(property.use);
     }
-    if (vertices != 1 || (found & 0b1110U) != 0b1110U) source.refuse("the vertices have no x, y and z");
+    if (vertices != 1 || (found & 0b1110U) != 0b1110U)
+        source.refuse("the header does not declare vertices with x, y and z");
     if ((found & 0b10000U) == 0)
-        source.refuse("it has no faces with vertex_indices", "export triangles, not strips or points");
+        source.refuse("the file has no faces with vertex_indices", "export triangles, not strips or points");
 }
 
 }  // namespace

@@ -1,5 +1,5 @@
-// STL: a triangle at a time, without shared vertices. Binary when the size is 84 + 50 n bytes for the n it
-// declares, whatever the first word is, since binary files that begin with "solid" exist.
+// STL: separate triangles without shared vertices. A file is binary if its size is 84 + 50 n bytes for the declared n,
+// whatever its first word, because some binary files begin with "solid".
 #include <bit>
 #include <cstring>
 
@@ -10,7 +10,7 @@
 namespace tact {
 namespace {
 
-// Gives equal corners one vertex.
+// Merges equal corners into one vertex.
 class Welder {
 public:
     Welder(const MeshSource& source, std::size_t triangles)
@@ -20,7 +20,7 @@ public:
     template <class Where>
     std::int64_t vertex(const std::array<double, 3>& p, Where&& where) {
         const auto fresh = static_cast<std::int64_t>(builder_.vertices());
-        MeshBuilder::check(source_, p, where);  // the table holds nothing that is not equal to itself
+        MeshBuilder::check(source_, p, where);  // the table must not hold NaN
         const std::uint32_t known =
             number_.find({static_cast<float>(p[0]), static_cast<float>(p[1]), static_cast<float>(p[2])},
                          builder_.position_m());
@@ -64,7 +64,7 @@ ImportedMesh read_binary(const MeshSource& source, std::uint32_t count) {
 }
 
 ImportedMesh read_text(const MeshSource& source) {
-    constexpr std::size_t kFacetBytes = 240;  // with six digits a number
+    constexpr std::size_t kFacetBytes = 240;  // with six digits per number
     Welder welder(source, source.bytes.size() / kFacetBytes);
     TextScan scan(source.bytes);
     const auto where = [&] { return "line " + std::to_string(scan.line_number()); };
@@ -78,17 +78,17 @@ ImportedMesh read_text(const MeshSource& source) {
             std::array<double, 3> p{};
             for (double& x : p) {
                 if (!TextScan::number(scan.word_of_any_line(), x))
-                    source.refuse(where() + ": a vertex without three numbers");
+                    source.refuse(where() + ": the vertex does not have three numbers");
             }
-            if (corner.size() == 3) source.refuse(where() + ": a facet with more than three vertices");
+            if (corner.size() == 3) source.refuse(where() + ": the facet has more than three vertices");
             corner.push_back(welder.vertex(p, where));
         } else if (word == "endloop") {
-            if (corner.size() != 3) source.refuse(where() + ": a facet without three vertices");
+            if (corner.size() != 3) source.refuse(where() + ": the facet does not have three vertices");
             welder.builder().face(corner, where);
             corner.clear();
         }
     }
-    if (!corner.empty()) source.refuse("it ends within a facet", "fetch the file again");
+    if (!corner.empty()) source.refuse("the file ends within a facet", "fetch the file again");
     return {welder.builder().finish(), "STL ascii"};
 }
 
@@ -102,7 +102,7 @@ ImportedMesh read_stl(const MeshSource& source) {
     const bool text = source.bytes.substr(0, 512).find('\0') == std::string_view::npos;
     if (text && source.bytes.starts_with("solid")) return read_text(source);
     source.refuse(
-        "it is no text that begins with \"solid\", and its size is not that of the triangles that it "
+        "the file is neither text that begins with \"solid\" nor of the size of the triangles that it "
         "declares",
         "fetch the file again");
 }

@@ -1,4 +1,4 @@
-// Words of a text, line by line, without copies. Numbers as std::from_chars reads them: no locale.
+// Splits a text into lines and words, without copies. Numbers are parsed by std::from_chars, independent of the locale.
 #pragma once
 
 #include <charconv>
@@ -11,7 +11,7 @@ class TextScan {
 public:
     explicit TextScan(std::string_view text) : text_(text) {}
 
-    // The next line, without its end; false at the end of the text.
+    // Advances to the next line (without its end); false at the end of the text.
     bool next_line() {
         if (place_ >= text_.size()) return false;
         const std::size_t end = std::min(text_.find('\n', place_), text_.size());
@@ -20,7 +20,7 @@ public:
         ++number_;
         return true;
     }
-    // The next word of the line; empty at its end.
+    // The next word of the line; empty at the end of the line.
     std::string_view word() {
         std::size_t i = 0;
         while (i < line_.size() && blank(line_[i])) ++i;
@@ -30,7 +30,7 @@ public:
         line_.remove_prefix(end);
         return found;
     }
-    // The next word, over as many lines as it takes; empty at the end of the text.
+    // The next word, across lines; empty at the end of the text.
     std::string_view word_of_any_line() {
         for (;;) {
             const std::string_view found = word();

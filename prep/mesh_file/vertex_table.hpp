@@ -1,7 +1,7 @@
-// Gives equal positions one number: a hash table of 4 bytes a place over positions that are kept elsewhere.
+// Assigns one number to equal positions: a hash table of 4 bytes per slot over positions stored elsewhere.
 //
-// -0 equals 0; positions are finite. Numbers are given out in the order of the calls, so nothing depends on
-// the table. Memory: 8 to 16 bytes a vertex.
+// -0 equals 0; positions are finite. Numbers are assigned in the order of the calls, independent of the table.
+// Memory: 8 to 16 bytes per vertex.
 #pragma once
 
 #include <array>
@@ -18,8 +18,8 @@ public:
     explicit VertexTable(std::size_t expected) {
         place_.assign(std::bit_ceil(std::max<std::size_t>(expected * 2, 64)), kNone);
     }
-    // The number of the vertex at p among position_m (3 floats each), or kNone when it has none yet. The
-    // caller then appends p to position_m, before the next call.
+    // The number of the vertex at p in position_m (3 floats each), or kNone if it has none. The caller then appends p
+    // to position_m before the next call.
     std::uint32_t find(const std::array<float, 3>& p, const std::vector<float>& position_m) {
         if (2 * (used_ + 1) > place_.size()) grow(position_m);
         std::size_t at = slot(p);

@@ -22,15 +22,15 @@ void put(std::string& out, std::uint32_t word) {
 void write_ply(const std::filesystem::path& path, const TriangleMesh& mesh) {
     const auto fail = [&](const char* what) {
         throw StartupError("write mesh " + path.string(), std::string(what) + ": " + std::strerror(errno),
-                           "check that the folder exists, may be written to and has room");
+                           "check that the folder exists, is writable and has free space");
     };
     const std::string beside = path.string() + ".part" + std::to_string(::getpid());
     struct Remover {
         const std::string& name;
-        ~Remover() { ::unlink(name.c_str()); }  // after the rename there is nothing to remove
+        ~Remover() { ::unlink(name.c_str()); }  // does nothing after the rename
     } const remover{beside};
     std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::fopen(beside.c_str(), "wbx"), &std::fclose);
-    if (!file) fail("no file can be made beside it");
+    if (!file) fail("the temporary file could not be created");
     std::string out =
         "ply\nformat binary_little_endian 1.0\nelement vertex " + std::to_string(mesh.vertices()) +
         "\nproperty float x\nproperty float y\nproperty float z\nelement face " +

@@ -1,7 +1,7 @@
-// A triangle mesh as a binary PLY file, little endian: float x, y, z and lists of three int corners.
+// Writes a triangle mesh as a binary little-endian PLY file: float x, y, z and lists of three int corners.
 //
-// The file is whole or absent: it is written beside its place and then renamed.
-// Fails by StartupError naming the file and the reason.
+// The file is whole or absent: it is written under a temporary name in the same folder, then renamed.
+// Fails by StartupError with file, reason and fix.
 #pragma once
 
 #include <filesystem>

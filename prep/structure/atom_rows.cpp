@@ -18,7 +18,7 @@ constexpr double kFarthestA = 1e5;
 constexpr std::size_t kRowsMax = 20'000'000;
 constexpr double kMassUnknownU = 12.0;  // an atom of unknown element counts as carbon
 
-constexpr char kFixFile[] = "repair the file, or fetch it again from its source";
+constexpr char kFixFile[] = "repair the file, or fetch it again";
 
 std::string_view trimmed(std::string_view text) {
     while (!text.empty() && (text.front() == ' ' || text.front() == '\t')) text.remove_prefix(1);
@@ -35,7 +35,7 @@ std::optional<double> number(std::string_view text) {
     return value;
 }
 
-// Of a hostile file only printable text reaches a message, a panel or a terminal.
+// Keeps only printable characters of a malicious file in messages.
 std::string printable(std::string_view text, std::size_t longest) {
     std::string out(text.substr(0, longest));
     for (char& c : out) {
@@ -52,7 +52,7 @@ double coordinate(std::string_view text, const char* axis, const std::string& na
         throw StartupError("read structure " + name, where + ": " + shown + " is not a number", kFixFile);
     if (std::abs(*value) > kFarthestA) {
         throw StartupError("read structure " + name,
-                           where + ": " + shown + " is farther than 100000 ångström away", kFixFile);
+                           where + ": " + shown + " is more than 100000 ångström from the origin", kFixFile);
     }
     return *value;
 }
@@ -68,14 +68,14 @@ void set_kind(AtomRow& row, gemmi::Element element) {
 
 void check_count(std::size_t rows, const std::string& name) {
     if (rows > kRowsMax)
-        throw StartupError("read structure " + name, "it has more than 20 million atoms",
-                           "split it into several files");
+        throw StartupError("read structure " + name, "the file has more than 20 million atoms",
+                           "split the file into several files");
 }
 
 }  // namespace
 
 std::vector<AtomRow> pdb_rows(std::string_view text, const std::string& name) {
-    // Only the atom lines of the first model go on to gemmi, in full length.
+    // Pass gemmi only the atom lines of the first model, padded to full length.
     std::string atoms;
     std::size_t line_number = 0, rows_seen = 0;
     while (!text.empty()) {
@@ -89,9 +89,10 @@ std::vector<AtomRow> pdb_rows(std::string_view text, const std::string& name) {
         const std::string where = "line " + std::to_string(line_number);
         if (line.size() < 54)
             throw StartupError("read structure " + name,
-                               where + ": the atom ends before its coordinates (column 54)", kFixFile);
+                               where + ": the atom line ends before column 54, the end of the coordinates",
+                               kFixFile);
         if (line.find('\0') != std::string_view::npos)
-            throw StartupError("read structure " + name, where + ": it holds zero bytes", kFixFile);
+            throw StartupError("read structure " + name, where + ": the line contains zero bytes", kFixFile);
         coordinate(line.substr(30, 8), "x", name, where);
         coordinate(line.substr(38, 8), "y", name, where);
         coordinate(line.substr(46, 8), "z", name, where);

@@ -1,7 +1,7 @@
-// The atoms of the first model of a file, as they stand there, every number checked.
+// The atoms of a file's first model, unchanged, every number checked.
 //
-// Both formats are read by gemmi, but only after their atom lines passed the checks here: gemmi takes a
-// coordinate that it cannot read for zero, and an atom at the origin would go unseen.
+// gemmi reads both formats, but only after the atom lines have passed the checks here: gemmi reads an invalid
+// coordinate as zero, and an atom at the origin would go unnoticed.
 #pragma once
 
 #include <cstdint>
@@ -29,8 +29,8 @@ struct AtomRow {
 std::vector<AtomRow> pdb_rows(std::string_view text, const std::string& name);
 std::vector<AtomRow> mmcif_rows(std::string_view text, const std::string& name);
 
-// All of these rows, at least one, as a structure in the frame of its centre of mass. Only the last part of
-// `name`, a path, becomes the structure's name.
+// All rows (at least one) as a structure in the frame of its centre of mass. `name` is a path; its last part becomes
+// the name of the structure.
 Structure structure_of(const std::vector<AtomRow>& rows, const std::string& name);
 
 }  // namespace tact

@@ -13,8 +13,8 @@ namespace {
 
 constexpr std::uint64_t kFileBytesMax = std::uint64_t{1} << 30;
 
-// Marks the rows to keep among alternate locations. A residue may even be two residues (a point mutation in
-// part of the crystal); then the name that has the highest occupancy anywhere in it stays.
+// Marks the rows to keep among alternate locations. If the alternatives of a residue have different residue names (a
+// point mutation in part of the crystal), the name with the highest occupancy of any atom stays.
 std::vector<bool> best_alternates(const std::vector<AtomRow>& rows) {
     using Residue = std::tuple<std::string, std::int32_t, char>;
     const auto residue_of = [](const AtomRow& r) { return Residue{r.chain, r.residue, r.insertion}; };
@@ -51,8 +51,9 @@ std::string listed(const std::vector<std::string>& names) {
 
 void check_ending(const std::string& ending, const std::string& name) {
     if (ending == ".pdb" || ending == ".ent" || ending == ".cif" || ending == ".mmcif") return;
-    throw StartupError("read structure " + name, "its ending '" + ending + "' is not that of a structure",
-                       "give .pdb, .ent, .cif or .mmcif, each also with .gz behind it");
+    throw StartupError("read structure " + name,
+                       "the file name ending '" + ending + "' is not that of a structure",
+                       "give a .pdb, .ent, .cif or .mmcif file, optionally followed by .gz");
 }
 
 }  // namespace
@@ -64,7 +65,7 @@ ImportedStructure import_structure_bytes(std::string_view bytes, const std::stri
     const std::vector<AtomRow> rows =
         ending == ".cif" || ending == ".mmcif" ? mmcif_rows(bytes, name) : pdb_rows(bytes, name);
     if (rows.empty()) {
-        throw StartupError(attempt, "it has no atoms",
+        throw StartupError(attempt, "the file has no atoms",
                            "give a PDB or mmCIF file with coordinates (ATOM lines or an _atom_site table)");
     }
     const std::vector<bool> chosen = best_alternates(rows);
@@ -84,8 +85,8 @@ ImportedStructure import_structure_bytes(std::string_view bytes, const std::stri
     }
     if (kept.empty()) {
         throw StartupError(attempt,
-                           "it has no atoms besides " + std::to_string(hydrogens) + " hydrogens and " +
-                               std::to_string(waters) + " atoms of water",
+                           "the file has no atoms besides " + std::to_string(hydrogens) + " hydrogens and " +
+                               std::to_string(waters) + " water atoms",
                            "give a structure with heavy atoms");
     }
     std::vector<AtomRow> chosen_rows;
@@ -98,7 +99,7 @@ ImportedStructure import_structure_bytes(std::string_view bytes, const std::stri
     out.summary = std::to_string(kept.size()) + " atoms in " + std::to_string(s.chain_names.size()) +
                   (s.chain_names.size() == 1 ? " chain (" : " chains (") + listed(s.chain_names) + "), " +
                   std::to_string(backbone) + " on the backbone; dropped " + std::to_string(hydrogens) +
-                  " hydrogens, " + std::to_string(waters) + " atoms of water, " + std::to_string(alternates) +
+                  " hydrogens, " + std::to_string(waters) + " water atoms, " + std::to_string(alternates) +
                   " alternate locations";
     if (unknown > 0)
         out.summary += "; " + std::to_string(unknown) + " atoms of unknown element count as carbon";

@@ -1,9 +1,9 @@
-// Atomic structures from PDB (.pdb .ent) and mmCIF (.cif .mmcif) files, each also as .gz.
+// Reads atomic structures: PDB (.pdb .ent) and mmCIF (.cif .mmcif) files, each also as .gz.
 //
-// Kept     the first model; heavy atoms of polymers, ligands and ions. Dropped: hydrogens, waters, and of
-//          alternate locations all but the one with the highest occupancy (the first among equals).
+// Kept     the first model; heavy atoms of polymers, ligands and ions. Dropped: hydrogens, waters, and all alternate
+//          locations except the one of highest occupancy (the first among equals).
 // Frame    see ipc/scene/density/structure.hpp: body frame about the centre of mass, metres.
-// Fails by StartupError naming the file, the line or row, the reason and the fix.
+// Fails by StartupError with file, line or row, reason and fix.
 #pragma once
 
 #include <cstddef>
@@ -22,7 +22,7 @@ struct ImportedStructure {
 
 ImportedStructure import_structure(const std::filesystem::path& path);
 
-// The same from bytes in memory (not packed), for tests and fuzzing. `ending` decides the format.
+// The same from uncompressed bytes in memory, for tests and fuzzing. `ending` selects the format.
 ImportedStructure import_structure_bytes(std::string_view bytes, const std::string& name,
                                          const std::string& ending);
 

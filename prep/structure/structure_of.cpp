@@ -9,9 +9,9 @@
 namespace tact {
 namespace {
 
-constexpr double kWidestA = 2e4;  // two micrometres; BODY sections hold up to ten
+constexpr double kWidestA = 2e4;  // two micrometres; BODY sections allow ten
 
-// File names may hold anything; sections hold text without control characters.
+// File names may contain control characters; text in sections may not.
 std::string plain_name(const std::string& name) {
     std::string out = std::filesystem::path(name).filename().string().substr(0, 255);
     for (char& c : out) {
@@ -53,13 +53,13 @@ Structure structure_of(const std::vector<AtomRow>& rows, const std::string& name
             chain_index.try_emplace(r.chain, static_cast<std::uint16_t>(s.chain_names.size()));
         if (fresh) {
             if (s.chain_names.size() == 65535) {
-                throw StartupError("read structure " + name, "it has more than 65535 chains",
-                                   "split it into several files");
+                throw StartupError("read structure " + name, "the file has more than 65535 chains",
+                                   "split the file into several files");
             }
             s.chain_names.push_back(r.chain);
         }
         s.chain.push_back(at->second);
-        // Calcium has the atom name CA too, and phosphates of ligands have P.
+        // Calcium also has the atom name CA, and phosphates of ligands also have P.
         const bool trace =
             (r.atom_name == "CA" && r.element == 6) || (r.atom_name == "P" && r.element == 15 && r.nucleic);
         s.trace.push_back(trace ? 1 : 0);

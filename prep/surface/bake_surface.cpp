@@ -22,15 +22,16 @@ void place(const SurfaceInput& input, SceneMeta& meta) {
     }
     const double diagonal_m = (high - low).norm();
     if (!(diagonal_m > 1e-12) || !std::isfinite(diagonal_m))
-        throw StartupError("bake a surface", "its diagonal is " + std::to_string(diagonal_m) + " m",
-                           "check the mesh, and --unit");
+        throw StartupError("bake a surface",
+                           "the diagonal of the mesh is " + std::to_string(diagonal_m) + " m",
+                           "check the mesh and --unit");
     meta.world_per_model = input.size_m / diagonal_m;
     meta.centre_model_m[0] = 0.5 * (low.x() + high.x());
     meta.centre_model_m[1] = high.y() + SurfaceInput::kBelowM / meta.world_per_model;
     meta.centre_model_m[2] = 0.5 * (low.z() + high.z());
 }
 
-// Of one forest over the triangles of the surface, whose vertices are renumbered in its order.
+// Builds a forest over the triangles of the surface and renumbers the surface's vertices in its order.
 VertexForestData plant(SurfaceData& surface, double locality, ForestShape& shape, const Progress& progress) {
     TriangleMesh mesh;
     mesh.position_m = std::move(surface.position_m);
@@ -50,7 +51,7 @@ std::size_t bytes_of(const VertexForestData& forest) {
            forest.node.size() * sizeof(ForestNode) + forest.triangle.size() * sizeof(ForestTriangle);
 }
 
-// Sampled in the scene's model; the surface goes so far down that the tool does not reach into it.
+// Samples the tool in the model frame and moves the surface down until the tool at rest does not reach it.
 void bake_tool(SurfaceInput& input, SceneWriter& out, BakedSurface& baked, const Progress& progress) {
     TriangleMesh& mesh = input.tool;
     if (input.tool_size_m > 0.0) {
@@ -62,8 +63,9 @@ void bake_tool(SurfaceInput& input, SceneWriter& out, BakedSurface& baked, const
         }
         const double diagonal_m = static_cast<double>((high - low).norm());
         if (!(diagonal_m > 1e-12) || !std::isfinite(diagonal_m))
-            throw StartupError("bake a tool", "its diagonal is " + std::to_string(diagonal_m) + " m",
-                               "check the tool's mesh");
+            throw StartupError("bake a tool",
+                               "the diagonal of the tool is " + std::to_string(diagonal_m) + " m",
+                               "check the mesh of the tool");
         const auto scale = static_cast<float>(input.tool_size_m / diagonal_m / baked.meta.world_per_model);
         for (float& x : mesh.position_m) x *= scale;
     }
@@ -79,7 +81,7 @@ void bake_tool(SurfaceInput& input, SceneWriter& out, BakedSurface& baked, const
     char line[200];
     std::snprintf(
         line, sizeof line,
-        "tool: %zu points, %.3g mm apart in the hand's space, reaching %.3g mm from the hand; balls of "
+        "tool: %zu points, %.3g mm apart in the workspace, at most %.3g mm from the grip point; ball radius "
         "%.3g mm\n",
         tool.points(), mm * static_cast<double>(tool.cover_m.back()), mm * reach, mm * tool.ball_m);
     baked.note += line;
@@ -97,7 +99,7 @@ BakedSurface bake_surface(SurfaceInput&& input, SceneWriter& out, const Progress
 
     using Clock = std::chrono::steady_clock;
     const auto begin = Clock::now();
-    // The shares are of a bake of 100 000 triangles, measured 2026-11-23.
+    // The progress fractions were measured on a bake of 100 000 triangles, 2026-11-23.
     SurfaceData data = build_surface(input.mesh, part(progress, 0.0, 0.1));
     const auto built = Clock::now();
     baked.build_s = std::chrono::duration<double>(built - begin).count();
@@ -121,21 +123,22 @@ BakedSurface bake_surface(SurfaceInput&& input, SceneWriter& out, const Progress
                               data.node.size() * sizeof(SurfaceNode) + (input.forest ? bytes_of(forest) : 0);
     baked.bytes_per_triangle = static_cast<double>(bytes) / static_cast<double>(baked.triangles);
     char line[200];
-    std::snprintf(line, sizeof line, "surface: %zu vertices, %zu triangles, %s, %.1f bytes a triangle\n",
+    std::snprintf(line, sizeof line, "surface: %zu vertices, %zu triangles, %s, %.1f bytes per triangle\n",
                   baked.vertices, baked.triangles, baked.closed ? "closed" : "open",
                   baked.bytes_per_triangle);
     baked.note += line;
     const auto say_shape = [&](const std::optional<ForestShape>& shape, const char* how) {
         if (!shape) return;
         std::snprintf(line, sizeof line,
-                      "forest%s: %u trees, %u deep; reach %.2f of the root of the area below, one in a "
-                      "hundred more than %.2f\n",
+                      "forest%s: %u trees, depth %u; reach / sqrt(area below): mean %.2f, 99th percentile "
+                      "%.2f\n",
                       how, shape->trees, shape->depth, shape->mean, shape->p99);
         baked.note += line;
     };
     say_shape(baked.shape, "");
     say_shape(baked.shape_without_locality, " without locality");
-    std::snprintf(line, sizeof line, "hand: 1 mm is %.6g m of the model; the diagonal is %.0f mm wide\n",
+    std::snprintf(line, sizeof line,
+                  "hand: 1 mm is %.6g m of the model; the diagonal of the mesh is %.0f mm\n",
                   1e-3 / baked.meta.world_per_model, 1e3 * input.size_m);
     baked.note += line;
     if (input.tool.triangles() > 0) bake_tool(input, out, baked, part(progress, 0.7, 0.72));

@@ -1,12 +1,12 @@
-// Puts a scene to touch together: the surface at full resolution, its picture, and how the hand's world maps
-// onto it.
+// Bakes a scene with a surface to touch: the surface at full resolution, the drawn mesh, and the transform from model
+// to hand space.
 //
-// Forest    with SURF, FRST: the same triangles in the same order, so that how fine the surface is may follow the
-//           tool. Its vertices are then numbered as the leaves of the forest, and are stored once.
-// Place     the mesh's diagonal is size_m wide in the hand's world, and its top (the largest y) lies kBelowM
-//           below the middle of the hand's space, and of a tool there, so that a hand at rest is outside.
-// Tool      as large against the mesh as it is, or tool_size_m wide in the hand's world (its diagonal)
-// Fails by  StartupError; Cancelled when `progress` returns false. Nothing is written here.
+// Forest    FRST covers the same triangles as SURF in the same order, so that the resolution can follow the tool. The
+//           vertices are numbered as the leaves of the forest and stored once.
+// Place     the mesh's diagonal is size_m long in hand space. Its top (the largest y) lies kBelowM below the centre of
+//           the workspace, and below a tool there, so that a hand at rest is outside.
+// Tool      in the scale of the mesh, or with a diagonal of tool_size_m in hand space
+// Fails by  StartupError; Cancelled when `progress` returns false. Writes no file.
 // Repeats   the same input gives the same sections.
 #pragma once
 
@@ -29,13 +29,13 @@ struct SurfaceInput {
     TriangleMesh mesh;              // metres, y up, counter-clockwise seen from outside
     std::vector<std::string> note;  // lines "key: value"
     double size_m = 0.15;
-    bool forest = true;                    // false: the surface can be touched at full resolution alone
-    bool compare_locality = false;         // the forest is also built without locality, to see what that does
-    bool picture = true;                   // false: nothing to look at, for measurements
-    std::uint32_t vertices_max = 500'000;  // of the picture; 0: all
-    TriangleMesh tool;                     // metres, axes as the hand's; empty: none
+    bool forest = true;                    // false: the surface can only be touched at full resolution
+    bool compare_locality = false;         // also builds the forest without locality, for comparison
+    bool picture = true;                   // false: no drawn mesh, for measurements
+    std::uint32_t vertices_max = 500'000;  // of the drawn mesh; 0: no limit
+    TriangleMesh tool;                     // metres, axes of the hand; empty: none
     ToolSampling tool_sampling;
-    double tool_size_m = 0.0;  // 0: as large as it is
+    double tool_size_m = 0.0;  // 0: in the scale of the mesh
 };
 
 struct BakedSurface {
@@ -45,9 +45,9 @@ struct BakedSurface {
     std::uint32_t picture_vertices = 0;
     std::size_t tool_points = 0;
     bool closed = false;
-    double build_s = 0.0;             // of surface and tree
-    double forest_s = 0.0;            // of the forest; 0: none
-    double bytes_per_triangle = 0.0;  // of all that the controller maps
+    double build_s = 0.0;             // time for surface and tree
+    double forest_s = 0.0;            // time for the forest; 0: none
+    double bytes_per_triangle = 0.0;  // of all data that the controller maps
     std::optional<ForestShape> shape, shape_without_locality;
 };
 

@@ -11,7 +11,7 @@
 namespace tact {
 namespace {
 
-constexpr std::uint32_t kBits = 16;  // of a coordinate on the curve
+constexpr std::uint32_t kBits = 16;  // bits of a coordinate on the curve
 constexpr float kInfinite = std::numeric_limits<float>::infinity();
 
 struct Keyed {
@@ -19,7 +19,7 @@ struct Keyed {
     std::uint32_t triangle;
 };
 
-// By key, least digit first; equal keys stay in order, so runs repeat exactly.
+// Radix sort by key, least digit first; stable, so runs repeat exactly.
 void sort_by_key(HugeVector<Keyed>& items) {
     HugeVector<Keyed> other(items.size());
     std::vector<std::size_t> begin(std::size_t{1} << 16);
@@ -66,10 +66,10 @@ public:
 private:
     void check() const {
         const char* const kFix = "export the mesh again";
-        if (mesh_.triangles() == 0) throw StartupError("build a surface", "it has no triangles", kFix);
+        if (mesh_.triangles() == 0) throw StartupError("build a surface", "the mesh has no triangles", kFix);
         if (mesh_.triangles() >= SurfaceNode::kFirst || mesh_.vertices() > SurfaceNode::kFirst)
-            throw StartupError("build a surface", "it has more than 2^28 triangles or vertices",
-                               "cut the mesh into parts");
+            throw StartupError("build a surface", "the mesh has more than 2^28 triangles or vertices",
+                               "split the mesh into parts");
         for (const float x : mesh_.position_m) {
             if (!(std::abs(x) <= 1e6F))
                 throw StartupError("build a surface", "a coordinate is " + std::to_string(x), kFix);
@@ -77,8 +77,8 @@ private:
         for (const std::uint32_t v : mesh_.triangle) {
             if (v >= mesh_.vertices())
                 throw StartupError("build a surface",
-                                   "a triangle names vertex " + std::to_string(v) + " of " +
-                                       std::to_string(mesh_.vertices()),
+                                   "a triangle refers to vertex " + std::to_string(v) +
+                                       ", but the number of vertices is " + std::to_string(mesh_.vertices()),
                                    kFix);
         }
     }
@@ -140,7 +140,7 @@ private:
         data_.closed = border == 0;
         data_.normal.reserve(sum.size());
         for (const Eigen::Vector3f& s : sum) {
-            // Areas of small triangles have squares beneath the range of a float.
+            // Squares of small areas underflow a float.
             const Vec3 wide = s.cast<double>();
             const double length = wide.norm();
             data_.normal.push_back(oct_normal(length > 0.0 ? Vec3(wide / length) : Vec3(Vec3::UnitZ())));
@@ -157,8 +157,8 @@ private:
         }
         return box;
     }
-    // Leaves first to first + count, count >= 1, under one node; children get whole powers of four of leaves,
-    // so that only the last of each level is not full.
+    // Leaves first to first + count, count >= 1, under one node. Children get whole powers of four of leaves, so that
+    // only the last child of each level is not full.
     Box make_node(std::uint32_t first, std::uint32_t count) {
         const auto at = static_cast<std::uint32_t>(data_.node.size());
         SurfaceNode node{};

@@ -1,12 +1,12 @@
-// A triangle mesh becomes the surface that is touched: order, normals and tree (ipc/scene/mesh/surface_mesh.hpp).
+// Builds the surface that is touched from a triangle mesh: order, normals, tree (ipc/scene/mesh/surface_mesh.hpp).
 //
-// Order     triangles by the place of their centres on a Hilbert curve, so that four in a row are a patch;
-//           vertices by first use, and those that no triangle uses are left out
-// Normals   mean of the facets at a vertex, by area
-// Closed    every edge is passed as often one way as the other: the surface has an inside. By a sum of
-//           random numbers; wrong once in 2^64.
-// Thread    any but the servo's.  Fails by  StartupError for a mesh without triangles, with too many, or with
-//           an index or number out of range; Cancelled from progress.
+// Order     triangles by their centres along a Hilbert curve, so that four consecutive ones form a patch; vertices by
+//           first use, without those that no triangle uses
+// Normals   area-weighted mean of the facets at a vertex
+// Closed    every edge is traversed equally often in both directions: the surface has an inside. Tested by a sum of
+//           random numbers; wrong with a probability of 2^-64.
+// Thread    any but the servo's.  Fails by  StartupError for a mesh without triangles, with too many, or with an index
+//           or number out of range; Cancelled from progress.
 #pragma once
 
 #include "ipc/base/progress.hpp"

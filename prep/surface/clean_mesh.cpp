@@ -14,7 +14,7 @@ namespace tact {
 namespace {
 
 constexpr std::uint32_t kNoVertex = UINT32_MAX;
-constexpr double kFlatArea = 1e-10;  // floats near 1 tell heights down to 1e-7 of a side
+constexpr double kFlatArea = 1e-10;  // near 1, floats resolve heights down to 1e-7 of a side
 
 [[noreturn]] void refuse_to_clean(const std::string& why, const char* fix) {
     throw StartupError("clean a mesh", why, fix);
@@ -22,27 +22,29 @@ constexpr double kFlatArea = 1e-10;  // floats near 1 tell heights down to 1e-7 
 
 void check_mesh(const TriangleMesh& mesh) {
     if (mesh.vertices() >= kNoVertex / 4 || mesh.triangles() >= kNoVertex / 4)
-        refuse_to_clean("it has more than 2^30 vertices or triangles", "cut the mesh into parts");
+        refuse_to_clean("the mesh has more than 2^30 vertices or triangles", "split the mesh into parts");
     for (std::size_t i = 0; i < mesh.triangle.size(); ++i) {
         if (mesh.triangle[i] >= mesh.vertices())
-            refuse_to_clean("triangle " + std::to_string(i / 3) + " names vertex " +
-                                std::to_string(mesh.triangle[i]) + " of " + std::to_string(mesh.vertices()),
+            refuse_to_clean("triangle " + std::to_string(i / 3) + " refers to vertex " +
+                                std::to_string(mesh.triangle[i]) + ", but the mesh has " +
+                                std::to_string(mesh.vertices()),
                             "export the mesh again");
     }
     for (std::size_t i = 0; i < mesh.position_m.size(); ++i) {
         if (!(std::abs(mesh.position_m[i]) <= 1e6F))
-            refuse_to_clean("vertex " + std::to_string(i / 3) + " is not a number or beyond 1e6",
-                            "move the mesh near its origin, or repair it");
+            refuse_to_clean("vertex " + std::to_string(i / 3) +
+                                " has a coordinate that is not a number of at most 1e6 in size",
+                            "move the mesh near the origin, or repair it");
     }
 }
 
-// Vertices that were kept, in cells as wide as the tolerance: who is near lies in one of 27.
+// Kept vertices in cells as wide as the tolerance: the vertices near a point lie in one of 27 cells.
 class NearTable {
 public:
     NearTable(double tolerance, std::size_t vertices)
         : tolerance_(tolerance), first_(std::bit_ceil(std::max<std::size_t>(vertices, 64)), kNoVertex) {}
 
-    // The first kept vertex within the tolerance of p, or kNoVertex; then `fresh` is noted as kept at p.
+    // The first kept vertex within the tolerance of p; if none, returns kNoVertex and stores `fresh` as kept at p.
     std::uint32_t find(const std::array<float, 3>& p, const std::vector<float>& position_m,
                        std::uint32_t fresh) {
         std::array<std::int64_t, 3> cell{};
@@ -78,16 +80,16 @@ private:
     }
     double tolerance_;
     HugeVector<std::uint32_t> first_;
-    std::vector<std::uint32_t> next_;  // of each kept vertex
+    std::vector<std::uint32_t> next_;  // per kept vertex
 };
 
-// Moves the kept vertices together and renames the corners.
+// Compacts the kept vertices and renumbers the corners.
 void merge_vertices(TriangleMesh& mesh, double tolerance, const Progress& progress) {
     const std::size_t n = mesh.vertices();
     std::vector<std::uint32_t> number(n);
     std::vector<float> kept;
     kept.reserve(mesh.position_m.size());
-    // What is joined exactly needs no tolerance of its own: the coarser table holds it too.
+    // With a tolerance, the coarser table also finds equal positions.
     VertexTable same(tolerance > 0.0 ? 0 : n);
     NearTable near(tolerance, tolerance > 0.0 ? n : 0);
     for (std::size_t v = 0; v < n; ++v) {
@@ -178,7 +180,7 @@ void drop_vertices(TriangleMesh& mesh) {
 
 CleanReport clean_mesh(TriangleMesh& mesh, double tolerance, const Progress& progress) {
     if (!(tolerance >= 0.0 && tolerance <= 1e6) || (tolerance > 0.0 && tolerance < 1e-12))
-        refuse_to_clean("a tolerance of " + std::to_string(tolerance),
+        refuse_to_clean("the tolerance " + std::to_string(tolerance) + " is outside 1e-12 to 1e6",
                         "give a length from 1e-12 to 1e6, or 0 for none");
     check_mesh(mesh);
     CleanReport done;
@@ -192,7 +194,7 @@ CleanReport clean_mesh(TriangleMesh& mesh, double tolerance, const Progress& pro
     done.vertices = mesh.vertices();
     done.triangles = mesh.triangles();
     if (done.triangles == 0)
-        refuse_to_clean("none of its " + std::to_string(done.triangles_in) + " triangles has an area",
+        refuse_to_clean("none of the " + std::to_string(done.triangles_in) + " triangles has an area",
                         "export the mesh again, or give a smaller tolerance");
     return done;
 }

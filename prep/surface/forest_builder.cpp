@@ -16,7 +16,7 @@ namespace tact {
 namespace {
 
 constexpr float kFar = std::numeric_limits<float>::max();
-constexpr float kWider = 1.000001F;  // against rounding, at each step up
+constexpr float kWider = 1.000001F;  // covers rounding at each step up
 
 float distance(const float* a, const float* b) { return std::hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]); }
 
@@ -38,7 +38,7 @@ public:
     }
 
 private:
-    // Places in the arrays below: leaf v of the mesh as it came is v, the node that step s makes is leaves_ + s.
+    // Indices of the arrays below: input leaf v is v, the node made by step s is leaves_ + s.
     void link() {
         child_.resize(nodes_);
         parent_.assign(std::size_t{leaves_} + nodes_, kNoForestNode);
@@ -54,13 +54,12 @@ private:
         }
         ancestors_.emplace(parent_);
     }
-    // Of each place its parent, or an ancestor farther up (Myers 1983): any ancestor is then found in a number
-    // of steps that grows with the logarithm of the depth, where a fan's tree is as deep as it is wide.
+    // Position of a leaf or node.
     [[nodiscard]] const float* at(std::uint32_t place) const {
         return place < leaves_ ? &mesh_.position_m[3 * std::size_t{place}]
                                : steps_[place - leaves_].position_m.data();
     }
-    struct Box {  // of points
+    struct Box {  // bounding box of points
         std::array<float, 3> low{kFar, kFar, kFar}, high{-kFar, -kFar, -kFar};
         void add(const float* p) {
             for (std::size_t i = 0; i < 3; ++i) {
@@ -74,14 +73,14 @@ private:
                 high[i] = std::max(high[i], b.high[i]);
             }
         }
-        // Chebyshev distance of the farthest of its points.
+        // Chebyshev distance to the farthest point of the box.
         [[nodiscard]] float farthest(const float* p) const {
             float most = 0.0F;
             for (std::size_t i = 0; i < 3; ++i) most = std::max({most, high[i] - p[i], p[i] - low[i]});
             return most * kWider;
         }
     };
-    // Reach, error and deviation of every node, from the leaves up.
+    // Computes reach, error and deviation of every node, from the leaves up.
     void measure() {
         std::vector<Box> box(std::size_t{leaves_} + nodes_);  // of all triangles below
         for (std::size_t t = 0; t < mesh_.triangle.size(); t += 3)
@@ -92,7 +91,7 @@ private:
         float largest = 0.0F;
         for (const float x : mesh_.position_m) largest = std::max(largest, std::abs(x));
         deviation_.assign(nodes_, 0.0F);
-        error_.assign(nodes_, largest * 1e-9F);  // never 0: where everything is asked for, flat places too
+        error_.assign(nodes_, largest * 1e-9F);  // never 0, so that full refinement also splits flat regions
         for (std::uint32_t s = 0; s < nodes_; ++s) {
             const std::uint32_t made = leaves_ + s;
             error_[s] = std::max(error_[s], steps_[s].own_error_m);
@@ -106,10 +105,10 @@ private:
             reach_[made] = box[made].farthest(at(made));
         }
     }
-    // Spans: a triangle has each of its corners at any of the places that stand for it in turn until the triangle
-    // goes; then of what lies below.
+    // Spans: until a triangle vanishes, each of its corners is at any of the nodes that represent it. Computes the box
+    // of these positions for a node's own triangles, then for all below it.
     void measure_spans(const std::vector<std::uint32_t>& node_of_triangle) {
-        constexpr int kWalked = 64;  // of deeper trees the reach tells
+        constexpr int kWalked = 64;  // beyond this depth the reach is used instead
         std::vector<std::uint32_t> place(nodes_);
         for (std::uint32_t s = 0; s < nodes_; ++s) place[number_[leaves_ + s]] = leaves_ + s;
         std::vector<Box> box(nodes_);
@@ -141,11 +140,11 @@ private:
             out_.data.node[number_[made]].span_m = box[s].farthest(at(made));
         }
     }
-    // Within this of a place lie all those that it stands for in turn. Nodes may lie outside of their triangles.
+    // All positions that represent the leaves below p lie within this distance of p, even outside their triangles.
     [[nodiscard]] float reach_of_places(std::uint32_t p) const {
         return p < leaves_ ? 0.0F : deviation_[p - leaves_];
     }
-    // Gives leaves and nodes their numbers: trees along a space-filling curve, each walked node first.
+    // Numbers leaves and nodes: trees along a space-filling curve, each in preorder.
     void order() {
         std::vector<std::uint32_t> roots;
         for (std::uint32_t p = 0; p < parent_.size(); ++p)
@@ -217,8 +216,8 @@ private:
         std::sort(keyed.begin(), keyed.end());
         std::transform(keyed.begin(), keyed.end(), roots.begin(), [](const auto& k) { return k.second; });
     }
-    // A triangle appears with the first merge of two of its corners, seen from the leaves. Two leaves meet in
-    // the node with the highest merge between them, as numbers rise to the root; between trees is a wall.
+    // A triangle appears with the first merge of two of its corners, from the leaves up. Two leaves meet in the node of
+    // the highest merge between them, because numbers rise towards the root; kWall separates trees.
     void place_triangles() {
         constexpr std::uint32_t kWall = UINT32_MAX;
         HugeVector<std::uint32_t> merge(leaves_, kWall);
@@ -269,16 +268,17 @@ private:
 
 BuiltForest build_forest(TriangleMesh& mesh, const ForestSettings& settings, const Progress& progress) {
     if (mesh.triangles() == 0)
-        throw StartupError("build the forest of a surface", "the mesh has no triangle", "export it again");
-    constexpr double kSimplified = 0.35;  // of the time; a bake of 100 000 triangles, 2026-11-23
+        throw StartupError("build the forest of a surface", "the mesh has no triangle",
+                           "export the mesh again");
+    constexpr double kSimplified = 0.35;  // fraction of the time; a bake of 100 000 triangles, 2026-11-23
     std::vector<Contraction> steps =
         simplify(mesh, {.locality = settings.locality}, part(progress, 0.0, kSimplified)).contraction;
-    report(progress, kSimplified, "growing the forest");
+    report(progress, kSimplified, "building the forest");
     return ForestBuilder(mesh, std::move(steps)).build();
 }
 
 ForestShape shape_of(const VertexForest& forest, std::span<const std::uint32_t> corner) {
-    // The area at each leaf: a third of that of its triangles; summed along the leaves.
+    // Area of each leaf: a third of that of its triangles; cumulative along the leaves.
     std::vector<double> area(forest.leaves() + std::size_t{1}, 0.0);
     const auto at = [&](std::uint32_t v) {
         const std::array<float, 3> p = forest.leaf_position_m(v);

@@ -6,7 +6,7 @@
 namespace tact {
 namespace {
 
-// All that stand between the merges at the ends of some edge, by nodes' order of merging.
+// Collects the needs along every edge of the mesh; nodes are indexed by their order of merging.
 class NeedCollector {
 public:
     NeedCollector(std::span<const std::uint32_t> corner, std::uint32_t leaves, std::size_t nodes,
@@ -21,8 +21,8 @@ public:
     }
 
 private:
-    // Where a merge on one side is followed by one on the other, its star holds what the other one took away. Merges
-    // in a row on one side are parents and children, which needs no word.
+    // If a merge on one side of an edge is followed by one on the other side, the star of the later one contains what
+    // the earlier one removed: a need. Consecutive merges on one side are parent and child and need no entry.
     void walk_up(std::uint32_t a, std::uint32_t b) {
         while (ancestors_.parent(a) != ancestors_.parent(b)) {
             if (ancestors_.parent(a) > ancestors_.parent(b))
@@ -40,8 +40,8 @@ private:
     }
     const Ancestors& ancestors_;
     std::uint32_t leaves_;
-    std::vector<std::uint32_t> head_;                 // of each node, in need_
-    std::vector<std::array<std::uint32_t, 2>> need_;  // node, and the next one of the list
+    std::vector<std::uint32_t> head_;                 // per node: first entry in need_
+    std::vector<std::array<std::uint32_t, 2>> need_;  // node, and index of the next entry
 };
 
 std::span<const std::uint32_t> needs_of(std::uint32_t n, std::span<const ForestNode> node,
@@ -50,13 +50,13 @@ std::span<const std::uint32_t> needs_of(std::uint32_t n, std::span<const ForestN
     return std::span(need).subspan(node[n].first_need, end - node[n].first_need);
 }
 
-// Without those that another one brings by its own needs, so that every step has fewer to look at. The cut is the
-// same: what may be split and what may merge follows from whole chains. What a longer look would find stays.
+// Removes needs that another need implies, so that every step of refinement checks fewer. The cut is the same, because
+// splits and merges follow whole chains. Implied needs beyond the search limit stay.
 std::vector<std::uint32_t> without_brought(std::span<ForestNode> node,
                                            const std::vector<std::uint32_t>& need) {
     constexpr std::size_t kTimestampsMax = 64;
     std::vector<std::uint32_t> kept, first(node.size()), brought;
-    std::uint32_t last = 0;  // number of the needs
+    std::uint32_t last = 0;  // highest number among the needs
     const auto bring = [&](std::uint32_t n) {
         if (n == kNoForestNode || node[n].number > last || brought.size() == kTimestampsMax) return;
         if (std::find(brought.begin(), brought.end(), n) == brought.end()) brought.push_back(n);
@@ -103,14 +103,14 @@ std::vector<std::uint32_t> forest_needs(std::span<const std::uint32_t> corner, s
     std::vector<std::uint32_t> need;
     {
         const NeedCollector collected(corner, leaves, node.size(), ancestors);
-        std::vector<std::uint32_t> merge(node.size());  // of each node of the forest
+        std::vector<std::uint32_t> merge(node.size());  // per node of the forest
         for (std::uint32_t s = 0; s < node.size(); ++s) merge[number[leaves + s]] = s;
         std::vector<std::uint32_t> own;
         for (std::uint32_t n = 0; n < node.size(); ++n) {
             node[n].first_need = static_cast<std::uint32_t>(need.size());
             own.clear();
             collected.each(merge[n], [&](std::uint32_t s) { own.push_back(number[leaves + s]); });
-            std::sort(own.begin(), own.end());  // it will be read in order of memory
+            std::sort(own.begin(), own.end());  // read in order of memory
             need.insert(need.end(), own.begin(), own.end());
         }
     }

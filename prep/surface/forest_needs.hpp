@@ -1,7 +1,7 @@
-// Which nodes of a forest have to be split before each one is (ipc/scene/mesh/vertex_forest.hpp, "Needs").
+// Computes the nodes of a forest that must be split before each node (ipc/scene/mesh/vertex_forest.hpp, "Needs").
 //
-// Places    leaf v of the mesh as it came is v, the node that merge s makes is leaves + s: places of nodes rise in the
-//           order of the merges, and lie above all leaves.
+// Places    input leaf v is v, the node made by merge s is leaves + s. Places of nodes rise in the order of the merges
+//           and are above those of all leaves.
 #pragma once
 
 #include <cstdint>
@@ -12,11 +12,11 @@
 
 namespace tact {
 
-// Of each place its parent, and an ancestor farther up (Myers 1983): any ancestor is found in a number of steps that
-// grows with the logarithm of the depth, where a fan's tree is as deep as it is wide.
+// Ancestor queries by parents and jump pointers (Myers 1983): the number of steps grows with the logarithm of the
+// depth, which matters because the tree of a fan is as deep as it is wide.
 class Ancestors {
 public:
-    // kNoForestNode: a root. Outlives this.
+    // parent[p] is kNoForestNode for a root. `parent` must outlive this object.
     explicit Ancestors(std::span<const std::uint32_t> parent);
     [[nodiscard]] std::uint32_t parent(std::uint32_t place) const { return parent_[place]; }
     // The highest ancestor below `limit`.
@@ -30,8 +30,8 @@ private:
     std::vector<std::uint32_t> jump_;
 };
 
-// corner: places of leaves, 3 a triangle. number: of each place, its leaf's or node's in the forest. Writes first_need
-// of the nodes, which are in the forest's order and whole but for that.
+// corner: places of leaves, 3 per triangle. number: for each place, the number of its leaf or node in the forest.
+// Writes first_need of the nodes; all their other fields must be set, in the order of the forest.
 std::vector<std::uint32_t> forest_needs(std::span<const std::uint32_t> corner, std::uint32_t leaves,
                                         const Ancestors& ancestors, std::span<const std::uint32_t> number,
                                         std::span<ForestNode> node);

@@ -1,6 +1,6 @@
-// The largest of any run of numbers: a table of powers of two over blocks, and a look through two blocks.
+// Maximum of any range of an array: a sparse table over blocks, and a scan of at most two blocks.
 //
-// The numbers outlive it and stay as they are.
+// The array must outlive this object and stay constant.
 #pragma once
 
 #include <algorithm>
@@ -24,7 +24,7 @@ public:
             table_.push_back(std::move(high));
         }
     }
-    [[nodiscard]] std::uint32_t of(std::size_t first, std::size_t end) const {  // not empty
+    [[nodiscard]] std::uint32_t of(std::size_t first, std::size_t end) const {  // first < end
         const std::size_t low = first / kBlock + 1, high = end / kBlock;
         if (low >= high) return plain(first, end);
         std::uint32_t most = std::max(plain(first, low * kBlock), plain(high * kBlock, end));

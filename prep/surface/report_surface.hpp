@@ -1,4 +1,4 @@
-// The mesh of a scene with a surface to touch in the report of tact-prep info.
+// Reports the mesh of a scene with a surface to touch for tact-prep info.
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>
@@ -7,7 +7,7 @@
 
 namespace tact {
 
-// Adds its keys. Fails by StartupError where a section is damaged.
+// Adds the keys of the system to `json`. Throws StartupError if a section is damaged.
 void report_surface(const SceneFile& file, nlohmann::ordered_json& json);
 
 }  // namespace tact

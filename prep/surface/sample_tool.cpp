@@ -12,15 +12,15 @@ namespace tact {
 namespace {
 
 constexpr std::size_t kCandidatesEach = 16, kCandidatesLeast = 8192;
-constexpr double kDeepest = 2.0;  // of a ball below a corner, in radii
+constexpr double kDeepest = 2.0;  // maximum depth of a ball below a corner, in radii
 
-// What the square of a candidate's way to all before counts: a ball that sticks out, beside an edge, is taken last,
-// a sharp corner early.
+// Weights of the squared distance from a candidate to all earlier points: a ball that sticks out beside an edge is
+// taken late, a sharp corner early.
 constexpr double kSticksOut = 0.25, kCorner = 2.25;
-constexpr double kSharp = 0.9;  // cosine between a corner's normal and a facet's
+constexpr double kSharp = 0.9;  // cosine between a corner's normal and that of a facet
 
 struct Candidates {
-    std::vector<Vec3> place_m, inward;  // the latter times the ball's radius leads to its centre
+    std::vector<Vec3> place_m, inward;  // inward * ball radius is the way to the ball's centre
     std::vector<double> counts;
 };
 
@@ -34,13 +34,14 @@ public:
             summed_[t] = sum += area;
         }
         if (!(sum > 0.0) || !std::isfinite(sum))
-            throw StartupError("sample a tool", "its surface has no area", "check the tool's mesh and unit");
+            throw StartupError("sample a tool", "the surface of the tool has no area",
+                               "check the tool's mesh and unit");
         middle_m_ /= sum;
     }
     [[nodiscard]] const Vec3& middle_m() const { return middle_m_; }
 
     void spread(std::size_t count, Candidates& out) const {
-        // Strata of equal area, and in each triangle the points of a lattice (Roberts' R2).
+        // Strata of equal area, and a lattice of points within each triangle (Roberts' R2).
         for (std::size_t i = 0; i < count; ++i) {
             const double at = (static_cast<double>(i) + 0.5) / static_cast<double>(count) * summed_.back();
             const auto t = static_cast<std::uint32_t>(std::min<std::size_t>(
@@ -62,7 +63,7 @@ public:
     void vertices(std::size_t count_max, Candidates& out) const {
         const std::size_t every = mesh_.vertices() / std::max<std::size_t>(count_max, 1) + 1;
         std::vector<Vec3> mean(mesh_.vertices(), Vec3::Zero());
-        // By the angle, so that it does not matter how the sides are cut into triangles.
+        // Weighted by angle, so that the result does not depend on the triangulation of the sides.
         for (std::uint32_t t = 0; t < mesh_.triangles(); ++t) {
             for (int k = 0; k < 3; ++k) {
                 const Vec3 a = corner(t, (k + 1) % 3) - corner(t, k),
@@ -70,7 +71,7 @@ public:
                 mean[vertex(t, k)] += std::atan2(a.cross(b).norm(), a.dot(b)) * doubled(t).normalized();
             }
         }
-        // How much of a step along the mean normal leads away from the facet that it leads least away from.
+        // Smallest cosine between the mean normal and the facets at a vertex.
         std::vector<double> least(mesh_.vertices(), 1.0);
         for (std::uint32_t t = 0; t < mesh_.triangles(); ++t) {
             const Vec3 facet = doubled(t).normalized();
@@ -96,7 +97,7 @@ private:
         return mesh_.triangle[std::size_t{3} * t + static_cast<std::size_t>(k)];
     }
     [[nodiscard]] Vec3 corner(std::uint32_t t, int k) const { return position_m(vertex(t, k)); }
-    [[nodiscard]] Vec3 doubled(std::uint32_t t) const {  // normal, twice the area long
+    [[nodiscard]] Vec3 doubled(std::uint32_t t) const {  // facet normal of twice the area in length
         return (corner(t, 1) - corner(t, 0)).cross(corner(t, 2) - corner(t, 0));
     }
     const TriangleMesh& mesh_;
@@ -118,7 +119,7 @@ void mark_sticking_out(const TriangleMesh& mesh, const Vec3& hand_m, double ball
     }
 }
 
-// Farthest first: candidates in the order in which they are taken, with parents and covers.
+// Farthest-point sampling: stores the candidates in the order taken, with parents and covers.
 void take_farthest(const Candidates& from, std::uint32_t points, std::size_t next, TouchTool& tool,
                    std::vector<std::uint32_t>& taken, const Progress& progress) {
     const std::size_t count = from.place_m.size();
@@ -147,7 +148,7 @@ void take_farthest(const Candidates& from, std::uint32_t points, std::size_t nex
         }
         const double cover = std::sqrt(farthest);
         tool.cover_m.push_back(static_cast<float>(cover));
-        if (!(cover > least)) break;  // every place is taken
+        if (!(cover > least)) break;  // all candidates are taken
     }
 }
 
@@ -173,7 +174,8 @@ TouchTool sample_tool(TriangleMesh mesh, const ToolSampling& sampling, const Pro
     }
     tool.ball_m = sampling.ball_share * reach_m;
     if (!(tool.ball_m > 0.0) || !(reach_m < 1e6))
-        throw StartupError("sample a tool", "it reaches " + std::to_string(reach_m) + " m from the hand",
+        throw StartupError("sample a tool",
+                           "the tool reaches " + std::to_string(reach_m) + " m from the grip point",
                            "check the tool's mesh and unit");
     mark_sticking_out(mesh, hand_m, tool.ball_m, corners, candidates);
     std::vector<std::uint32_t> taken;
@@ -189,7 +191,7 @@ TouchTool sample_tool(TriangleMesh mesh, const ToolSampling& sampling, const Pro
         SimplifySettings settings;
         settings.vertices_min = drawn / 2;
         mesh = simplify(mesh, settings, progress).mesh;
-        // What cannot be contracted so far (a soup of single triangles) is drawn in part.
+        // A mesh that cannot be contracted this far (a soup of single triangles) is drawn in part.
         if (mesh.triangles() > TouchTool::kDrawnMax)
             mesh.triangle.resize(3 * std::size_t{TouchTool::kDrawnMax});
         if (mesh.vertices() > TouchTool::kDrawnMax) mesh = {};

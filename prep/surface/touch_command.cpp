@@ -46,7 +46,7 @@ std::string shown_plain(std::string text) {
     return text;
 }
 
-// From the file's unit; y up.
+// Converts from the file's unit to metres, y up.
 void to_metres(TriangleMesh& mesh, const std::string& name, const std::string& up) {
     const auto unit =
         std::find_if(std::begin(kUnits), std::end(kUnits), [&](const Unit& u) { return name == u.name; });
@@ -54,7 +54,7 @@ void to_metres(TriangleMesh& mesh, const std::string& name, const std::string& u
     for (std::size_t v = 0; v < mesh.position_m.size(); v += 3) {
         float* const p = mesh.position_m.data() + v;
         for (int axis = 0; axis < 3; ++axis) p[axis] *= scale;
-        if (up == "z") {  // turned about x
+        if (up == "z") {  // rotate about x
             const float y = p[1];
             p[1] = p[2];
             p[2] = -y;
@@ -62,13 +62,13 @@ void to_metres(TriangleMesh& mesh, const std::string& name, const std::string& u
     }
 }
 
-// One of those made in code, or from a file.
+// Adds a synthetic tool, or a tool from a file.
 void add_tool(const TouchSettings& o, SurfaceInput& input, const Progress& progress) {
     if (o.tool.empty()) return;
     input.tool = made_tool(o.tool);
     if (input.tool.triangles() > 0) {
         input.tool_sampling.grip_in_middle = false;
-        input.note.push_back("tool mesh: " + o.tool + ", made by tact-prep");
+        input.note.push_back("tool mesh: " + o.tool + ", synthetic");
     } else {
         ImportedMesh in = import_mesh(o.tool, part(progress, 0.0, 0.5));
         const CleanReport cleaned = clean_mesh(in.mesh, 0.0, part(progress, 0.5, 1.0));
@@ -76,8 +76,8 @@ void add_tool(const TouchSettings& o, SurfaceInput& input, const Progress& progr
         input.tool = std::move(in.mesh);
         input.tool_sampling.grip_in_middle = o.tool_grip == "middle";
         input.note.push_back("tool mesh: " + shown_plain(fs::absolute(o.tool).string()));
-        input.note.push_back("tool unit: " + o.tool_unit + ", " + o.tool_up + " up, held in its " +
-                             o.tool_grip);
+        input.note.push_back("tool unit: " + o.tool_unit + ", " + o.tool_up +
+                             " up, grip point: " + o.tool_grip);
         input.note.push_back("tool repairs: " + (cleaned.changed() ? cleaned.words() : std::string("none")));
     }
     input.tool_sampling.points = o.tool_points;
@@ -87,10 +87,10 @@ void add_tool(const TouchSettings& o, SurfaceInput& input, const Progress& progr
 SurfaceInput touch_file(const TouchSettings& o, const Progress& progress) {
     SurfaceInput input;
     ImportedMesh in = import_mesh(o.mesh, part(progress, 0.0, 0.5), [&o](const MeshNeeds& needs) {
-        // Mesh, order, surface and the file's bytes lie side by side at the most; what contracts holds more (245
-        // bytes a triangle: 8.8 GB at 30 million).
+        // At the peak, mesh, order, surface and the bytes of the file are in memory together. Contraction needs more
+        // (245 bytes per triangle: 8.8 GB at 30 million).
         const double bytes_a_triangle = o.no_forest && o.no_picture ? 65.0 : 245.0;
-        std::fprintf(stderr, "%zu triangles; about %.1f GB of memory are needed\n", needs.triangles,
+        std::fprintf(stderr, "%zu triangles; about %.1f GB of memory needed\n", needs.triangles,
                      (3.0 * static_cast<double>(needs.bytes) +
                       bytes_a_triangle * static_cast<double>(needs.triangles)) *
                          1e-9);
@@ -164,9 +164,9 @@ void add_touch(CLI::App& app, CLI::App& demo) {
             ->capture_default_str();
         auto* const no_forest =
             sub->add_flag("--no-forest", o->no_forest,
-                          "Leave out the data of mode chr, which halves the baking time and the file");
+                          "Omit the data of mode chr, which halves the baking time and the file");
         sub->add_flag("--compare-locality", o->compare_locality,
-                      "Also report the width of the parts below nodes without localization")
+                      "Also report the forest's shape without localization")
             ->excludes(no_forest);
         sub->add_option(
             "--tool", o->tool,
@@ -188,7 +188,7 @@ void add_touch(CLI::App& app, CLI::App& demo) {
                         "Grip point of the tool: middle of the surface, or origin of the file")
             ->check(CLI::IsMember({"middle", "origin"}))
             ->capture_default_str();
-        sub->add_flag("--no-picture", o->no_picture, "Leave out the drawn surface (for measurements)");
+        sub->add_flag("--no-picture", o->no_picture, "Omit the drawn surface (for measurements)");
         sub->add_flag("--json", o->json, "Print the properties of the baked scene as JSON");
     };
     CLI::App* const from_file = app.add_subcommand("touch", "Bake a surface to touch from a triangle mesh");
@@ -205,10 +205,10 @@ void add_touch(CLI::App& app, CLI::App& demo) {
     made->add_option("--shape", o->shape, "Synthetic surface: terrain, sphere (rough) or smooth-sphere")
         ->check(CLI::IsMember({"terrain", "sphere", "smooth-sphere"}))
         ->capture_default_str();
-    made->add_option("--parts", o->parts,
-                     "Number n of parts along the side of the terrain (2 n^2 triangles; default 300) or "
-                     "along an edge of "
-                     "the sphere's icosahedron (20 n^2 triangles; default 158)")
+    made->add_option(
+            "--parts", o->parts,
+            "Number n of parts along the side of the terrain (2 n^2 triangles; default 300) or along an edge "
+            "of the sphere's icosahedron (20 n^2 triangles; default 158)")
         ->check(CLI::Range(1U, 2000U));
     both(made);
     made->callback([o] { touch(*o, true); });

@@ -1,4 +1,4 @@
-// tact-prep touch MESH and tact-prep demo touch: scenes of a surface to touch.
+// tact-prep touch MESH and tact-prep demo touch: bake scenes with a surface to touch.
 #pragma once
 
 #include <CLI/CLI.hpp>

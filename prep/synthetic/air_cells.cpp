@@ -1,6 +1,6 @@
-// Method. The walls are the planes midway between a point's own site and the others near it (a Voronoi foam).
-// The two nearest planes are joined roundly, as the corners of real cells are round. Every fourth wall has a
-// window about the line from site to site.
+// Method. The walls are the planes midway between a point's own site and the sites near it (a Voronoi foam). The two
+// nearest planes are blended smoothly, as the corners of real cells are round. Every fourth wall has a window around
+// the line between the two sites.
 #include "prep/synthetic/air_cells.hpp"
 
 #include <array>
@@ -60,7 +60,7 @@ double cell_wall_distance(std::uint64_t seed, const Vec3& p) noexcept {
         for (std::int64_t j = y - 1; j <= y + 1; ++j) {
             for (std::int64_t i = x - 1; i <= x + 1; ++i, ++n) {
                 const std::uint64_t bits = lattice_bits(seed, i, j, k);
-                const auto part = [&](unsigned shift) {  // in 0.1 to 0.9: sites keep apart
+                const auto part = [&](unsigned shift) {  // within 0.1 to 0.9, so that sites keep a distance
                     return 0.1 + 0.8 * static_cast<double>(bits >> shift & 0xFFFFU) / 65536.0;
                 };
                 site[n].at = Vec3(static_cast<double>(i) + part(0), static_cast<double>(j) + part(16),
@@ -77,10 +77,10 @@ double cell_wall_distance(std::uint64_t seed, const Vec3& p) noexcept {
         const Vec3 between = site[i].at - site[own].at;
         const double length2 = between.squaredNorm();
         const double gap = site[i].squared - site[own].squared;
-        if (gap * gap > 4.0 * length2 * second * second) continue;  // farther than the second already
+        if (gap * gap > 4.0 * length2 * second * second) continue;  // farther than the second nearest
         const double length = std::sqrt(length2);
         double d = 0.5 * gap / length;
-        if (((site[i].bits ^ site[own].bits) >> 50 & 3U) == 0) {  // the same from both sides
+        if (((site[i].bits ^ site[own].bits) >> 50 & 3U) == 0) {  // symmetric in the two sites
             const Vec3 from_middle = p - 0.5 * (site[i].at + site[own].at);
             const double along = from_middle.dot(between) / length;
             const double across = std::sqrt(std::max(from_middle.squaredNorm() - along * along, 0.0));

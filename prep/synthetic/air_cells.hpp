@@ -1,6 +1,6 @@
-// Walls between air cells: a foam of convex cells about jittered points, with windows from cell to cell.
+// Walls between air cells: a foam of convex cells around jittered points, with windows between cells.
 //
-// Also noise that other made volumes are roughened with. Everything follows from the seed and the point.
+// Also noise that roughens other synthetic volumes. All values depend only on the seed and the point.
 #pragma once
 
 #include <cstdint>
@@ -9,13 +9,12 @@
 
 namespace tact {
 
-// In [0, 1), of four integers.
+// Uniform in [0, 1), a hash of seed and lattice point.
 double lattice_random(std::uint64_t seed, std::int64_t i, std::int64_t j, std::int64_t k) noexcept;
-// Smooth in [-1, 1], features about one wide.
+// Smooth noise in [-1, 1] with features about 1 wide.
 double lattice_noise(std::uint64_t seed, const Vec3& p) noexcept;
 
-// Distance from p to the middle of the nearest wall, in units of the cells (about one wide); larger where a
-// window is.
+// Distance from p to the middle of the nearest wall, in units of the cells (about one wide); larger at a window.
 double cell_wall_distance(std::uint64_t seed, const Vec3& p) noexcept;
 
 }  // namespace tact

@@ -7,7 +7,7 @@ namespace {
 
 using shape::Bar;
 
-// Nearer to the true distance than shape::ellipsoid, to first order.
+// Approximates the distance more closely than shape::ellipsoid, to first order.
 double round_body(const Vec3& p, const Vec3& centre, const Vec3& radii) {
     const Vec3 q = (p - centre).cwiseQuotient(radii);
     const double k = q.norm();
@@ -25,7 +25,7 @@ void put_ring(std::vector<Bar>& bars, const Vec3& centre, const Vec3& axis, doub
     for (int i = 0; i < 20; ++i) bars.push_back({at(i), at(i + 1), minor, minor});
 }
 
-void put_cochlea(std::vector<Bar>& bars) {  // two turns and a half, upward and narrowing
+void put_cochlea(std::vector<Bar>& bars) {  // two and a half turns, upward and narrowing
     const Vec3 axis = Vec3(0.6, -0.1, 0.8).normalized(), u = axis.unitOrthogonal(), v = axis.cross(u);
     const Vec3 base(8.0, 0.3, -8.2);
     const auto at = [&](int i) -> Vec3 {

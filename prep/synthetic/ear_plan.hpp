@@ -1,4 +1,4 @@
-// Where the parts of a made temporal bone lie: mm at full size, x front, y up, z outward to the side.
+// Positions of the parts of the synthetic temporal bone: mm at full size, x front, y up, z lateral.
 #pragma once
 
 #include <array>
@@ -17,13 +17,13 @@ struct EarPlan {
         part;  // by EarPart; the first is the ear canal, which is air
 
     EarPlan();
-    // Of the whole bone as if it were solid, without its roughness; nowhere much more than the true distance.
+    // Distance to the smooth surface of the whole bone as a solid; nowhere much more than the true distance.
     [[nodiscard]] static double outside(const Vec3& p);
-    // Middle ear, attic and antrum.
+    // Distance to the middle ear, attic and antrum.
     [[nodiscard]] static double cavity(const Vec3& p);
-    // Where cells are; the rest is spongy.
+    // Distance to the region of air cells; the rest is spongy.
     [[nodiscard]] static double cellular(const Vec3& p);
-    // Whether the brain's side of the bone is nearer than the others.
+    // True if the cranial side of the bone is nearer than the other sides.
     [[nodiscard]] static bool cranial(const Vec3& p);
 };
 

@@ -21,7 +21,7 @@ void put_vertex(TriangleMesh& mesh, const Vec3& p_m) {
     for (const double x : {p_m.x(), p_m.y(), p_m.z()}) mesh.position_m.push_back(static_cast<float>(x));
 }
 
-// A tube through rings whose line stays in the plane z = 0, closed at both ends.
+// A tube through rings whose centre line lies in the plane z = 0, closed at both ends.
 TriangleMesh swept(const std::vector<ToolRing>& rings) {
     TriangleMesh mesh;
     const auto count = static_cast<std::uint32_t>(rings.size());
@@ -59,14 +59,14 @@ TriangleMesh scaler() {
     std::vector<ToolRing> rings;
     for (const auto& [y, r] : {std::pair(45.0, 2.0), {44.0, 3.0}, {12.0, 3.0}, {6.0, 2.4}, {0.0, 1.3}})
         rings.push_back({{0.0, y, 0.0}, r});
-    for (int i = 1; i <= 6; ++i)  // down, a little aside
+    for (int i = 1; i <= 6; ++i)  // downwards and slightly aside
         rings.push_back({{0.5 * i, -1.5 * i, 0.0}, 1.3 - 0.08 * i});
-    // The tip: an arc of 100 degrees back below the handle, thinner and thinner.
+    // The tip: an arc of 100 degrees that bends back below the handle and tapers.
     const Vec3 from(3.0, -9.0, 0.0);
     constexpr int kArc = 16;
     for (int i = 1; i <= kArc; ++i) {
         const double s = static_cast<double>(i) / kArc, a = s * 100.0 * std::numbers::pi / 180.0;
-        // A circle of 4 mm about a point to the left, begun downwards.
+        // A circle of 4 mm around a point to the left, starting downwards.
         rings.push_back({from + 4.0 * Vec3(std::cos(a) - 1.0, -std::sin(a), 0.0), 0.82 - 0.6 * s});
     }
     return swept(rings);

@@ -1,7 +1,7 @@
-// Tools made in code to touch with, true to size: the hand's point is the origin, their tips point down (-y).
+// Synthetic tools in true size: the grip point is the origin, the tip points down (-y).
 //
-// scaler   as dentists hold it: a handle, and below it a shank that bends to a thin tip
-// block    16 x 8 x 12 mm: what torque is can be felt with it at once
+// scaler   a dental scaler: a handle, and below it a shank that bends to a thin tip
+// block    16 x 8 x 12 mm: makes torques easy to feel
 // Unit     metres
 #pragma once
 
@@ -14,7 +14,7 @@ namespace tact {
 
 inline constexpr std::array<const char*, 2> kMadeTools{"scaler", "block"};
 
-// Empty where there is none of that name.
+// Empty if no tool has this name.
 TriangleMesh made_tool(const std::string& name);
 
 }  // namespace tact

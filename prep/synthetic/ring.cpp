@@ -1,6 +1,6 @@
 // Method. Backbone atoms of a helix lie on cylinders (radius, angle, height of each atom from the alpha helix
-// of Arnott and Dover, 1967, rounded); residues follow each other every 100 degrees and 1.5 Å. Loops are
-// quadratic Bézier curves with a C-alpha every 3.5 Å. Lengths here are ångström until the last step.
+// of Arnott and Dover, 1967, rounded); consecutive residues are 100 degrees and 1.5 Å apart. Loops are
+// quadratic Bézier curves with a C-alpha every 3.5 Å. Lengths are ångström until the last step.
 #include "prep/synthetic/ring.hpp"
 
 #include <algorithm>
@@ -17,17 +17,16 @@ namespace {
 
 constexpr double kResolutionA = 12.0;
 constexpr double kVoxelA = 3.0;
-constexpr double kNoise = 0.01;  // standard deviation over the largest value
+constexpr double kNoise = 0.01;  // standard deviation relative to the largest value
 constexpr double kRingRadiusA = 47.0;
 constexpr int kSubunits = 6;
 
 struct Helix {
     Vec3 from_a, to_a;
 };
-// x along the ring, y away from its axis, z along the axis. The first four are the large lobe, then the small
-// lobe, then the arm. With five helices side by side in the large lobe, a probe that starts 15 Å and 30
-// degrees away slid one helix aside in a fifth of the cases; of this shape all of 200 came home (2026-11-20,
-// see the unit test).
+// x along the ring, y away from its axis, z along the axis. The first four are the large lobe, then the small lobe,
+// then the arm. With five parallel helices in the large lobe, a probe that started 15 Å and 30 degrees away ended one helix
+// aside in a fifth of the cases; with this shape all of 200 reached the correct place (2026-11-20, see the unit test).
 const std::array<Helix, 9> kHelices{{
     {{-8.0, -6.0, -14.0}, {-8.0, -6.0, 13.0}},
     {{1.0, -8.0, 14.0}, {1.0, -7.0, -11.0}},
@@ -69,7 +68,7 @@ public:
         }
     }
     void loop(const Vec3& from, const Vec3& to) {
-        // Bulges away from the middle of the lobe, as loops do.
+        // Loops bulge away from the middle of the lobe.
         const Vec3 middle = 0.5 * (from + to), bend = middle + 5.0 * direction();
         const double length = (bend - from).norm() + (to - bend).norm();
         const int residues = static_cast<int>(length / 3.5);
@@ -133,7 +132,7 @@ void add_noise(DensityGrid& grid, std::uint64_t seed) {
     const float high = *std::max_element(grid.values.begin(), grid.values.end());
     std::mt19937_64 random(seed);
     for (float& v : grid.values) {
-        // The sum of twelve uniform numbers has variance 1 and is the same on every machine.
+        // A sum of twelve uniform numbers has variance 1 and is the same on every machine.
         double sum = -6.0;
         for (int i = 0; i < 12; ++i) sum += static_cast<double>(random() >> 11) * 0x1p-53;
         v += static_cast<float>(kNoise * sum) * high;

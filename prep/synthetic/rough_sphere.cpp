@@ -9,7 +9,7 @@ namespace {
 
 constexpr double kTerrainM = 0.12;
 
-// In -1 to 1, of a point of the grid (splitmix64's finish).
+// Uniform in -1 to 1, a hash of a grid point (finalizer of splitmix64).
 double grid_value(std::int64_t i, std::int64_t j, std::int64_t k) {
     std::uint64_t z = static_cast<std::uint64_t>(i) * 0x9E3779B97F4A7C15ULL +
                       static_cast<std::uint64_t>(j) * 0xC2B2AE3D27D4EB4FULL +
@@ -19,7 +19,7 @@ double grid_value(std::int64_t i, std::int64_t j, std::int64_t k) {
     return static_cast<double>((z ^ (z >> 31)) >> 11) * 0x1p-52 - 1.0;
 }
 
-// Between the eight points around p, without a kink in slope or curvature.
+// Interpolates the eight grid points around p with continuous slope and curvature.
 double value_noise(const Vec3& p) {
     std::array<std::int64_t, 3> cell;
     Vec3 s;

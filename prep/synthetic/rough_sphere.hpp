@@ -1,7 +1,7 @@
-// Surfaces made in code to be touched: a rough sphere, a smooth one and a rough terrain, of any number of triangles.
+// Synthetic surfaces to touch: a rough sphere, a smooth sphere and a rough terrain, of any number of triangles.
 //
-// Roughness  value noise in five octaves, each half as high and about twice as fine as the one before, so that
-//            there are bumps of all sizes down to some triangles. It repeats exactly.
+// Roughness  value noise in five octaves, each half as high and about twice as fine as the previous one: bumps of all
+//            sizes down to a few triangles. It repeats exactly.
 // Unit       metres
 #pragma once
 
@@ -12,15 +12,15 @@ namespace tact {
 
 inline constexpr double kRoughSphereM = 0.05;  // radius
 
-// Of the rough sphere's surface in a direction of length 1: 0.05 m and up to some 5 mm more or less.
+// Radius of the rough sphere in a direction of length 1: 0.05 m plus or minus about 5 mm.
 double rough_radius_m(const Vec3& direction);
 
-// An icosahedron with its edges cut into so many parts: 20 parts^2 triangles, closed.
+// An icosahedron whose edges are divided into `parts`: 20 parts^2 triangles, closed.
 TriangleMesh rough_sphere(std::uint32_t parts);
 // The same without roughness: all vertices lie kRoughSphereM from the origin.
 TriangleMesh smooth_sphere(std::uint32_t parts);
 
-// A square of 0.12 m, y up, parts x parts cells of two triangles, open. Hills of up to some 12 mm.
+// A square of 0.12 m, y up, parts x parts cells of two triangles, open. Hills of up to about 12 mm.
 TriangleMesh rough_terrain(std::uint32_t parts);
 double rough_height_m(double x_m, double z_m);
 

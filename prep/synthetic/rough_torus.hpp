@@ -1,5 +1,4 @@
-// A closed mesh of any size with bumps of all sizes down to a few triangles, made in code: for measuring
-// speed.
+// A synthetic closed mesh of any size with bumps of all sizes down to a few triangles, for speed measurements.
 #pragma once
 
 #include "ipc/scene/mesh/progressive_mesh.hpp"

@@ -1,7 +1,7 @@
-// Solid shapes as signed distances (negative inside), for volumes made in code.
+// Solid shapes as signed distances (negative inside), for synthetic volumes.
 //
-// Distances are exact or less than the true ones, so a cube may be left out where the distance at its middle is
-// more than half its diagonal.
+// Distances are exact or less than the true ones, so a cube can be skipped if the distance at its middle is more than
+// half its diagonal.
 #pragma once
 
 #include <algorithm>
@@ -14,7 +14,7 @@
 
 namespace tact::shape {
 
-// A bar with round ends whose radius goes from a's to b's.
+// A bar with round ends whose radius changes linearly from a to b.
 struct Bar {
     Vec3 a, b;
     double radius_a, radius_b;
@@ -25,7 +25,7 @@ struct Bar {
     }
 };
 
-// Bars along a smooth curve through all points (Catmull-Rom).
+// Bars along a smooth curve through all points (Catmull-Rom spline).
 inline std::vector<Bar> tube(std::span<const Vec3> through, double radius, int parts = 6) {
     std::vector<Bar> bars;
     const auto n = static_cast<std::ptrdiff_t>(through.size());
@@ -52,7 +52,7 @@ inline double nearest(std::span<const Bar> bars, const Vec3& p) {
     return d;
 }
 
-// The smaller of two, rounded where they are nearer than k to each other.
+// Union: the smaller of two distances, rounded where they differ by less than k.
 inline double join(double a, double b, double k) {
     const double h = std::max(k - std::abs(a - b), 0.0) / k;
     return std::min(a, b) - 0.25 * h * h * k;

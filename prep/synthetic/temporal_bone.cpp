@@ -1,6 +1,6 @@
-// Method. Every voxel asks signed distances of the plan and mixes what it finds from the outside in: shell, cells or
-// spongy bone, hard linings about what is hollow or soft, hollows, soft structures. For each brick only those parts
-// are asked that can come near it.
+// Method. Every voxel evaluates signed distances of the plan and combines the parts from the outside in: shell, cells
+// or spongy bone, hard linings around hollow and soft parts, hollows, soft structures. Each brick evaluates only the parts
+// that can come near it.
 #include "prep/synthetic/temporal_bone.hpp"
 
 #include <atomic>
@@ -15,7 +15,7 @@ namespace tact {
 namespace {
 
 constexpr double kShellMm = 1.7, kLiningMm = 1.1, kCapsuleMm = 1.9, kDuraMm = 1.0, kNearMm = 2.5;
-constexpr double kCellMm = 2.7, kWallMm = 0.17;  // of a cell; half a wall
+constexpr double kCellMm = 2.7, kWallMm = 0.17;  // of a cell; half of a wall
 constexpr double kShell = 235.0, kCapsule = 255.0, kWall = 185.0, kSpongy = 135.0, kOssicle = 240.0;
 
 struct EarRow {
@@ -64,11 +64,11 @@ private:
         const double half = 0.5 * (kEarMm - step_mm_);
         return step_mm_ * Vec3(x, y, z) - Vec3(half, half, half);
     }
-    // Share of a voxel that is inside.
+    // Fraction of a voxel that is inside.
     [[nodiscard]] double share(double distance_mm) const {
         return std::clamp(0.5 - distance_mm / step_mm_, 0.0, 1.0);
     }
-    // Bone about what is hollow or soft is never open to cells.
+    // Cells never open into hollow or soft parts: solid bone lines these.
     static double lining(const std::array<double, kEarParts>& d) {
         return std::min({d[at(EarPart::none)], d[at(EarPart::facial_nerve)] - 0.3,
                          d[at(EarPart::sigmoid_sinus)], d[at(EarPart::carotid_artery)]}) -
@@ -83,7 +83,7 @@ private:
         double inner = kSpongy + 30.0 * grain + 30.0 * lattice_noise(seed_ + 4, 5.0 * p);
         const double cellular = EarPlan::cellular(p);
         if (cellular < 0.0) {
-            // Smaller towards the rim, with walls that thicken until they close.
+            // Cells shrink towards the rim, and walls thicken until the cells close.
             const Vec3 bent =
                 p + 0.7 * Vec3(lattice_noise(seed_ + 5, 0.4 * p), lattice_noise(seed_ + 6, 0.4 * p),
                                lattice_noise(seed_ + 7, 0.4 * p));
@@ -151,7 +151,8 @@ BoneData make_temporal_bone(const TemporalBone& s, const Progress& progress) {
     const double half = 0.5 * s.voxel_m * (s.voxels - 1.0);
     out.bricks.origin_m = Vec3(-half, -half, -half);
     std::string fault = bone_bricks_fault(out.bricks);
-    if (fault.empty() && (s.voxels < 16 || s.voxels > 1024)) fault = "16 to 1024 voxels along an axis can be";
+    if (fault.empty() && (s.voxels < 16 || s.voxels > 1024))
+        fault = "the number of voxels along an axis is outside 16 to 1024";
     if (!fault.empty()) throw StartupError("make a temporal bone", fault, "choose another number of voxels");
     for (const EarRow& row : kEarRows) out.structure.push_back({row.name, row.rgba, row.critical});
     out.density.assign(out.bricks.bytes(), 0);
@@ -174,7 +175,7 @@ BoneData make_temporal_bone(const TemporalBone& s, const Progress& progress) {
     try {
         work(true);
     } catch (...) {
-        stop = true;  // the others, before they are waited for
+        stop = true;  // ends the other threads before they are joined
         throw;
     }
     others.clear();

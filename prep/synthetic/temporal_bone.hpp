@@ -1,13 +1,11 @@
-// A temporal bone made in code, of the right side, for the demo and for tests: a hard outer shell, air cells
-// beneath it that open into each other, the middle ear with its ossicles, the labyrinth in the hardest bone of
-// the body, the facial nerve in its canal, sigmoid sinus, dura, carotid artery.
+// A synthetic right temporal bone for the demo and for tests: a hard outer shell, connected air cells beneath it, the
+// middle ear with its ossicles, the labyrinth in the hardest bone of the body, the facial nerve in its canal, sigmoid
+// sinus, dura, carotid artery.
 //
-// Frame     model: x to the front of the patient, y up, z to the side, which is where the surgeon stands.
-//           The volume's middle is (0, 0, 0).
-// Size      the anatomy is 50 mm wide and is scaled to the volume, whatever that is wide. Cells and canals
-//           shrink with it.
-// Density   of bone 105 (spongy) to 255 (labyrinth); soft structures are labelled and kSoftDensity, so that a
-//           burr meets them. Air is 0. At surfaces a voxel has the share that is inside.
+// Frame     model: x anterior, y up, z lateral (where the surgeon stands). The centre of the volume is (0, 0, 0).
+// Size      the anatomy is 50 mm wide and is scaled to the width of the volume. Cells and canals scale with it.
+// Density   of bone 105 (spongy) to 255 (labyrinth); soft structures are labelled and have kSoftDensity, so that a
+//           burr has contact with them. Air is 0. A voxel at a surface has the fraction that is inside.
 // Repeats   the same settings give the same bytes, on any number of cores.
 #pragma once
 
@@ -21,7 +19,7 @@ namespace tact {
 struct TemporalBone {
     std::uint32_t voxels = 256;  // along each axis, 16 to 1024
     double voxel_m = 0.2e-3;
-    std::uint64_t seed = 1;  // of the cells and of the roughness
+    std::uint64_t seed = 1;  // of the cells and the roughness
 };
 
 inline constexpr std::uint8_t kSoftDensity = 40;

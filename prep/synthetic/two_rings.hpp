@@ -1,5 +1,4 @@
-// A map of two rings of seven subunits, three blobs each, made in code: the shape by which simplification is
-// measured.
+// A synthetic map of two rings of seven subunits of three blobs each: the test shape for simplification.
 #pragma once
 
 #include "ipc/scene/density/density_map.hpp"

@@ -1,8 +1,8 @@
-// DICOM slices: what each file says of itself, and which of them make one scan.
+// DICOM slices: reads the headers of files and selects the files that form one scan.
 //
-// Personal  of the files' elements only those below are looked at; no name, date or number of a patient is read.
-// Memory    some hundred bytes a file; a slice at a time when the scan is read.
-// Fails by  StartupError: no DICOM, several series, mixed sizes, missing or doubled slices, packing that is not read.
+// Personal  only the elements below are read from a file; no name, date or number of a patient.
+// Memory    a few hundred bytes per file; one slice at a time when the scan is read.
+// Fails by  StartupError: no DICOM, several series, mixed sizes, missing or duplicate slices, unsupported compression.
 #pragma once
 
 #include <array>
@@ -21,21 +21,21 @@ struct DicomSlice {
     std::string series_uid, modality, maker, rescale_type, photometric;
     int series_number = 0;
     std::uint32_t columns = 0, rows = 0, frames = 1, samples = 1;
-    bool placed = false;  // the next three are there
+    bool placed = false;  // the next three lines are valid
     Vec3 position_mm = Vec3::Zero(), along_row = Vec3::Zero(), down_rows = Vec3::Zero();
     double column_mm = 0.0, row_mm = 0.0;
     double slope = 1.0, intercept = 0.0;
 };
 
-// All DICOM pictures in a folder and its folders; or of the folder that one file is in.
+// All DICOM images in a folder and its subfolders.
 std::vector<DicomSlice> list_dicom(const std::filesystem::path& folder, const Progress& progress);
 bool is_dicom(const std::filesystem::path& file);
 
-// Pure: groups by series, size and direction, chooses (number from 1 in the order that the error lists; 0: the only
-// one that is a volume), sorts by position, checks gaps.
+// No file access: groups by series, size and direction, selects one (`series` counts from 1 in the order that the error
+// lists; 0: the only group that is a volume), sorts by position and checks for gaps.
 Scan dicom_stack(std::vector<DicomSlice> slices, unsigned series, const std::string& attempt);
 
-// Pixels in the scan's unit. In the one file that knows the DICOM library.
+// Pixels in the scan's unit. Implemented in the only file that includes the DICOM library.
 void read_dicom_pixels(const DicomSlice& slice, std::span<float> pixels);
 
 }  // namespace tact

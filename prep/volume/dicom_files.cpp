@@ -1,4 +1,4 @@
-// The one file that includes GDCM. It is asked for few elements, and for pixels; what it throws or prints stays here.
+// The only file that includes GDCM. It reads few elements and the pixels; GDCM's exceptions and output stay here.
 #include <gdcmAttribute.h>
 #include <gdcmImageReader.h>
 #include <gdcmReader.h>
@@ -46,7 +46,7 @@ std::string dicom_text(const gdcm::DataSet& set, const gdcm::Tag& tag) {
     return text.substr(begin, text.find_last_not_of(' ') + 1 - begin);
 }
 
-// Numbers divided by backslashes; as many as there are, none where one is no number.
+// All numbers of a list separated by backslashes; empty if one is not a number.
 std::vector<double> dicom_numbers(const gdcm::DataSet& set, const gdcm::Tag& tag) {
     const std::string text = dicom_text(set, tag);
     std::vector<double> out;
@@ -71,7 +71,7 @@ std::uint32_t dicom_short(const gdcm::DataSet& set, const gdcm::Tag& tag, std::u
     return static_cast<std::uint32_t>(b[0] | b[1] << 8);
 }
 
-// False where it is no picture.
+// False if the file is not an image.
 bool look_at(const fs::path& path, DicomSlice& s) {
     static const std::set<gdcm::Tag> kWanted{
         kModality,    kMaker,  kModel, kSeries,  kNumber,  kPosition,  kOrientation, kSamples,
@@ -106,7 +106,7 @@ bool look_at(const fs::path& path, DicomSlice& s) {
         s.position_mm = Vec3(position[0], position[1], position[2]);
         s.along_row = Vec3(orientation[0], orientation[1], orientation[2]);
         s.down_rows = Vec3(orientation[3], orientation[4], orientation[5]);
-        s.row_mm = spacing[0];  // from a row to the next comes first
+        s.row_mm = spacing[0];  // the spacing between rows comes first
         s.column_mm = spacing[1];
         s.placed = std::abs(s.along_row.norm() - 1.0) < 1e-2 && std::abs(s.down_rows.norm() - 1.0) < 1e-2;
         if (s.placed) {
@@ -117,7 +117,7 @@ bool look_at(const fs::path& path, DicomSlice& s) {
     return true;
 }
 
-// GDCM takes pixels that are cut off for zeros. Where plain pixels of `size` bytes are declared, are they there?
+// GDCM reads truncated pixels as zeros. True if uncompressed pixels of `size` bytes are declared but cut off.
 bool cut_off(const fs::path& path, std::size_t size) {
     const InputBytes input(path, kFileBytesMax, kFileBytesMax);
     const std::string_view bytes = input.view();
@@ -125,7 +125,7 @@ bool cut_off(const fs::path& path, std::size_t size) {
         const std::string_view tag =
             big ? std::string_view("\x7f\xe0\x00\x10", 4) : std::string_view("\xe0\x7f\x10\x00", 4);
         for (std::size_t at = bytes.find(tag); at != std::string_view::npos; at = bytes.find(tag, at + 1)) {
-            for (const std::size_t head : {8U, 12U}) {  // without and with a word for the kind of value
+            for (const std::size_t head : {8U, 12U}) {  // without and with a value representation
                 if (at + head > bytes.size()) continue;
                 std::size_t declared = 0;
                 for (std::size_t i = 0; i < 4; ++i)
@@ -142,7 +142,7 @@ bool cut_off(const fs::path& path, std::size_t size) {
 template <class T>
 void scaled(const std::vector<char>& bytes, const gdcm::PixelFormat& format, const DicomSlice& s,
             double padding, std::span<float> out) {
-    // Bits above those stored may hold anything.
+    // The bits above the stored ones are undefined.
     const unsigned stored = format.GetBitsStored(), all = 8 * sizeof(T);
     const unsigned unused = stored > 0 && stored < all ? all - stored : 0;
     for (std::size_t i = 0; i < out.size(); ++i) {
@@ -176,16 +176,16 @@ std::vector<DicomSlice> list_dicom(const fs::path& folder, const Progress& progr
         if (!at->is_regular_file(ignored) || at->file_size(ignored) > kFileBytesMax || !is_dicom(at->path()))
             continue;
         if (++files > kFilesMax)
-            throw StartupError("read DICOM in " + folder.string(), "there are more than 20000 files",
+            throw StartupError("read DICOM in " + folder.string(), "the folder holds more than 20000 files",
                                "give the folder of one examination");
-        if (files % 16 == 0) report(progress, 0.0, "looking at DICOM files");
+        if (files % 16 == 0) report(progress, 0.0, "reading DICOM headers");
         DicomSlice slice;
         try {
             if (look_at(at->path(), slice)) slices.push_back(std::move(slice));
         } catch (const Cancelled&) {
             throw;
         } catch (const std::exception&) {
-            // A broken file is no picture; what is missing then is found by its place.
+            // A broken file counts as no image; the check of gaps reports the missing slice.
         }
     }
     return slices;
@@ -194,7 +194,7 @@ std::vector<DicomSlice> list_dicom(const fs::path& folder, const Progress& progr
 void read_dicom_pixels(const DicomSlice& s, std::span<float> pixels) {
     const auto fail = [&](const std::string& why) {
         throw StartupError("read " + s.path.string(), why,
-                           "export the series again, if need be without compression");
+                           "export the series again, without compression if necessary");
     };
     quiet();
     std::vector<char> bytes;
@@ -204,19 +204,19 @@ void read_dicom_pixels(const DicomSlice& s, std::span<float> pixels) {
         gdcm::ImageReader reader;
         reader.SetFileName(s.path.c_str());
         if (!reader.Read())
-            fail("its pixels cannot be read: it is damaged, or packed in a way that is not known");
+            fail("the pixels cannot be read: the file is damaged, or its compression is not supported");
         const gdcm::Image& image = reader.GetImage();
         format = image.GetPixelFormat();
         if (image.GetNumberOfDimensions() < 2 || image.GetDimension(0) != s.columns ||
             image.GetDimension(1) != s.rows || format.GetSamplesPerPixel() != 1)
-            fail("its pixels contradict its header");
+            fail("the pixels contradict the header");
         const std::size_t size = pixels.size() * format.GetPixelSize();
         if (format.GetPixelSize() < 1 || format.GetPixelSize() > 4 || image.GetBufferLength() != size)
-            fail("it has " + std::to_string(image.GetBufferLength()) + " bytes of pixels instead of " +
+            fail("the file has " + std::to_string(image.GetBufferLength()) + " bytes of pixels instead of " +
                  std::to_string(size));
-        if (cut_off(s.path, size)) fail("it is cut short: its pixels end before the last one");
+        if (cut_off(s.path, size)) fail("the file is truncated: pixels are missing at the end");
         bytes.resize(size);
-        if (!image.GetBuffer(bytes.data())) fail("its pixels cannot be unpacked");
+        if (!image.GetBuffer(bytes.data())) fail("the pixels cannot be decompressed");
         const gdcm::DataSet& set = reader.GetFile().GetDataSet();
         if (set.FindDataElement(kPadding)) {
             const std::uint32_t raw = dicom_short(set, kPadding, 0);
@@ -241,7 +241,7 @@ void read_dicom_pixels(const DicomSlice& s, std::span<float> pixels) {
             return is_signed ? scaled<std::int32_t>(bytes, format, s, padding, pixels)
                              : scaled<std::uint32_t>(bytes, format, s, padding, pixels);
         default:
-            fail("its pixels have " + std::to_string(format.GetPixelSize()) + " bytes");
+            fail("pixels of " + std::to_string(format.GetPixelSize()) + " bytes are not supported");
     }
 }
 

@@ -10,7 +10,7 @@
 namespace tact {
 namespace {
 
-constexpr std::size_t kVolumeSlices = 8;  // fewer are a planning view
+constexpr std::size_t kVolumeSlices = 8;  // fewer slices are a localizer
 constexpr double kUneven = 0.01, kMissing = 1.5, kTiltRad = 2e-3;
 
 bool same_picture(const DicomSlice& a, const DicomSlice& b) {
@@ -35,8 +35,8 @@ DicomGroup choose(std::vector<DicomGroup> groups, unsigned series, const std::st
     for (std::size_t i = 0; i < groups.size() && i < 40; ++i)
         list += "\n  " + std::to_string(i + 1) + ": " + told(groups[i]);
     if (series > groups.size())
-        throw StartupError(attempt, "there is no series " + std::to_string(series) + " among these:" + list,
-                           "choose one with --series");
+        throw StartupError(attempt, "series " + std::to_string(series) + " is not in this list:" + list,
+                           "choose a series with --series");
     if (series > 0) return std::move(groups[series - 1]);
     if (groups.size() == 1) return std::move(groups[0]);
     std::size_t volumes = 0, chosen = 0;
@@ -47,9 +47,9 @@ DicomGroup choose(std::vector<DicomGroup> groups, unsigned series, const std::st
     }
     if (volumes != 1)
         throw StartupError(attempt,
-                           "there are " + std::to_string(groups.size()) +
-                               " series, or pictures of several sizes or directions:" + list,
-                           "choose one with --series");
+                           "the folder holds " + std::to_string(groups.size()) +
+                               " series, or images of several sizes or directions:" + list,
+                           "choose a series with --series");
     scan.note.push_back("series: " + std::to_string(chosen + 1) + " of " + std::to_string(groups.size()) +
                         ", the only one that is a volume");
     return std::move(groups[chosen]);
@@ -60,18 +60,18 @@ void check_pictures(const DicomGroup& g, const std::string& attempt) {
     for (const DicomSlice& s : g) {
         const std::string name = s.path.filename().string();
         if (s.frames > 1)
-            fail(name + " has " + std::to_string(s.frames) + " frames in one file, which is not read",
-                 "save the series as one file a slice, or as NRRD or NIfTI");
+            fail(name + " has " + std::to_string(s.frames) + " frames in one file, which is not supported",
+                 "save the series as one file per slice, or as NRRD or NIfTI");
         if (!s.placed)
             fail(name + " has no slice position (image position, orientation, pixel spacing)",
                  "export the original slices again, with their positions");
         if (s.samples != 1 || s.photometric != "MONOCHROME2")
-            fail(name + " is a picture of kind \"" + s.photometric.substr(0, 16) + "\", not of grey values",
-                 "choose the series of original slices with --series");
+            fail(name + " is an image of type \"" + s.photometric.substr(0, 16) + "\", not of grey values",
+                 "choose the series of the original slices with --series");
         if (!(s.slope != 0.0 && std::isfinite(s.slope) && std::isfinite(s.intercept)))
-            fail(name + ": its slope and intercept cannot be", "export the series again");
+            fail(name + ": the rescale slope or intercept is invalid", "export the series again");
     }
-    if (g.size() < 2) fail("there is one slice alone", "give the folder with all slices of the series");
+    if (g.size() < 2) fail("the series has only one slice", "give the folder with all slices of the series");
 }
 
 void check_gaps(const DicomGroup& g, const Eigen::Matrix3d& axes, const std::string& attempt, Scan& scan) {
@@ -89,8 +89,8 @@ void check_gaps(const DicomGroup& g, const Eigen::Matrix3d& axes, const std::str
         if (gap[i] < 1e-3 || gap[i] < 0.02 * typical)
             throw StartupError(attempt,
                                g[i].path.filename().string() + " and " + g[i + 1].path.filename().string() +
-                                   " lie at the same place: the series holds several scans",
-                               "keep one of them in the folder");
+                                   " have the same position: the series holds several scans",
+                               "keep one of the scans in the folder");
         if (gap[i] < kMissing * typical) continue;
         missing += static_cast<std::size_t>(std::lround(gap[i] / typical)) - 1;
         if (where.size() < 120) {
@@ -100,30 +100,32 @@ void check_gaps(const DicomGroup& g, const Eigen::Matrix3d& axes, const std::str
         }
     }
     if (missing > 0) {
-        std::snprintf(text, sizeof text, "%zu slices are missing; they are %.3g mm apart, but not between ",
+        std::snprintf(text, sizeof text, "%zu slices are missing: the spacing is %.3g mm, except between ",
                       missing, typical);
-        throw StartupError(attempt, text + where, "add them, or move the slices on one side of the gap away");
+        throw StartupError(attempt, text + where,
+                           "add the missing slices, or remove the slices on one side of the gap");
     }
     const auto [low, high] = std::minmax_element(gap.begin(), gap.end());
     if (*high - *low > kUneven * typical) {
-        std::snprintf(text, sizeof text, "slices are %.4g to %.4g mm apart: resampled between them", *low,
-                      *high);
+        std::snprintf(text, sizeof text, "slices are %.4g to %.4g mm apart and were resampled", *low, *high);
         scan.warning.emplace_back(text);
     }
     const Vec3 way = axes.transpose() * (g.back().position_mm - g.front().position_mm);
     const double tilt = std::atan2(std::hypot(way.x(), way.y()), way.z());
     if (tilt > kTiltRad) {
+        const double degrees = tilt * 57.29577951308232;
         std::snprintf(text, sizeof text,
-                      "the gantry was tilted by %.1f degrees: each slice is taken from where it is",
-                      tilt * 57.29577951308232);
+                      "the gantry was tilted by %.1f degrees; each slice is sampled at its true position",
+                      degrees);
         scan.warning.emplace_back(text);
-        if (tilt > 0.6)
-            throw StartupError(attempt, "slices are shifted against each other by " + std::string(text + 22),
-                               "export the original slices again");
+        if (tilt > 0.6) {
+            std::snprintf(text, sizeof text, "the gantry was tilted by %.1f degrees, more than 34", degrees);
+            throw StartupError(attempt, text, "export the original slices again");
+        }
     }
 }
 
-// Words in the names of cone-beam scanners and their makers.
+// Words in the names of cone-beam scanners and their manufacturers.
 bool cone_beam(const std::string& maker) {
     for (const char* word :
          {"cbct",     "cone",    "newtom",          "i-cat",    "icat",   "imaging sciences",
@@ -138,9 +140,9 @@ bool cone_beam(const std::string& maker) {
 
 Scan dicom_stack(std::vector<DicomSlice> slices, unsigned series, const std::string& attempt) {
     if (slices.empty())
-        throw StartupError(attempt, "it contains no DICOM image",
+        throw StartupError(attempt, "the folder contains no DICOM image",
                            "give the folder of a series, or another format");
-    // The same list in whatever order the folder is read.
+    // Makes the list independent of the order in which the folder is read.
     std::sort(slices.begin(), slices.end(), [](const DicomSlice& a, const DicomSlice& b) {
         return std::tie(a.series_number, a.series_uid, a.path) <
                std::tie(b.series_number, b.series_uid, b.path);
@@ -161,7 +163,7 @@ Scan dicom_stack(std::vector<DicomSlice> slices, unsigned series, const std::str
     std::sort(g.begin(), g.end(), [&](const DicomSlice& a, const DicomSlice& b) {
         return a.position_mm.dot(n) < b.position_mm.dot(n);
     });
-    // The geometry's own checks, on the first two axes; slices are placed by what each says.
+    // scan_of() checks the geometry, using the first two slices; the slices then get their own positions.
     const double rise = std::max(1e-3, (g[1].position_mm - g[0].position_mm).dot(n));
     std::vector<std::uint32_t> order;
     Scan shape = scan_of({{g[0].columns, g[0].rows, g.size()},
@@ -180,9 +182,8 @@ Scan dicom_stack(std::vector<DicomSlice> slices, unsigned series, const std::str
     shape.values = hounsfield ? ScanValues::hounsfield : ScanValues::number;
     if (cone_beam(g[0].maker))
         shape.warning.emplace_back(
-            "it is from a cone-beam scanner: its values are no true Hounsfield units, so look at the bone "
-            "and "
-            "choose --threshold-hu and --solid-hu by eye");
+            "the scan is from a cone-beam scanner, whose values are not true Hounsfield units; inspect the "
+            "bone and set --threshold-hu and --solid-hu by eye");
     auto kept = std::make_shared<const DicomGroup>(std::move(g));
     shape.read = [kept](std::uint32_t slice, std::span<float> pixels) {
         read_dicom_pixels(kept->at(slice), pixels);

@@ -13,10 +13,10 @@ RawHeader meta_image_header(std::string_view bytes, const std::string& attempt, 
     std::string_view line;
     while (in.line(line)) {
         const std::size_t equals = line.find('=');
-        if (equals == std::string_view::npos) in.fail("a line of its header is not \"key = value\"");
+        if (equals == std::string_view::npos) in.fail("a line of the header is not \"key = value\"");
         const std::string key = HeaderText::lower(HeaderText::trimmed(line.substr(0, equals)));
         field[key] = HeaderText::trimmed(line.substr(equals + 1));
-        if (key == "elementdatafile") break;  // the last one
+        if (key == "elementdatafile") break;  // the last key
     }
     const auto of = [&](std::initializer_list<const char*> names) -> std::string_view {
         for (const char* name : names)
@@ -26,18 +26,18 @@ RawHeader meta_image_header(std::string_view bytes, const std::string& attempt, 
     const auto numbers = [&](std::string_view text, std::size_t count, const char* what) {
         const auto words = HeaderText::words(text);
         if (words.size() != count)
-            in.fail(std::string(what) + " has not " + std::to_string(count) + " numbers");
+            in.fail(std::string(what) + " does not have " + std::to_string(count) + " numbers");
         std::vector<double> out;
         for (const std::string_view word : words) out.push_back(in.number(word, what));
         return out;
     };
     const auto yes = [](std::string_view v) { return HeaderText::lower(v) == "true" || v == "1"; };
-    if (of({"ndims"}) != "3") in.fail("it has not three axes (NDims)");
+    if (of({"ndims"}) != "3") in.fail("the volume does not have three axes (NDims)");
     const auto sizes = HeaderText::words(of({"dimsize"}));
-    if (sizes.size() != 3) in.fail("DimSize has not three numbers");
+    if (sizes.size() != 3) in.fail("DimSize does not have three numbers");
     for (std::size_t a = 0; a < 3; ++a) h.axes.size[a] = in.whole(sizes[a], "DimSize");
     const std::string_view spacing = of({"elementspacing", "elementsize"});
-    if (spacing.empty()) in.fail("it has no voxel spacing (ElementSpacing)");
+    if (spacing.empty()) in.fail("the header has no voxel spacing (ElementSpacing)");
     const auto steps = numbers(spacing, 3, "ElementSpacing");
     const std::string_view matrix = of({"transformmatrix", "rotation", "orientation"});
     h.axes.oriented = !matrix.empty();
@@ -45,7 +45,8 @@ RawHeader meta_image_header(std::string_view bytes, const std::string& attempt, 
     if (h.axes.oriented) m = numbers(matrix, 9, "TransformMatrix");
     for (std::size_t a = 0; a < 3; ++a) {
         const Vec3 direction(m[3 * a], m[3 * a + 1], m[3 * a + 2]);
-        if (std::abs(direction.norm() - 1.0) > 1e-3) in.fail("an axis of TransformMatrix is not of length 1");
+        if (std::abs(direction.norm() - 1.0) > 1e-3)
+            in.fail("an axis of TransformMatrix does not have length 1");
         h.axes.step_mm[a] = unit_mm * std::abs(steps[a]) * direction;
     }
     if (const std::string_view origin = of({"offset", "position", "origin"}); !origin.empty()) {
@@ -58,17 +59,17 @@ RawHeader meta_image_header(std::string_view bytes, const std::string& attempt, 
         {"MET_FLOAT", RawType::f32},  {"MET_DOUBLE", RawType::f64}};
     const auto type = kTypes.find(of({"elementtype"}));
     if (type == kTypes.end())
-        in.fail("its ElementType is \"" + std::string(of({"elementtype"}).substr(0, 40)) +
-                "\", which is not read");
+        in.fail("ElementType is \"" + std::string(of({"elementtype"}).substr(0, 40)) +
+                "\", which is not supported");
     h.type = type->second;
     if (!of({"elementnumberofchannels"}).empty() && of({"elementnumberofchannels"}) != "1")
-        in.fail("it has more than one number a voxel");
-    if (!of({"binarydata"}).empty() && !yes(of({"binarydata"}))) in.fail("its voxels are written as text");
+        in.fail("voxels with more than one value are not supported");
+    if (!of({"binarydata"}).empty() && !yes(of({"binarydata"}))) in.fail("voxels as text are not supported");
     h.big_endian = yes(of({"binarydatabyteordermsb", "elementbyteordermsb"}));
     if (yes(of({"compresseddata"}))) h.packing = RawPacking::deflate;
     const std::string_view skip = of({"headersize"});
     const std::string_view file = of({"elementdatafile"});
-    if (file.empty()) in.fail("it does not name the file of its voxels (ElementDataFile)");
+    if (file.empty()) in.fail("the header does not name the file of the voxels (ElementDataFile)");
     if (HeaderText::lower(file) == "local")
         h.offset = in.position();
     else

@@ -1,10 +1,10 @@
-// NIfTI-1 in one file (.nii, .nii.gz): https://nifti.nimh.nih.gov/nifti-1. Its axes point right, front and up; ours
-// left, back and up.
+// NIfTI-1 in one file (.nii, .nii.gz): https://nifti.nimh.nih.gov/nifti-1. NIfTI axes point right, front and up; scan
+// axes point left, back and up.
 //
-// nifticlib interprets the header: orientation by matrix or quaternion, units, scale. It takes a header of any
-// content, prints to standard error where it refuses one, and replaces what is not possible (an axis of size 0
-// becomes 1), so the size, the axes, the steps and the datatype are checked here first. The voxels are read by
-// raw_scan.cpp, which compares what a header declares with the bytes that are there.
+// nifticlib interprets the header: orientation by matrix or quaternion, units, scale. It accepts any header, prints to
+// standard error if it rejects one, and replaces invalid values (an axis of size 0 becomes 1), so size, axes, steps and
+// datatype are checked here first. raw_scan.cpp reads the voxels and compares the declared size with the bytes in the
+// file.
 #include <nifti1_io.h>
 
 #include <algorithm>
@@ -57,36 +57,37 @@ double nifti_unit_mm(int code, double otherwise) {
 }
 
 [[noreturn]] void fail(const std::string& attempt, const std::string& why) {
-    throw StartupError(attempt, why, "export it again as NIfTI-1, one file");
+    throw StartupError(attempt, why, "export the scan again as NIfTI-1 in one file");
 }
 
-// The header in this machine's byte order, and what nifticlib would not refuse in our words.
+// Returns the header in native byte order. Checks it first, so that errors have our texts and not nifticlib's.
 nifti_1_header checked_header(std::string_view bytes, const std::string& attempt, bool& swapped) {
     if (bytes.size() < 352)
-        fail(attempt, "it has " + std::to_string(bytes.size()) + " bytes, fewer than a header (352)");
+        fail(attempt,
+             "the file has " + std::to_string(bytes.size()) + " bytes, fewer than a NIfTI-1 header (352)");
     constexpr int kHeader = 348;
     nifti_1_header h{};
     static_assert(sizeof h == kHeader);
     std::memcpy(&h, bytes.data(), sizeof h);
     swapped = h.sizeof_hdr != kHeader;
     if (swapped) swap_nifti_header(&h, 1);
-    if (h.sizeof_hdr != kHeader) fail(attempt, "it does not begin as a NIfTI-1 file does");
+    if (h.sizeof_hdr != kHeader) fail(attempt, "the file does not begin with a NIfTI-1 header");
     if (std::memcmp(h.magic, "n+1", 4) != 0)
-        fail(attempt, "its header and its voxels are two files, or it is older");
+        fail(attempt, "header and voxels are separate files, or the format is older than NIfTI-1");
     const int axes = h.dim[0];
     for (int a = 4; a <= std::min(axes, 7); ++a)
-        if (h.dim[a] > 1) fail(attempt, "it has more than three axes");
-    if (axes < 3 || axes > 7) fail(attempt, "it has " + std::to_string(axes) + " axes instead of 3");
-    if (!raw_type(h.datatype))
-        fail(attempt, "its datatype is " + std::to_string(h.datatype) + ", which is not read");
+        if (h.dim[a] > 1) fail(attempt, "the volume has more than three axes");
+    if (axes < 3 || axes > 7) fail(attempt, "the volume has " + std::to_string(axes) + " axes instead of 3");
+    if (!raw_type(h.datatype)) fail(attempt, "datatype " + std::to_string(h.datatype) + " is not supported");
     if (!(h.vox_offset >= 352.0F && h.vox_offset <= 1e9F))
-        fail(attempt, "its voxels begin at byte " + std::to_string(static_cast<double>(h.vox_offset)));
+        fail(attempt, "the voxel offset is " + std::to_string(static_cast<double>(h.vox_offset)) +
+                          ", outside 352 to 1e9");
     const float orientation[] = {h.quatern_b, h.quatern_c, h.quatern_d,
                                  h.qoffset_x, h.qoffset_y, h.qoffset_z};
     if (h.qform_code > 0 && h.sform_code <= 0 &&
         !std::all_of(std::begin(orientation), std::end(orientation),
                      [](float x) { return std::isfinite(x); }))
-        fail(attempt, "its orientation is not made of numbers");
+        fail(attempt, "the orientation has a value that is not finite");
     return h;
 }
 
@@ -115,11 +116,11 @@ RawHeader nifti_header(std::string_view bytes, const std::string& attempt, doubl
     h.type = *raw_type(checked.datatype);
     h.big_endian = swapped == (std::endian::native == std::endian::little);
     h.offset = static_cast<std::uint64_t>(checked.vox_offset);
-    // Impossible sizes and steps are refused by scan_of(); by the matrix, steps do not count.
+    // scan_of() rejects invalid sizes and steps. If the matrix gives the orientation, the steps do not matter.
     if (!steps_possible && !(checked.sform_code > 0 && checked.dim[1] > 0)) return h;
     const std::unique_ptr<nifti_image, void (*)(nifti_image*)> image(nifti_convert_nhdr2nim(checked, nullptr),
                                                                      &nifti_image_free);
-    if (!image) fail(attempt, "nifticlib does not read its header");
+    if (!image) fail(attempt, "nifticlib rejects the header");
     h.axes.oriented = image->sform_code > 0 || image->qform_code > 0;
     if (image->sform_code > 0)
         set_axes(image->sto_xyz, h.axes);

@@ -8,8 +8,8 @@ namespace tact {
 namespace {
 
 struct NrrdFields {
-    std::map<std::string, std::string, std::less<>> field;  // lower case
-    std::map<std::string, std::string, std::less<>> pair;   // key:=value, as they are
+    std::map<std::string, std::string, std::less<>> field;  // keys in lower case
+    std::map<std::string, std::string, std::less<>> pair;   // key:=value, unchanged
     std::size_t end = 0;
     [[nodiscard]] std::string_view of(std::string_view name) const {
         const auto found = field.find(name);
@@ -51,23 +51,23 @@ RawType nrrd_type(const HeaderText& in, std::string_view name) {
         {"float", RawType::f32},        {"double", RawType::f64}};
     const auto found = kTypes.find(name);
     if (found == kTypes.end())
-        in.fail("its type is \"" + std::string(name.substr(0, 40)) + "\", which is not read");
+        in.fail("the type is \"" + std::string(name.substr(0, 40)) + "\", which is not supported");
     return found->second;
 }
 
 Vec3 nrrd_vector(const HeaderText& in, std::string_view text, const char* what) {
     text = HeaderText::trimmed(text);
     if (text.size() < 2 || text.front() != '(' || text.back() != ')')
-        in.fail(std::string(what) + " is no vector in parentheses");
+        in.fail(std::string(what) + " is not a vector in parentheses");
     const auto words = HeaderText::words(text.substr(1, text.size() - 2), ", \t");
-    if (words.size() != 3) in.fail(std::string(what) + " has not three numbers");
+    if (words.size() != 3) in.fail(std::string(what) + " does not have three numbers");
     return {in.number(words[0], what), in.number(words[1], what), in.number(words[2], what)};
 }
 
 void nrrd_axes(const HeaderText& in, const NrrdFields& f, double unit_mm, ScanAxes& axes) {
     const auto sizes = HeaderText::words(f.of("sizes"));
     if (f.of("dimension") != "3" || sizes.size() != 3)
-        in.fail("it has " + std::string(f.of("dimension").substr(0, 10)) + " axes instead of 3");
+        in.fail("the volume has " + std::string(f.of("dimension").substr(0, 10)) + " axes instead of 3");
     for (std::size_t a = 0; a < 3; ++a) axes.size[a] = in.whole(sizes[a], "a size");
     const std::string space = HeaderText::lower(f.of("space"));
     Vec3 to_lps(1, 1, 1);
@@ -83,7 +83,7 @@ void nrrd_axes(const HeaderText& in, const NrrdFields& f, double unit_mm, ScanAx
         std::size_t from = 0;
         for (std::size_t a = 0; a < 3; ++a) {
             const std::size_t end = directions.find(')', from);
-            if (end == std::string_view::npos) in.fail("its space directions are not three vectors");
+            if (end == std::string_view::npos) in.fail("the space directions are not three vectors");
             axes.step_mm[a] =
                 unit_mm * nrrd_vector(in, directions.substr(from, end + 1 - from), "a space direction")
                               .cwiseProduct(to_lps);
@@ -94,7 +94,7 @@ void nrrd_axes(const HeaderText& in, const NrrdFields& f, double unit_mm, ScanAx
     } else {
         axes.oriented = false;
         const auto words = HeaderText::words(spacings);
-        if (words.size() != 3) in.fail("it has no voxel spacing (spacings, space directions)");
+        if (words.size() != 3) in.fail("the header has no voxel spacing (spacings, space directions)");
         for (std::size_t a = 0; a < 3; ++a) {
             axes.step_mm[a] = Vec3::Zero();
             axes.step_mm[a][static_cast<int>(a)] = unit_mm * std::abs(in.number(words[a], "a spacing"));
@@ -102,7 +102,7 @@ void nrrd_axes(const HeaderText& in, const NrrdFields& f, double unit_mm, ScanAx
     }
 }
 
-// Names and colours as segmentations of 3D Slicer have them.
+// Names and colours of the segments that 3D Slicer writes.
 std::vector<ScanLabel> nrrd_labels(const HeaderText& in, const NrrdFields& f) {
     std::vector<ScanLabel> labels;
     for (int i = 0; i < 255; ++i) {
@@ -112,7 +112,7 @@ std::vector<ScanLabel> nrrd_labels(const HeaderText& in, const NrrdFields& f) {
         if (name == f.pair.end() || value == f.pair.end()) continue;
         const std::uint64_t number = in.whole(HeaderText::trimmed(value->second), "a label");
         if (number == 0 || number > 255)
-            in.fail("a segment has label " + std::to_string(number) + "; 1 to 255 can be");
+            in.fail("a segment has label " + std::to_string(number) + ", outside 1 to 255");
         ScanLabel label{static_cast<std::uint8_t>(number), name->second, {200, 200, 200, 255}};
         if (const auto color = f.pair.find(key + "_Color"); color != f.pair.end()) {
             const auto words = HeaderText::words(color->second);
@@ -130,7 +130,7 @@ std::vector<ScanLabel> nrrd_labels(const HeaderText& in, const NrrdFields& f) {
 RawHeader nrrd_header(std::string_view bytes, const std::string& attempt, double unit_mm) {
     HeaderText in(bytes, attempt);
     std::string_view magic;
-    if (!in.line(magic) || !magic.starts_with("NRRD000")) in.fail("it does not begin as an NRRD file does");
+    if (!in.line(magic) || !magic.starts_with("NRRD000")) in.fail("the file does not begin with NRRD000");
     const NrrdFields f = read_fields(in);
     RawHeader h;
     h.type = nrrd_type(in, HeaderText::lower(f.of("type")));
@@ -138,13 +138,13 @@ RawHeader nrrd_header(std::string_view bytes, const std::string& attempt, double
     h.label = nrrd_labels(in, f);
     const std::string endian = HeaderText::lower(f.of("endian"));
     if (endian.empty() && h.type != RawType::i8 && h.type != RawType::u8)
-        in.fail("it does not declare its byte order");
+        in.fail("the header does not declare the byte order");
     h.big_endian = endian == "big";
     const std::string encoding = HeaderText::lower(f.of("encoding"));
     if (encoding == "gzip" || encoding == "gz")
         h.packing = RawPacking::deflate;
     else if (encoding != "raw")
-        in.fail("its encoding is \"" + encoding.substr(0, 40) + "\"; raw and gzip are read");
+        in.fail("the encoding is \"" + encoding.substr(0, 40) + "\"; only raw and gzip are supported");
     std::string_view file = f.of("data file");
     if (file.empty()) file = f.of("datafile");
     h.data_file = file;
@@ -155,7 +155,8 @@ RawHeader nrrd_header(std::string_view bytes, const std::string& attempt, double
     else if (!skip.empty())
         h.offset += std::min<std::uint64_t>(in.whole(skip, "byte skip"), kScanBytesMax);
     for (const char* field : {"line skip", "lineskip"})
-        if (!f.of(field).empty() && f.of(field) != "0") in.fail("lines between header and data are not read");
+        if (!f.of(field).empty() && f.of(field) != "0")
+            in.fail("lines between header and data are not supported");
     return h;
 }
 

@@ -1,8 +1,8 @@
-// A folder of PNG pictures, one a slice, as segmented volumes are often passed on: grey, or a colour a structure.
+// A folder of PNG images, one per slice, a common form of segmented volumes: grey, or one colour per structure.
 //
-// Names     a word, a number and .png: plane0.png, plane0010.png. They lie one above the other by their numbers, which
-//           may not have gaps. All have the same size.
-// Colours   each becomes a number, in the order in which they are met; `palette` grows while slices are read.
+// Names     a word, a number and .png: plane0.png, plane0010.png. The number gives the order of the slices; numbers
+//           must be consecutive. All images have the same size.
+// Colours   each becomes a number, in the order found; `palette` grows while slices are read.
 #pragma once
 
 #include <filesystem>
@@ -16,15 +16,15 @@ struct StackPalette {
     std::vector<std::array<std::uint8_t, 4>> rgba;  // by number; at most 256
 };
 struct PngStack {
-    Scan scan;                              // values grey or label
+    Scan scan;                              // values are grey or label
     std::shared_ptr<StackPalette> palette;  // null: grey
 };
 
-// Names of a folder in the order of their numbers; throws StartupError where they are no stack. For tests and fuzzing
-// without files.
+// File names of a folder in the order of their numbers; throws StartupError if they do not form a stack. Exported for
+// tests and fuzzing without files.
 std::vector<std::string> stack_order(std::vector<std::string> names, const std::string& attempt);
 
-// Never called for a folder without a .png.
+// The folder must contain a .png file.
 PngStack read_png_stack(const std::filesystem::path& folder, const Vec3& spacing_mm);
 
 }  // namespace tact

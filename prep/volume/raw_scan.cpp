@@ -64,18 +64,18 @@ void convert(RawType type, const char* from, bool swap, double slope, double int
     }
 }
 
-// Exactly `size` bytes out of a zlib or gzip stream.
+// Unpacks exactly `size` bytes of a zlib or gzip stream.
 std::vector<char> inflated(std::string_view packed, std::uint64_t size, const std::string& attempt) {
     const auto fail = [&](const std::string& why) {
-        throw StartupError(attempt, why, "the file is damaged or cut short; export it again");
+        throw StartupError(attempt, why, "export the scan again; the file is damaged or truncated");
     };
-    // Deflate packs no more than 1032 bytes into one.
+    // Deflate compresses by a factor of at most 1032.
     if (size / 1100 > packed.size() + 1)
-        fail("its header declares " + std::to_string(size) + " bytes, more than " +
-             std::to_string(packed.size()) + " packed ones can hold");
+        fail("the header declares " + std::to_string(size) + " bytes, more than " +
+             std::to_string(packed.size()) + " compressed bytes can hold");
     std::vector<char> out(static_cast<std::size_t>(size));
     z_stream z{};
-    if (inflateInit2(&z, 15 + 32) != Z_OK) fail("unpacking cannot begin");
+    if (inflateInit2(&z, 15 + 32) != Z_OK) fail("zlib could not be initialized");
     struct End {
         z_stream* stream;
         ~End() { inflateEnd(stream); }
@@ -96,7 +96,8 @@ std::vector<char> inflated(std::string_view packed, std::uint64_t size, const st
         if (status == Z_OK && z.avail_in == give && z.avail_out == room) status = Z_BUF_ERROR;
     }
     if (made < out.size())
-        fail("its packed data holds " + std::to_string(made) + " bytes of " + std::to_string(size));
+        fail("the compressed data hold " + std::to_string(made) + " bytes instead of " +
+             std::to_string(size));
     return out;
 }
 
@@ -105,26 +106,28 @@ std::vector<char> inflated(std::string_view packed, std::uint64_t size, const st
 Scan raw_scan(RawHeader h, std::string_view bytes, std::shared_ptr<const void> owner,
               const std::string& attempt, float no_number) {
     const auto fail = [&](const std::string& why) {
-        throw StartupError(attempt, why, "the file is damaged or cut short; export it again");
+        throw StartupError(attempt, why, "export the scan again; the file is damaged or truncated");
     };
     std::vector<std::uint32_t> order;
     Scan scan = scan_of(h.axes, attempt, order);
     if (!(std::isfinite(h.slope) && std::isfinite(h.intercept)) || h.slope == 0.0)
-        fail("its scale of values is " + std::to_string(h.slope) + " and " + std::to_string(h.intercept));
+        fail("the slope " + std::to_string(h.slope) + " or intercept " + std::to_string(h.intercept) +
+             " of the values is invalid");
     const std::uint64_t slice_bytes = std::uint64_t{scan.pixels()} * bytes_of(h.type);
     const std::uint64_t size = slice_bytes * order.size();
     if (size > kScanBytesMax)
         throw StartupError(
-            attempt, "it has " + std::to_string(size) + " bytes, more than " + std::to_string(kScanBytesMax),
-            "crop it, or bin it");
+            attempt,
+            "the scan has " + std::to_string(size) + " bytes, more than " + std::to_string(kScanBytesMax),
+            "crop the scan, or bin it to larger voxels");
     if (h.packing == RawPacking::plain) {
         if (h.from_end && bytes.size() >= size) h.offset = bytes.size() - size;
         if (h.offset > bytes.size() || bytes.size() - h.offset < size)
-            fail("its header declares " + std::to_string(size) + " bytes of voxels, there are " +
+            fail("the header declares " + std::to_string(size) + " bytes of voxels, but the file has " +
                  std::to_string(bytes.size() - std::min<std::uint64_t>(h.offset, bytes.size())));
         bytes = bytes.substr(static_cast<std::size_t>(h.offset), static_cast<std::size_t>(size));
     } else {
-        if (h.offset > bytes.size()) fail("its data begin beyond its end");
+        if (h.offset > bytes.size()) fail("the data begin beyond the end of the file");
         auto unpacked = std::make_shared<std::vector<char>>(
             inflated(bytes.substr(static_cast<std::size_t>(h.offset)), size, attempt));
         bytes = std::string_view(unpacked->data(), unpacked->size());
@@ -152,11 +155,12 @@ Scan read_raw_scan(const std::filesystem::path& path, const char* format, RawHea
         if (header.data_file.find('/') != std::string::npos ||
             header.data_file.find('%') != std::string::npos || header.data_file.starts_with("LIST"))
             throw StartupError(attempt,
-                               "its voxels are in " + header.data_file + ", which is no one file beside it",
-                               "save it as one file");
+                               "the voxels are in " + header.data_file +
+                                   ", which is not a single file in the folder of the header",
+                               "save the scan as one file");
         input =
             std::make_shared<InputBytes>(path.parent_path() / header.data_file, kScanBytesMax, kScanBytesMax);
-        // A .gz beside a header is unpacked already.
+        // A .gz file beside a header is already unpacked.
         const std::string_view b = input->view();
         const bool packed = b.size() > 2 && (b[0] == '\x1f' || b[0] == '\x78');
         if (header.packing == RawPacking::deflate && !packed) header.packing = RawPacking::plain;

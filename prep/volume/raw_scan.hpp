@@ -1,7 +1,7 @@
-// Scans in one piece, as NRRD, MetaImage and NIfTI files hold them: a header, then numbers, plain or packed.
+// Scans as a header and one block of numbers, plain or compressed: NRRD, MetaImage and NIfTI files.
 //
-// Memory    plain numbers are mapped where they lie; packed ones are unpacked whole, at the most kScanBytesMax. What a
-//           header declares is compared with the bytes that are there before any memory is taken.
+// Memory    plain numbers are memory-mapped; compressed ones are unpacked completely, at most kScanBytesMax. The size
+//           declared by the header is compared with the bytes in the file before memory is allocated.
 #pragma once
 
 #include <cstdint>
@@ -17,7 +17,7 @@ namespace tact {
 inline constexpr std::uint64_t kScanBytesMax = std::uint64_t{4} << 30;
 
 enum class RawType : std::uint8_t { i8, u8, i16, u16, i32, u32, f32, f64 };
-enum class RawPacking : std::uint8_t { plain, deflate };  // zlib or gzip, whichever is there
+enum class RawPacking : std::uint8_t { plain, deflate };  // zlib or gzip, detected
 
 struct RawHeader {
     ScanAxes axes;
@@ -25,23 +25,23 @@ struct RawHeader {
     bool big_endian = false;
     RawPacking packing = RawPacking::plain;
     std::uint64_t offset = 0;  // of the numbers in their file
-    bool from_end = false;     // the numbers are the last of the file, wherever that is
+    bool from_end = false;     // the numbers are the last bytes of the file
     double slope = 1.0, intercept = 0.0;
     std::string data_file;  // in the header's folder; empty: the same file
     std::vector<ScanLabel> label;
 };
 
-// Of a header alone, for tests and fuzzing: it throws StartupError or the header can be used. `unit_mm`: what a
-// length in the file is, where the file does not say.
+// Parse a header alone; for tests and fuzzing. Throw StartupError or return a usable header. `unit_mm`: unit of length
+// if the file states none.
 RawHeader nrrd_header(std::string_view bytes, const std::string& attempt, double unit_mm);
 RawHeader meta_image_header(std::string_view bytes, const std::string& attempt, double unit_mm);
 RawHeader nifti_header(std::string_view bytes, const std::string& attempt, double unit_mm);
 
 using RawHeaderReader = RawHeader (*)(std::string_view, const std::string&, double);
-// no_number: value that replaces numbers that are not finite; in a scan that is air.
+// no_number: replaces numbers that are not finite; by default the value of air.
 Scan read_raw_scan(const std::filesystem::path& path, const char* format, RawHeaderReader reader,
                    double unit_mm, float no_number = -1024.0F);
-// The numbers of a scan whose header is known; `bytes` lives as long as `owner`.
+// The voxels of a scan whose header is known; `owner` keeps `bytes` alive.
 Scan raw_scan(RawHeader header, std::string_view bytes, std::shared_ptr<const void> owner,
               const std::string& attempt, float no_number = -1024.0F);
 

@@ -22,7 +22,7 @@ void crop_scan(Scan& scan, const ScanCrop& crop) {
         if (crop.low[a] < crop.high[a] && crop.high[a] <= size[a]) continue;
         throw StartupError("crop the scan",
                            std::string(kNames[a]) + " " + std::to_string(crop.low[a]) + ":" +
-                               std::to_string(crop.high[a]) + " are not within 0:" + std::to_string(size[a]),
+                               std::to_string(crop.high[a]) + " are outside 0:" + std::to_string(size[a]),
                            "give first:end of columns, rows and slices, as in --crop 0:256,0:256,10:90");
     }
     const std::uint32_t all_columns = scan.columns, first_slice = crop.low[2];
@@ -54,28 +54,33 @@ Scan scan_of(const ScanAxes& axes, const std::string& attempt, std::vector<std::
     for (std::size_t a = 0; a < 3; ++a) {
         const std::uint64_t n = axes.size[a];
         if (n == 0 || n > Scan::kEdgeMax)
-            fail("it declares " + std::to_string(axes.size[0]) + " x " + std::to_string(axes.size[1]) +
-                     " x " + std::to_string(axes.size[2]) + " voxels; 1 to " +
-                     std::to_string(Scan::kEdgeMax) + " along an axis can be",
-                 "crop it, or check the file");
+            fail("the file declares " + std::to_string(axes.size[0]) + " x " + std::to_string(axes.size[1]) +
+                     " x " + std::to_string(axes.size[2]) + " voxels, outside 1 to " +
+                     std::to_string(Scan::kEdgeMax) + " along an axis",
+                 "crop the scan, or check the file");
         voxels *= n;
         const double step = axes.step_mm[a].norm();
         if (!(step >= kStepMinMm && step <= kStepMaxMm))
-            fail("from a voxel to the next along axis " + std::to_string(a) + " it is " +
-                     std::to_string(step) + " mm; 0.001 to 100 can be",
+            fail("the voxel spacing along axis " + std::to_string(a) + " is " + std::to_string(step) +
+                     " mm, outside 0.001 to 100",
                  "give --unit, or fix the spacing in the file");
         if (!(std::abs(axes.origin_mm[static_cast<int>(a)]) <= kFarMm))
-            fail("it lies " + std::to_string(axes.origin_mm[static_cast<int>(a)]) + " mm away",
+            fail("the origin is " + std::to_string(axes.origin_mm[static_cast<int>(a)]) +
+                     " mm away along an axis",
                  "fix the origin in the file");
     }
-    if (voxels > kVoxelsMax) fail("it says it has " + std::to_string(voxels) + " voxels", "crop it");
+    if (voxels > kVoxelsMax)
+        fail("the file declares " + std::to_string(voxels) + " voxels, more than " +
+                 std::to_string(kVoxelsMax),
+             "crop the scan");
     const Vec3 u = axes.step_mm[0].normalized(), v = axes.step_mm[1].normalized(), n = u.cross(v);
     if (std::abs(u.dot(v)) > 1e-3)
-        fail("its rows and columns are not at right angles", "resample it in the program that it is from");
+        fail("rows and columns are not at right angles",
+             "resample the scan in the program that wrote the file");
     const double rise = axes.step_mm[2].dot(n);
     if (std::abs(rise) < 0.5 * axes.step_mm[2].norm())
-        fail("its slices are shifted against each other by more than they are apart",
-             "resample it in the program that it is from");
+        fail("the slices are shifted against each other by more than their spacing",
+             "resample the scan in the program that wrote the file");
     Scan scan;
     scan.columns = static_cast<std::uint32_t>(axes.size[0]);
     scan.rows = static_cast<std::uint32_t>(axes.size[1]);

@@ -14,7 +14,7 @@ void check_core(const RtConfig& config, const std::string& path, const std::file
                 ConfigErrors& errors) {
     std::ifstream in(root / "sys/devices/system/cpu/online");
     std::string online;
-    // Where the kernel hides its cores, nothing can be told.
+    // No check is possible where the kernel does not list its cores.
     if (config.servo.core < 0 || !std::getline(in, online) || online.empty()) return;
     if (in_cpu_list(online, static_cast<int>(config.servo.core))) return;
     for (const ConfigError& e : errors)
@@ -22,7 +22,7 @@ void check_core(const RtConfig& config, const std::string& path, const std::file
     errors.emplace_back(path, "servo.core",
                         "this machine has no core " + std::to_string(config.servo.core) +
                             ", or it is offline; online: " + online,
-                        "choose one of these, or -1 for the last isolated core");
+                        "choose an online core, or -1 for the last isolated core");
 }
 
 nlohmann::json json_of(const ConfigValue& value) {

@@ -53,7 +53,7 @@ std::vector<ConfigKey> keys_of(RtConfig& c) {
         {"servo.spin_us", &c.servo.spin_us, 0, 100000, {}},
         {"servo.core", &c.servo.core, -2, 4095, {}},
         {"servo.priority", &c.servo.priority, 0, 94, {}},
-        {"servo.model_us_max", &c.servo.model_us_max, 1, 100000, {}},
+        {"servo.model_us_max", &c.servo.model_us_max, 0, 100000, {}},
         {"servo.lock_memory", &c.servo.lock_memory, 0, 0, {}},
         {"device.driver", &c.device.driver, 0, 0, device_names()},
         {"device.hand", &c.device.hand, 0, 0, sim_hand_names()},
@@ -169,7 +169,7 @@ std::string complaint(const ConfigKey& key) {
             if (w == **s) return {};
             known += (known.empty() ? "\"" : ", \"") + w + "\"";
         }
-        return "\"" + **s + "\" is none of " + known;
+        return "\"" + **s + "\" is not one of " + known;
     }
     return {};
 }
@@ -205,7 +205,7 @@ void set_key(const ConfigKey& key, const toml::node& node, const std::string& wh
         if (!node.is_boolean()) wrong("true or false");
         **b = node.value<bool>().value_or(false);
     } else if (const auto* s = std::get_if<std::string*>(&key.target)) {
-        if (!node.is_string()) wrong("a text in quotes");
+        if (!node.is_string()) wrong("text in quotes");
         **s = node.value<std::string>().value_or("");
         if (key.name.ends_with(".hand")) **s = current_hand_name(**s);
     } else if (const auto* many = std::get_if<std::span<double>>(&key.target)) {
@@ -237,7 +237,6 @@ ServoSettings settings_from(const RtConfig& c, bool emulated) {
     s.emulated = emulated;
     s.period = duration_us(c.servo.period_us);
     s.free_running = c.servo.free_running;
-    s.model_max = duration_us(c.servo.model_us_max);
     s.force_scale = c.shape.force_scale;
     s.damping_n_s_m = c.shape.damping_n_s_m;
     s.watchdogs.sample_age_max = duration_us(c.safety.sample_age_us_max);
@@ -262,6 +261,8 @@ ServoSettings settings_from(const RtConfig& c, bool emulated) {
     s.governor.law = law_named(c.governor.law).value_or(kDefaultLaw);
     const double rate_hz = s.free_running ? 1000.0 : 1e6 / c.servo.period_us;
     s.governor.goal_hz = c.governor.goal_hz > 0.0 ? c.governor.goal_hz : rate_hz;
+    const double cycle_us = s.free_running ? 1e6 / s.governor.goal_hz : c.servo.period_us;
+    s.model_max = duration_us(c.servo.model_us_max > 0.0 ? c.servo.model_us_max : kModelShare * cycle_us);
     s.governor.display_goal_hz = c.governor.display_goal_hz;
     s.governor.gain = c.governor.gain;
     s.governor.tolerance = c.governor.tolerance;
@@ -285,7 +286,7 @@ DeviceSettings device_settings_from(const RtConfig& c) {
     d.arm = c.arm;
     d.serial = c.device.serial;
     d.pump_priority = static_cast<int>(c.device.pump_priority);
-    // A device says so itself before the loop's own watchdog does, since it knows why.
+    // The device reports old samples before the loop's watchdog trips, because it can name the cause.
     d.state_hold = duration_us(c.safety.sample_age_us_max * (3000.0 / 3500.0));
     d.sim.watchdog = duration_us(c.device.watchdog_us);
     return d;

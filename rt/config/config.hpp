@@ -1,8 +1,8 @@
-// The configuration of tact-rt: one TOML file, read into one struct whose defaults are the documentation.
+// The configuration of tact-rt: one TOML file, read into one struct that also defines the defaults.
 //
-// Units    as the keys say; converted to SI once, in settings_from().
-// Fails by StartupError naming file, line, key, what is wrong and the fix: unknown keys, wrong types and
-//          impossible values are errors. deploy/tact.toml shows every key, held to it by a test.
+// Units    named in the keys; converted to SI once, in settings_from().
+// Fails by StartupError with file, line, key, problem and fix. Unknown keys, wrong types and impossible values
+//          are errors. deploy/tact.toml shows every key; a test checks this.
 // Thread   start-up only
 #pragma once
 
@@ -23,35 +23,36 @@
 
 namespace tact {
 
+// Fractions of the period: default deadline of the model's step, and largest one that leaves time for the rest of a cycle.
+inline constexpr double kModelShare = 0.7, kModelShareMost = 0.9;
+
 struct RtConfig {
     struct Servo {
         double period_us = 1000.0;
         bool free_running = false;
-        double spin_us =
-            100.0;  // of the sleep before a cycle, spent spinning; hides the wake-up of the kernel
+        double spin_us = 100.0;  // busy-waiting before a cycle; hides the kernel's wake-up latency
         std::int64_t core = -1;  // -1: the last isolated core, or with FIFO the last core; -2: not pinned
         std::int64_t priority = kServoPriority;  // FIFO; 0: ordinary scheduling
-        double model_us_max = 600.0;
+        double model_us_max = 0.0;               // deadline of the model's step; 0: kModelShare of the period
         bool lock_memory = true;
     } servo;
     struct Device {
         std::string driver = "sim";
-        std::string hand = "passive";  // of the emulated device
+        std::string hand = "passive";  // emulated devices: script of the hand
         std::int64_t hand_seed = 1;
-        std::array<double, 2> hand_at_mm{0.0, 0.0};  // x, y: where an emulated surgeon works
+        std::array<double, 2> hand_at_mm{0.0, 0.0};  // x, y of an emulated surgeon's working point
         double watchdog_us = 10000.0;
-        std::string process_log;                     // of sim-process: file for its changes of state
-        std::string serial;                          // of a real device; empty: the only one
-        std::int64_t pump_priority = kPumpPriority;  // FIFO, of the thread on its bus; 0: ordinary
-        std::string firmware;    // of falcon: its owner's file; empty: it has to run already
-        std::string hd_library;  // of openhaptics: libHD.so; empty: searched
-        std::string hd_device;   // of openhaptics: name of the arm; empty: the default one
+        std::string process_log;                     // sim-process: file that records its state changes
+        std::string serial;                          // real devices; empty: the only one
+        std::int64_t pump_priority = kPumpPriority;  // FIFO priority of the bus thread; 0: ordinary
+        std::string firmware;    // falcon: firmware file of its owner; empty: firmware already runs
+        std::string hd_library;  // openhaptics: path of libHD.so; empty: search for it
+        std::string hd_device;   // openhaptics: name of the arm; empty: the default one
     } device;
-    struct Device2 {
-        std::string driver =
-            "none";  // of the second hand: the suction tube where bone is drilled, else a pointer
+    struct Device2 {  // of the second hand: the suction tube in drilling scenes, else a pointer
+        std::string driver = "none";
         std::string serial;
-        std::string hand = "same";  // of an emulated one: as device.hand, or another
+        std::string hand = "same";  // emulated devices: "same" as device.hand, or a script
         std::int64_t hand_seed = 2;
     } device2;
     struct Tracker {
@@ -59,9 +60,9 @@ struct RtConfig {
         std::string interface = "can0";
         std::string format = "classic";  // or "fd"
         std::int64_t sensors = 1;        // on the bus
-        std::int64_t head_sensor = 0;    // which of them is on the glasses
-        double rate_hz = 240.0;          // of each
-        double latency_ms = 4.0;         // from the motion to the frame
+        std::int64_t head_sensor = 0;    // index of the sensor on the glasses
+        double rate_hz = 240.0;          // of each sensor
+        double latency_ms = 4.0;         // from motion to CAN frame
         double reach_m = 1.6;
         // Registration: the tracker's origin and axes in the frame of the screen.
         std::array<double, 3> position_screen_m{0.0, 0.0, 0.0};
@@ -70,20 +71,19 @@ struct RtConfig {
     struct Lines {
         std::string driver = "none";
         std::string chip = "cp2112_gpio";  // label, name or path
-        // A line each: number or name, '!' before it where low is active; "": not fitted.
+        // One line each: number or name, with a leading '!' if active low; "": not fitted.
         std::string emergency_stop_a, emergency_stop_b, dead_man, amplifier;
-        std::string burr_pedal, suction_pedal;  // of tools; they stop nothing
+        std::string burr_pedal, suction_pedal;  // tool pedals; without a safety function
         std::string enable, watchdog, lamp;
-        std::string bias = "none";  // of the inputs, where the chip has one: "up", "down"
+        std::string bias = "none";  // input bias, if the chip supports one: "up", "down"
         bool edges = false;         // the chip has interrupts
-        double look_us = 1000.0;    // between two looks; a slow adapter takes longer
+        double look_us = 1000.0;    // sampling period; a slow adapter takes longer
         double release_ms = 30.0;
         double discrepancy_ms = 20.0;
         double follow_ms = 100.0;
         double age_us_max = 20000.0;
     } lines;
-    ArmParameterSet arm =
-        arm_parameter_set("premium-1.5");  // of real devices; [arm] is read by config_arm.cpp
+    ArmParameterSet arm = arm_parameter_set("premium-1.5");  // real devices; config_arm.cpp reads [arm]
     struct Shape {
         double force_scale = 1.0;
         double damping_n_s_m = 0.0;
@@ -93,18 +93,18 @@ struct RtConfig {
     } surface;
     struct Drilling {
         double burr_diameter_mm = 6.0;
-        std::string burr_shape = "sphere";      // or "cylinder", "cone"
-        double burr_length_mm = 8.0;            // of the head of those
-        double shaft_diameter_mm = 2.4;         // 0: no shaft
-        double burr_rpm = 60000.0;              // while the pedal is pressed
-        std::string pedal = "button";           // the stylus's second button; or "line", "always"
-        double irrigation_ml_min = 20.0;        // of water on the burr
-        std::string irrigation = "pedal";       // with the burr; or "always"
-        double suction_tube_diameter_mm = 2.0;  // of the tube in the second hand
-        std::string suction = "button";         // the second hand's second button; or "line", "always"
+        std::string burr_shape = "sphere";  // or "cylinder", "cone"
+        double burr_length_mm = 8.0;        // head length of a cylinder or cone
+        double shaft_diameter_mm = 2.4;     // 0: no shaft
+        double burr_rpm = 60000.0;          // while the pedal is pressed
+        std::string pedal = "button";       // second button of the stylus; or "line", "always"
+        double irrigation_ml_min = 20.0;    // water flow onto the burr
+        std::string irrigation = "pedal";   // while the burr runs; or "always"
+        double suction_tube_diameter_mm = 2.0;
+        std::string suction = "button";  // second button of the second stylus; or "line", "always"
         double suction_l_min = 20.0;
-        double rate_per_s = 40.0;  // of erosion, at 60 000 rpm
-        double vibration = 0.0;    // of the running burr, over the elastic force
+        double rate_per_s = 40.0;  // erosion rate at 60 000 rpm
+        double vibration = 0.0;    // amplitude while the burr runs, as a fraction of the elastic force
     } drilling;
     struct Safety {
         double force_n_max = 3.3;
@@ -123,21 +123,21 @@ struct RtConfig {
         double late_us_max = 5000.0;
         std::int64_t overruns_max = 5;
         std::string timing_latches = "real";  // "real": on real devices only; "always"; "never"
-        double supervisor_us_max = 5000.0;    // of the servo's silence; with safety lines
+        double supervisor_us_max = 5000.0;    // longest gap between servo heartbeats; with safety lines
         double gui_silent_ms = 500.0;
         std::string on_gui_silent = "continue";  // or "ramp"
     } safety;
     struct Govern {
         std::string law = "elastic";
         double goal_hz = 0.0;           // 0: the servo's rate; free running: 1000
-        double display_goal_hz = 30.0;  // frames a second; 0: none
-        double gain = 0.5;              // of the law "sensitus", as its tolerance
-        double tolerance = 0.02;
+        double display_goal_hz = 30.0;  // frames per second; 0: none
+        double gain = 0.5;              // of the law "sensitus"
+        double tolerance = 0.02;        // of the law "sensitus"
         double interval_ms = 100.0;
     } governor;
 };
 
-// One thing that is wrong with a configuration. The text is "where: key: what", and the fix.
+// One problem of a configuration. The text is "where: key: problem", followed by the fix.
 class ConfigError : public StartupError {
 public:
     ConfigError(std::string where_, std::string key_, std::string what_, std::string fix_)
@@ -146,35 +146,36 @@ public:
           key(std::move(key_)),
           problem(std::move(what_)),
           fix(std::move(fix_)) {}
-    std::string where;  // file and line, or what was read
-    std::string key;    // "servo.core"; empty: of the file as a whole
+    std::string where;  // file and line, or another source
+    std::string key;    // "servo.core"; empty: the whole file
     std::string problem, fix;
 };
 using ConfigErrors = std::vector<ConfigError>;
 
-// Overwrites what the file names. Throws the first error of the file.
+// Overwrites the keys that the file sets. Throws the first error of the file.
 void read_config(const std::string& path, RtConfig& config);
-// All errors of the file: what cannot be read, key by key, then what check_config() finds. config has the rest.
+// Returns all errors of the file: first those of reading, key by key, then those of check_config(). Sets the valid
+// keys in config.
 [[nodiscard]] ConfigErrors config_errors(const std::string& path, RtConfig& config);
-// Every key but those of [arm], with its value.
+// Every key except those of [arm], with its value.
 using ConfigValue = std::variant<double, std::int64_t, bool, std::string, std::vector<double>>;
 [[nodiscard]] std::vector<std::pair<std::string, ConfigValue>> config_values(const RtConfig& config);
-// Ranges of everything, whatever it came from; `where` heads the message.
+// Checks the ranges of all values, whether from file or command line; `where` starts the message.
 void check_config(const RtConfig& config, const std::string& where);
 
-// emulated: nobody's hand is on any of the devices.
+// emulated: no device is real, so no person holds one.
 [[nodiscard]] ServoSettings settings_from(const RtConfig& config, bool emulated);
 [[nodiscard]] DeviceSettings device_settings_from(const RtConfig& config);
-// Of the second hand: the same figures of the arm, another driver, serial and seed.
+// Second hand: same arm parameters; its own driver, serial and seed.
 [[nodiscard]] DeviceSettings device2_settings_from(const RtConfig& config);
 [[nodiscard]] LinesSettings lines_settings_from(const RtConfig& config);
 [[nodiscard]] TrackerSettings tracker_settings_from(const RtConfig& config);
 [[nodiscard]] HeadSettings head_settings_from(const RtConfig& config);
 [[nodiscard]] Duration duration_us(double us);
-// Whether the loop leaves its core to others between two cycles. Not where it was asked to spin all the time.
+// True if the loop yields its core between two cycles; false if it is free running or spins the whole period.
 [[nodiscard]] bool sleeps(const RtConfig::Servo& servo);
-// What is spent spinning: of a fast loop at most two fifths of its period, or it would hardly ever sleep, and a thread
-// under FIFO that does not sleep for a second is ended by the kernel.
+// Time spent spinning before a cycle. At most two fifths of the period of a sleeping loop: the kernel kills a FIFO
+// thread that does not sleep for a second.
 [[nodiscard]] Duration spin_tail(const RtConfig::Servo& servo);
 
 }  // namespace tact

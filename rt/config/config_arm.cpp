@@ -1,5 +1,4 @@
-// The section [arm] of the configuration: a model of the table in hal/arm, and figures of one's own arm over
-// it.
+// The section [arm] of the configuration: a model from the table in hal/arm, and parameters that override it.
 #include "rt/config/config_parts.hpp"
 
 #include <algorithm>
@@ -16,10 +15,10 @@ struct Place {
     std::string where, key;  // file:line, arm.name
 };
 
-constexpr const char* kFix = "hal/arm/README.md says what each key means";
+constexpr const char* kFix = "see hal/arm/README.md for the meaning of each key";
 
 std::string word_of(const toml::node& node, const Place& at) {
-    if (!node.is_string()) throw ConfigError(at.where, at.key, "this is not a text in quotes", kFix);
+    if (!node.is_string()) throw ConfigError(at.where, at.key, "this is not text in quotes", kFix);
     return node.value<std::string>().value_or("");
 }
 
@@ -55,7 +54,7 @@ void read_arm_section(const toml::table& section, const std::string& path, ArmPa
     const auto place = [&path](const std::string& name, const toml::node& node) {
         return Place{path + ":" + std::to_string(node.source().begin.line), "arm." + name};
     };
-    // The model first, wherever it stands: the other keys overwrite its figures.
+    // The model comes first, wherever it stands in the section: the other keys overwrite its parameters.
     if (const toml::node* model = section.get("model")) {
         collect(errors, [&] {
             const Place at = place("model", *model);
@@ -76,7 +75,7 @@ void read_arm_section(const toml::table& section, const std::string& path, ArmPa
             const auto* const found = std::find(words.begin(), words.end(), word);
             if (found == words.end()) {
                 throw ConfigError(at.where, at.key,
-                                  "\"" + word + R"(" is none of "none", "sensed", "driven")", kFix);
+                                  "\"" + word + R"(" is not one of "none", "sensed", "driven")", kFix);
             }
             arm.wrist = static_cast<Wrist>(found - words.begin());
             return;
@@ -87,7 +86,7 @@ void read_arm_section(const toml::table& section, const std::string& path, ArmPa
             known += std::string(known.empty() ? "" : ", ") + k.name;
         }
         throw ConfigError(at.where, at.key, "there is no such key",
-                          "remove it; there are model, wrist, " + known);
+                          "remove it; the keys are model, wrist, " + known);
     };
     for (const auto& [leaf, node] : section) {
         const std::string name(leaf.str());

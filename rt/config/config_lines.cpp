@@ -1,4 +1,4 @@
-// The section [lines] in the terms of hal.
+// Converts the section [lines] to the settings of hal.
 #include "rt/config/config.hpp"
 
 namespace tact {

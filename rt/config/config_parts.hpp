@@ -1,4 +1,4 @@
-// The parts that the configuration is read with: the list of keys, and sections that are more than a row per key.
+// Parts of the configuration reader: the table of keys, and sections that need more than one row per key.
 #pragma once
 
 #include <toml++/toml.h>
@@ -15,22 +15,22 @@
 
 namespace tact {
 
-// One row a key: where it goes and what it may be. The only list of keys there is.
+// One row per key: its target and its valid values. The only list of keys.
 struct ConfigKey {
     std::string name;
     std::variant<double*, std::int64_t*, bool*, std::string*, std::span<double>> target;
     double low = -std::numeric_limits<double>::infinity(), high = std::numeric_limits<double>::infinity();
-    std::vector<std::string> words;  // of a text that is one of a few
+    std::vector<std::string> words;  // the valid texts; empty: any
 };
 [[nodiscard]] std::vector<ConfigKey> keys_of(RtConfig& config);
-// Empty: fine. Else what is wrong with the value that the key has now.
+// Describes the problem with the key's current value; empty if it is valid.
 [[nodiscard]] std::string complaint(const ConfigKey& key);
-// The known key that shares most of its beginning and end with a wrong one.
+// The known key with the longest common prefix and suffix.
 [[nodiscard]] std::string nearest(const std::vector<ConfigKey>& keys, const std::string& name);
-// Sets the key, also to a value that is then refused. where: of the error that it throws.
+// Sets the key and checks only the type. where: location for the error that it throws.
 void set_key(const ConfigKey& key, const toml::node& node, const std::string& where);
 
-// Runs one step of reading and keeps the error that it throws.
+// Runs one reading step and collects the error that it throws.
 template <class F>
 void collect(ConfigErrors& errors, F step) {
     try {
@@ -40,11 +40,11 @@ void collect(ConfigErrors& errors, F step) {
     }
 }
 
-// [arm] of the file at path.
+// Reads the section [arm]. path: of the file, for messages.
 void read_arm_section(const toml::table& section, const std::string& path, ArmParameterSet& arm,
                       ConfigErrors& errors);
 
-// A number as the messages name it.
+// Formats a number for messages.
 std::string number_text(double v);
 
 }  // namespace tact

@@ -1,4 +1,4 @@
-// Reads the configuration and checks it: all errors are collected, and who starts a controller throws the first.
+// Reads and checks the configuration. Collects all errors; a starting controller throws the first one.
 #include <toml++/toml.h>
 
 #include <algorithm>
@@ -23,7 +23,7 @@ constexpr const char* kSections =
     "[servo], [device], [device2], [arm], [tracker], [lines], [shape], [surface], [drilling], [safety] or "
     "[governor]";
 
-// Names of files and recordings made before 2026-11-25.
+// Key names in files and recordings made before 2026-11-25.
 constexpr std::pair<std::string_view, std::string_view> kFormerKeys[] = {
     {"drilling.sucker_diameter_mm", "drilling.suction_tube_diameter_mm"},
     {"governor.picture_goal_hz", "governor.display_goal_hz"},
@@ -41,7 +41,7 @@ void read_section(const std::string& section, const toml::table& table, const st
                                    [&](const ConfigKey& k) { return k.name.rfind(section + ".", 0) == 0; });
     if (!known && table.empty())
         errors.emplace_back(at(path, table.source()), "[" + section + "]", "there is no such section",
-                            std::string("remove it; there are ") + kSections);
+                            std::string("remove it; the sections are ") + kSections);
     for (const auto& [leaf, value] : table) {
         const std::string name = current_key(section + "." + std::string(leaf.str()));
         const std::string where = at(path, value.source());
@@ -56,17 +56,17 @@ void read_section(const std::string& section, const toml::table& table, const st
     }
 }
 
-// Of "path:12"; 0: of no line.
+// The line number in "path:12"; 0: none.
 int line_of(const ConfigError& e) {
     const auto colon = e.where.rfind(':');
     return colon == std::string::npos ? 0 : std::atoi(e.where.c_str() + colon + 1);
 }
 
-// In the order of the file.
+// Returns the errors in file order.
 ConfigErrors read_all(const std::string& path, RtConfig& config) {
     constexpr const char* kReadable = "give the path of a readable file to --config, or leave it out";
     std::error_code error;
-    if (std::filesystem::is_directory(path, error))  // which the library reads as an empty file
+    if (std::filesystem::is_directory(path, error))  // the library would read it as an empty file
         return {{"reading the configuration " + path, "", "this is a folder", kReadable}};
     toml::table file;
     try {
@@ -103,12 +103,12 @@ void check_pedals(const RtConfig& config, const std::string& where, ConfigErrors
           std::tuple("drilling.suction", &config.drilling.suction, &config.lines.suction_pedal)}) {
         const bool wired = config.lines.driver == "sim" || (config.lines.driver != "none" && !line->empty());
         if (*pedal == "line" && !wired)
-            errors.emplace_back(where, key, "no line of a pedal is named",
+            errors.emplace_back(where, key, "no input line is configured for this pedal",
                                 "set lines.driver, and lines.burr_pedal or lines.suction_pedal");
     }
 }
 
-// Whatever the values came from.
+// Checks all values, whether from file or command line.
 ConfigErrors check_all(const RtConfig& config, const std::string& where) {
     ConfigErrors errors;
     RtConfig copy = config;
@@ -122,6 +122,14 @@ ConfigErrors check_all(const RtConfig& config, const std::string& where) {
             "the tracker has no sensor " + std::to_string(config.tracker.head_sensor),
             "choose 0 to " + std::to_string(config.tracker.sensors - 1) + ", or raise tracker.sensors");
     }
+    const double model_us_most = kModelShareMost * config.servo.period_us;
+    if (!config.servo.free_running && config.servo.model_us_max > model_us_most) {
+        errors.emplace_back(where, "servo.model_us_max",
+                            number_text(config.servo.model_us_max) +
+                                " us leave no time for the rest of the cycle in a period of " +
+                                number_text(config.servo.period_us) + " us",
+                            "choose at most " + number_text(model_us_most) + ", or 0 to follow the period");
+    }
     check_pedals(config, where, errors);
     const auto drivers = device_drivers();
     const bool real = std::any_of(drivers.begin(), drivers.end(), [&](const DeviceEntry& d) {
@@ -130,14 +138,13 @@ ConfigErrors check_all(const RtConfig& config, const std::string& where) {
     const bool arms_told_apart = !config.device.serial.empty() && !config.device2.serial.empty() &&
                                  config.device.serial != config.device2.serial;
     if (config.device2.driver == config.device.driver && real && !arms_told_apart) {
-        errors.emplace_back(where, "device2.serial",
-                            "two devices of one driver are told apart by their serials",
-                            "give device.serial and device2.serial, two different ones");
+        errors.emplace_back(where, "device2.serial", "two devices of one driver need different serials",
+                            "set device.serial and device2.serial to the serials of the two devices");
     }
     const double norm = Quat(config.tracker.quat_screen_tracker_xyzw.data()).norm();
     if (!(std::abs(norm - 1.0) < 0.01)) {
         errors.emplace_back(where, "tracker.quat_screen_tracker_xyzw",
-                            "its length is " + number_text(norm) + ", a rotation has 1",
+                            "the quaternion has length " + number_text(norm) + " instead of 1",
                             "give x, y, z, w of a unit quaternion; no rotation is 0, 0, 0, 1");
     }
     return errors;

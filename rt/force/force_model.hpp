@@ -1,10 +1,10 @@
-// A haptic model: pose and budget in, wrench out. It knows no device and no clock source.
+// A haptic model: pose and budget in, wrench out. It depends on no device and no clock source.
 //
-// Topic    what only one system has to show, the model publishes itself, in a topic of its own: publish().
-// Bodies   what the tool takes hold of: placed copies of the scene's structures. Orders change them, in
-//          constant time, at a cycle boundary.
-// Rebuild  what an order asks for and no constant time can give (another density, say) is stale() until a
-//          model made aside by rebuild() has taken over by adopt().
+// Topic    A model publishes data specific to its system in a topic of its own: publish().
+// Bodies   Placed copies of the scene's structures, which the tool can grip. Orders change them in constant time at
+//          a cycle boundary.
+// Rebuild  Orders that need more than constant time (for example another density) make the model stale() until
+//          rebuild() has made a new model on another thread and adopt() has replaced the old one.
 #pragma once
 
 #include <array>
@@ -17,7 +17,7 @@
 
 namespace tact {
 
-inline constexpr std::uint32_t kDriveButton = 1U << 1;  // drives the tool while it is held
+inline constexpr std::uint32_t kDriveButton = 1U << 1;  // drives the tool while held
 
 struct ToolState {
     Pose T_world_tool;
@@ -25,11 +25,11 @@ struct ToolState {
     std::uint32_t buttons = 0;  // bit 0: clutch (held: the tool moves alone); kDriveButton
 };
 
-// What drives the tool of a hand during the next step.
+// Drive state of a tool during the next step.
 struct ToolDrive {
-    bool enabled = false;  // the force is on; only then does anything run
+    bool enabled = false;  // the force is on; tools run only then
     bool on = false;       // enabled, and the switch of this tool is on
-    double step_s = 1e-3;  // since the step before
+    double step_s = 1e-3;  // time since the last step
 };
 
 enum class StepStatus : std::uint8_t { ok, out_of_time, out_of_range };
@@ -38,100 +38,109 @@ struct StepResult {
     Wrench wrench_world;  // at the tool's origin
     PathLoad load;        // error in newtons
     StepStatus status = StepStatus::ok;
-    std::uint32_t trace_flags = 0;  // of the model, as TraceTopic::status has them: bits 16 to 31
+    std::uint32_t trace_flags = 0;  // model-specific bits 16 to 31 of TraceTopic::status
 };
 
-// The bodies of a model. An id stays with its body; its place in these lists does not, as bodies are removed.
+// The bodies of a model. A body keeps its id; its index in these lists changes when bodies are removed.
 struct ModelBodies {
     static constexpr std::size_t kMax = 16;
-    static constexpr std::uint32_t kNone = 0xFFFFFFFFU;  // as active: the hand holds none
-    static constexpr std::uint16_t kFixed = 1U << 0;     // as flag: the hand does not move it
+    static constexpr std::uint32_t kNone = 0xFFFFFFFFU;  // value of active: no body held
+    static constexpr std::uint16_t kFixed = 1U << 0;     // flag: the hand does not move the body
     std::uint32_t count = 0;
-    std::uint32_t active = 0;  // index of the one in the hand, or kNone
+    std::uint32_t active = 0;  // index of the held body, or kNone
     std::array<Pose, kMax> T_model_body;
-    std::array<std::uint32_t, kMax> id{};         // from 1, never used again
+    std::array<std::uint32_t, kMax> id{};         // from 1, never reused
     std::array<std::uint16_t, kMax> structure{};  // index in the scene
     std::array<std::uint16_t, kMax> flags{};
-    std::uint64_t grips = 0;          // rises whenever the tool takes hold: a gesture begins
-    std::uint64_t placements = 0;     // rises whenever an order put a body somewhere, added or removed one
-    std::uint64_t others = 0;         // rises whenever the bodies besides the active one changed
-    std::uint32_t options = 0;        // as felt now, bits of the model's own numbering
-    std::uint32_t options_asked = 0;  // and as ordered; they differ while a model is built aside
+    std::uint64_t grips = 0;          // increases when the tool grips a body (start of a gesture)
+    std::uint64_t placements = 0;     // increases when an order places, adds or removes a body
+    std::uint64_t others = 0;         // increases when a body other than the active one changes
+    std::uint32_t options = 0;        // options in use; the model defines the bits
+    std::uint32_t options_asked = 0;  // options ordered; they differ from options during a rebuild
 };
 
-// What a person asks of the model.
+// An order of the user.
 struct ModelOrder {
     enum class Kind : std::uint8_t {
-        select,  // takes the body into the hand; ModelBodies::kNone: lets go
-        fix,     // on: the hand does not move it, and feels nothing of it
-        place,   // puts it at T_model_body
-        add,     // a copy of structure `body`, at T_model_body, not in the hand
-        remove,  // never the last one
-        setting,  // of one system: `command`, with `body`, `value` and T_model_body.p_m as that command has them
+        select,   // grips the body; ModelBodies::kNone: releases
+        fix,      // on: the hand neither moves the body nor feels it
+        place,    // moves the body to T_model_body
+        add,      // adds a copy of structure `body` at T_model_body, not gripped
+        remove,   // removes the body, unless it is the last one
+        setting,  // system-specific `command`, which defines the use of `body`, `value` and T_model_body.p_m
     };
     Kind kind = Kind::select;
     std::uint8_t command = 0;  // CommandKind
     bool on = false;           // value is not 0
-    std::uint32_t body = 0;    // an id; of add: index of a structure
+    std::uint32_t body = 0;    // body id; for add: index of a structure
     double value = 0.0;
     Pose T_model_body;
 };
 
 // Period of a model's slow update.
 inline constexpr Duration kSlowUpdatePeriod = std::chrono::milliseconds(4);
+// Largest fraction of that period that an update may take before the level falls.
+inline constexpr double kSlowUpdateFraction = 0.9;
 
-// A cycle of the servo loop, for what a model publishes of it.
+// The servo cycle of which a model publishes.
 struct ModelCycle {
     Instant now{};
     std::uint64_t cycle = 0;
-    std::uint32_t hand = 0;  // that holds the model's tool
+    std::uint32_t hand = 0;  // index of the hand that holds the model's tool
     const StepResult& step;  // of this cycle
 };
 
 class ForceModel {  // constructed off the servo thread; construction may throw, steps may not
 public:
     virtual ~ForceModel() = default;
-    // Of the body in the hand; start is a level that fits any budget.
+    // The fidelity knob of the held body; its start level fits any budget.
     [[nodiscard]] virtual KnobSpec knob() const noexcept TACT_RT = 0;
-    // Points, blocks or vertices felt at a level; the governor publishes it.
+    // Number of points, blocks or vertices that a level evaluates; the governor publishes it.
     [[nodiscard]] virtual std::uint32_t items(float fidelity) const noexcept TACT_RT = 0;
-    // Cost (cost_predicted), error and items of a whole step at a level, for the body in the hand, before it is made.
+    // Predicts cost (cost_predicted), error and items of a full step at a level, for the body in the hand.
     // The cost may be off by a factor common to all levels: the governor measures that factor. Constant time.
     [[nodiscard]] virtual PathLoad predict(float /*fidelity*/) const noexcept TACT_RT { return {}; }
     virtual void reset(const ToolState& tool) noexcept TACT_RT = 0;  // the bodies stay where they are
-    // The largest stiffness that the hand can meet in it, N/m; 0: nobody knows.
+    // The largest stiffness of the model, N/m; 0: unknown.
     [[nodiscard]] virtual double stiffness_n_m() const noexcept TACT_RT { return 0.0; }
-    // True: slow_update() has something to do. Such a model stays until the run ends.
+    // True: the model needs slow_update(). Such a model stays until the run ends.
     [[nodiscard]] virtual bool has_slow_update() const noexcept { return false; }
-    // Slow half, own thread, tens of hertz or more: prepares what the next steps will need. When its turns come
-    // changes the time of a step and never its force: a replay has none.
+    // Runs on a thread of its own at tens of hertz or more and prepares data for the next steps. Its timing may change
+    // the duration of a step, never its force: a replay does not run it.
     virtual void slow_update(const ToolState& /*predicted*/, const Budget& /*budget*/) noexcept {}
-    // What a turn of it takes lately; 0: there is none. Where it takes longer than it has, the level is too high.
+    // Recent duration of a slow update, s; 0: none. If it exceeds its period, the level is too high.
     [[nodiscard]] virtual double slow_update_s() const noexcept TACT_RT { return 0.0; }
-    // Before each step.
-    virtual void drive(const ToolDrive& /*drive*/) noexcept TACT_RT {}
-    // Fast half, every cycle. Out of time, it returns the best usable wrench found so far.
+    // Before each step. An override calls this one too.
+    virtual void drive(const ToolDrive& drive) noexcept TACT_RT { step_s_ = drive.step_s; }
+    // Runs every cycle. Out of time, it returns the best usable wrench found so far.
     virtual StepResult step(const ToolState& tool, const Budget& budget) noexcept TACT_RT = 0;
     [[nodiscard]] virtual ModelBodies bodies() const noexcept TACT_RT = 0;
-    // Publishes the model's own topic, once a cycle, after the force was sent. A model of which nothing besides bodies
-    // and load is shown has none.
+    // Publishes the model's own topic, once per cycle, after the force was sent. Models for which bodies and load
+    // suffice have no topic.
     virtual void publish(const ModelCycle& /*cycle*/) noexcept TACT_RT {}
 
-    // Constant time, between steps. No order makes the force step: what was felt fades out, and what is felt
-    // from then on fades in from zero. False: refused, and nothing changed.
+    // Constant time, between steps. No order causes a force step: the old force fades out, then the new one fades in
+    // from zero. False: refused, nothing changed.
     virtual bool order(const ModelOrder& /*order*/) noexcept TACT_RT { return false; }
-    // True: what is felt is not what was ordered, or no longer fits the bodies, and rebuild() makes it right.
+    // True: the force does not match the orders or the bodies; rebuild() is needed.
     [[nodiscard]] virtual bool stale() const noexcept TACT_RT { return false; }
-    // A model as ordered, for the bodies as they were. Off the servo thread, while steps and orders go on
-    // here; may throw, and may take seconds. Null: there is nothing to build.
+    // Builds a model as ordered, for the given bodies. Runs off the servo thread, while steps and orders continue on
+    // this model; may throw, and may take seconds. Null: nothing to build.
     [[nodiscard]] virtual std::unique_ptr<ForceModel> rebuild(const ModelBodies& /*bodies*/) const {
         return nullptr;
     }
-    // Before the first step of a rebuilt model: takes over the bodies, the grip and the orders since, and
-    // lets the old force fade. False: old is no model of this kind; reset() it then.
+    // Before the first step of a rebuilt model: takes over bodies, grip and later orders from the old model, and fades
+    // out its force. False: old is of another kind; the caller must then reset() this model.
     virtual bool adopt(const ForceModel& /*old*/) noexcept TACT_RT { return false; }
-    // rebuild() failed: takes back what was ordered, so that it is not asked for again.
+    // rebuild() failed: reverts the order, so that stale() becomes false.
     virtual void give_up() noexcept TACT_RT {}
+
+protected:
+    // Length of the present step (s), as given to drive().
+    [[nodiscard]] double step_s() const noexcept TACT_RT { return step_s_; }
+
+private:
+    double step_s_ = ToolDrive{}.step_s;
 };
 
 }  // namespace tact

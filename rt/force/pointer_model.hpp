@@ -1,6 +1,6 @@
-// A hand that holds nothing: it is shown where it is, and feels the walls of its workspace alone (rt/safety).
+// The model of an empty hand: a pointer in the display, without force except for the workspace walls (rt/safety).
 //
-// For the second of two arms: the bodies are in the first hand.
+// Used for the second of two arms when only the first hand holds bodies.
 // Thread  servo; TACT_RT
 #pragma once
 

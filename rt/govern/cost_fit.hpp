@@ -1,9 +1,9 @@
-// How much cheaper a path becomes when its level falls: the elasticity of its cost, d ln(cost) / d ln(level).
+// Elasticity of a path's cost with respect to its level: d ln(cost) / d ln(level).
 //
-// Model     cost = fixed + rate * level, least squares over what was measured, old measurements fading
-// Prior     half of the cost is fixed. Levels that never move tell nothing, and then the prior stands; it
-//           weighs as much as a spread of the levels by kPriorSpread of themselves
-// Bounded   the elasticity lies in [kLeast, 1] whatever is measured; what is no cost is left out
+// Model     cost = fixed + rate * level; least squares over the measurements, with decaying weights
+// Prior     half of the cost is fixed. While the level does not move, the prior decides; it weighs as much as
+//           measurements whose levels have a relative spread of kPriorSpread
+// Bounded   the elasticity lies in [kLeast, 1] for any input; impossible costs and levels are ignored
 #pragma once
 
 #include <algorithm>

@@ -1,12 +1,11 @@
-// Which words of the visual process may be believed: those of frames that applied the levels as they stand.
+// Selects the frame reports of the visual process that measure the present visual levels.
 //
-// asked()    a visual level has changed with this sequence of the levels
-// pending()  no frame has applied yet, and it has not been silent about it for kAnswerMax_s: what is measured
-//            meanwhile says nothing about the levels that stand
-// take()     once for each frame that applied. Words in between were not seen, so costs are a mean over them;
-// of
-//            several frames of which the first did not apply yet, they are the costs of no level and left out
-// Hostile    any numbers; the governor judges times, this judges order
+// asked()    records that a visual level changed with this sequence number
+// pending()  true until a frame has applied the change, for at most kAnswerMax_s; measurements taken meanwhile do
+//            not describe the present levels
+// take()     returns one sample per frame that applied them. Reports can be skipped, so costs are means over the
+//            skipped frames; a mean that includes frames from before the change is dropped
+// Hostile    accepts any numbers: this class checks the order of reports, the governor checks the times
 #pragma once
 
 #include <algorithm>
@@ -20,11 +19,11 @@ namespace tact {
 
 struct PictureWord {
     std::uint64_t frame = 0;
-    std::uint64_t levels_sequence = 0;  // of the levels that this frame applied
+    std::uint64_t levels_sequence = 0;  // sequence of the levels that this frame applied
     std::int64_t taken_at_ns = 0;
-    double work_s = 0.0;  // of the frame, without its pause
-    double cpu_s = 0.0;   // processor time of the visual process since its start
-    bool drawn = false;   // there was something to draw
+    double work_s = 0.0;  // time to draw the frame, without the pause after it
+    double cpu_s = 0.0;   // processor time of the visual process since it started
+    bool drawn = false;   // the frame had something to draw
 };
 
 class DisplayWatch {
@@ -41,7 +40,7 @@ public:
     }
     [[nodiscard]] std::optional<DisplaySample> take(const PictureWord& w) noexcept TACT_RT {
         if (w.frame == last_.frame) return std::nullopt;
-        const bool first = w.frame < last_.frame || last_.frame == 0;  // of this visual process
+        const bool first = w.frame < last_.frame || last_.frame == 0;  // first report of this visual process
         const bool applied_before = applied_;
         const double frames = first ? 1.0 : static_cast<double>(w.frame - last_.frame);
         const DisplaySample look{.work_s = w.work_s,

@@ -1,17 +1,17 @@
 // The law "elastic".
 //
-// Force loop and picture share processors. With g the share that the picture takes, the loop gets a constant
-// part of the rest (all of it, or what fair scheduling leaves it beside other programs): r ~ 1 - g. With
-// V the level and n = d ln g / d ln V the elasticity of its cost,
-//     d ln r / d ln V = - n g / (1 - g),      so an error e = (r - r_g) / r_g asks for
+// Force loop and display share processors. Let g be the processor fraction of the display. The loop gets a
+// constant part of the rest (all of it, or its fair share beside other programs): r ~ 1 - g. With the level V
+// and the elasticity n = d ln g / d ln V of the display's cost,
+//     d ln r / d ln V = - n g / (1 - g),      so an error e = (r - r_g) / r_g requires
 //     ln V <- ln V + k e (1 - g) / (n g).
 // g and n are measured (processor time of the visual process, cost_fit.hpp); the load of other programs and
-// the cost of an update need not be known. The seed's law is the same with a constant s for k (1 - g) / (n
-// g), which runs from below 1 for a full picture to 50 for a coarse one: hence its slow return where V is
-// small.
+// the cost of an update need not be known. The law "sensitus" is the same with a constant s in place of
+// k (1 - g) / (n g). That factor grows from below 1 at full detail to 50 at a coarse level, so "sensitus"
+// returns slowly where V is small.
 //
-// Levels go down at once and by the whole of it (k = 1), up by half of it, kHold_s after the last way down,
-// and never by more than kDownMost and kUpMost at a time. Frame times are governed by the same model:
+// Levels fall at once by the full step (k = 1). They rise by half a step, kHold_s after the last fall. A step
+// is limited to kDownMost down and kUpMost up. Frame times follow the same model:
 //     ln V <- ln V - ln(t / t_g) / n.
 #include "rt/govern/governor.hpp"
 
@@ -25,18 +25,19 @@ namespace {
 constexpr double kHold_s = 0.5;
 constexpr double kDownGain = 1.0, kUpGain = 0.5;
 constexpr double kDownMost = 1.4, kUpMost = 0.3;  // in ln V
-// A picture that never pauses takes the share that others leave it, whatever it draws: the model holds only
-// once it pauses again. Only for an error that is worth a leap: a picture may also rest where it just pauses.
+// A display that never pauses takes whatever processor time is left, at any level, so the model does not hold.
+// A large rate error then lowers the level by at least this step, until the display pauses again.
 constexpr double kDownToPause = 0.7, kNoPause = 0.97, kFarOff = 0.04;
-constexpr double kTolerance = 0.002;  // of the law "elastic", beside the flicker
-constexpr double kAim = 1.002;  // of the goal: what is left of flicker should lie above it as often as below
-constexpr double kPictureTolerance = 0.05;  // of a frame's time above its goal
-constexpr double kPictureRoom = 0.85;       // of its goal, up to which a frame may grow
-// Below this elasticity half of the picture would save less than a fourteenth of a frame: it stays.
+constexpr double kTolerance = 0.002;        // of the law "elastic", added to the flicker
+constexpr double kAim = 1.002;              // of the goal: centres the remaining flicker on the goal
+constexpr double kPictureTolerance = 0.05;  // excess of a frame's time over its goal
+constexpr double kPictureRoom = 0.85;       // fraction of the goal time up to which a frame may grow
+// Below this elasticity, halving the level saves less than a fourteenth of a frame: the level stays.
 constexpr double kWorthwhile = 0.1;
-// A level is a factor: below this one it would need many steps to come back, and nothing is cheaper there.
+// Levels change by factors. A lower level would need many steps to recover and would save nothing.
 constexpr double kLeastLevel = 1e-3;
 constexpr double kShareLeast = 0.02, kShareMost = 0.9;
+constexpr double kBudgetLeast = 0.05;  // least budget of a fitted path
 
 bool possible(const KnobSpec& knob) noexcept {
     return knob.floor >= 0.0F && knob.floor <= 1.0F && knob.start >= knob.floor && knob.start <= 1.0F &&
@@ -82,6 +83,7 @@ bool Governor::apply_requests(double dt_s) noexcept {
 bool Governor::say_hold() noexcept {
     bool changed = false;
     for (std::size_t i = 0; i < count_; ++i) {
+        if (paths_[i].fitted) continue;
         changed = changed || paths_[i].reason != LevelReason::hold;
         paths_[i].reason = LevelReason::hold;
     }
@@ -115,10 +117,10 @@ double Governor::visual_level() const noexcept {
     return 1.0;
 }
 
-// Factor by which visual levels may grow before a frame takes too long; no limit without a goal or a picture.
+// Factor by which visual levels may rise before a frame takes too long; unlimited without a display goal.
 double Governor::picture_room() const noexcept {
     if (settings_.display_goal_hz <= 0.0) return 1e9;
-    if (frame_s_ <= 0.0) return 1.0;  // wait for what the present levels cost
+    if (frame_s_ <= 0.0) return 1.0;  // the cost of the present levels is not known yet
     const double spare = kPictureRoom / (settings_.display_goal_hz * frame_s_);
     if (spare <= 1.0) return 1.0;
     return std::exp(std::min(kUpGain * std::log(spare) / display_cost_.elasticity(visual_level()), kUpMost));
@@ -162,7 +164,7 @@ bool Governor::update(const DisplaySample& picture) noexcept {
     if (settings_.law == Law::fixed || settings_.display_goal_hz <= 0.0 || picture.work_s <= 0.0)
         return false;
 
-    // A frame that takes very long is believed at once, else the better one of two: hitches are no load.
+    // A very slow first frame counts at once; otherwise the faster of two frames counts, so a single hitch does not.
     const double goal_s = 1.0 / settings_.display_goal_hz;
     const bool first = frame_s_ <= 0.0;
     const double believed = first ? (picture.work_s > 2.0 * goal_s ? picture.work_s : 0.0)
@@ -186,22 +188,24 @@ bool Governor::update(const DisplaySample& picture) noexcept {
     return true;
 }
 
-// One kind of path by one factor. True: at least one of them moved.
+// Scales all present paths of one kind by one factor. True: at least one of them moved.
 bool Governor::scale(bool haptic, double factor, double dt_s, LevelReason up_or_down,
                      LevelReason stuck) noexcept {
     bool moved = false;
     for (std::size_t i = 0; i < count_; ++i) {
         GovernedPath& p = paths_[i];
-        if (!p.present || p.knob.haptic != haptic) continue;
-        const double before = static_cast<double>(p.level);
+        if (!p.present || p.knob.haptic != haptic || (p.fitted && !settings_.free_running)) continue;
+        float& value = p.fitted ? p.budget : p.level;
+        const double floor = p.fitted ? kBudgetLeast : static_cast<double>(p.knob.floor);
+        const double before = static_cast<double>(value);
         const double base = factor > 1.0 ? std::max(before, kLeastLevel) : before;
-        const double least = std::max(static_cast<double>(p.knob.floor), std::min(before, kLeastLevel));
+        const double least = std::max(floor, std::min(before, kLeastLevel));
         double wanted = std::clamp(base * factor, least, 1.0);
         if (factor > 1.0) wanted = std::min(wanted, before + static_cast<double>(p.knob.slew_per_s) * dt_s);
         const auto level = static_cast<float>(wanted);
-        moved = moved || level != p.level;
-        p.reason = level == p.level ? stuck : up_or_down;
-        p.level = level;
+        moved = moved || level != value;
+        if (!p.fitted) p.reason = level == value ? stuck : up_or_down;
+        value = level;
     }
     if (moved && !haptic) frame_s_ = 0.0;
     return moved;
@@ -223,7 +227,23 @@ bool Governor::set_level(std::size_t path, double level) noexcept {
     return true;
 }
 
-// The law "fixed" starts with the levels as they are, so that nothing jumps.
+bool Governor::set_fitted_level(std::size_t path, float level, LevelReason reason) noexcept {
+    if (path >= count_ || settings_.law == Law::fixed || !(level >= 0.0F && level <= 1.0F)) return false;
+    GovernedPath& p = paths_[path];
+    p.fitted = true;
+    p.reason = reason;
+    const float before = p.level;
+    p.level = std::max(level, p.knob.floor);
+    return p.level != before;
+}
+
+bool Governor::visual_can_give() const noexcept {
+    return std::any_of(
+        paths_.begin(), paths_.begin() + static_cast<std::ptrdiff_t>(count_),
+        [](const GovernedPath& p) { return p.present && !p.knob.haptic && p.level > p.knob.floor; });
+}
+
+// The law "fixed" starts from the present levels, so that no level jumps.
 void Governor::set_law(Law law) noexcept {
     if (law == Law::fixed && settings_.law != Law::fixed) {
         for (std::size_t i = 0; i < count_; ++i) paths_[i].requested = paths_[i].level;

@@ -1,13 +1,14 @@
-// The one place that turns fidelity knobs.
+// Holds the fidelity level of each path and moves the levels by a named law (law.hpp).
 //
-// Runs on   servo thread: step() every so many milliseconds, look() at each frame that applied; constant time
-// In        the rate of the force loop, what the picture costs, and which paths are there
+// Runs on   servo thread: step() once an interval, update() for each frame that applied the levels; constant time
+// In        rate of the force loop, cost of the display, and the paths that are present
 // Out       one level per path, within [floor, 1]; whether any changed
-// Goals     of the force rate, always; of the picture's own rate, where one is set and somebody draws
-// Order     rate too low: visual levels first, all by the same factor; haptic ones only when no visual one
-//           can give more. Rate to spare: haptic ones first. Down at once, up no faster than the knob's slew,
-//           and visual ones only where the picture has time to spare too
-// Wind-up   none: the levels themselves are all that is integrated, and they are clamped
+// Fitted    the level of a fitted path comes from level_fit.hpp; the law moves the budget of such a path instead
+// Goals     the force rate, always; the display rate, where a goal is set and a visual process is attached
+// Order     rate too low: visual levels first, all by the same factor; haptic paths only when no visual level can
+//           fall further. Rate to spare: haptic paths first. Levels fall at once and rise no faster than the
+//           knob's slew rate; visual levels rise only where the display has time to spare too
+// Wind-up   none: the clamped levels are the only integrator state
 #pragma once
 
 #include <array>
@@ -28,24 +29,29 @@ namespace tact {
 struct GovernorSettings {
     Law law = kDefaultLaw;
     double goal_hz = 1000.0;
-    double display_goal_hz = 0.0;  // 0: the picture has no goal of its own
-    double gain = 0.5;             // s of the law "sensitus"
-    double tolerance = 0.02;       // epsilon of the law "sensitus"
+    double display_goal_hz = 0.0;  // 0: no goal for the display rate
+    double gain = 0.5;             // gain s of the law "sensitus"
+    double tolerance = 0.02;       // relative tolerance of the law "sensitus"
+    // A freely running loop shares its processor: its rate moves the budget of fitted paths. At a fixed rate it does not.
+    bool free_running = false;
 };
 
 struct GovernedPath {
     KnobSpec knob;
     float level = 1.0F;
-    float requested = 1.0F;  // by a person, for the law "fixed"
-    bool present = true;     // an absent path (no GUI attached) keeps its level and takes no part
+    float requested = 1.0F;  // level set by a person, for the law "fixed"
+    bool present = true;     // an absent path (no GUI attached) keeps its level
+    // The level of a fitted path comes from level_fit.hpp; the law moves its budget by the factor for its kind.
+    bool fitted = false;
+    float budget = 1.0F;
     LevelReason reason = LevelReason::start;
 };
 
-// A frame that was drawn with the present levels.
+// Cost of a frame that was drawn with the present levels.
 struct DisplaySample {
-    double work_s = 0.0;       // its time, without the pause that keeps to a highest rate of pictures
-    double processor_s = 0.0;  // of the visual process, since the frame before
-    double period_s = 0.0;     // since the frame before
+    double work_s = 0.0;       // time to draw it, without the pause of a frame-rate limit
+    double processor_s = 0.0;  // processor time of the visual process since the previous frame
+    double period_s = 0.0;     // time since the previous frame
 };
 
 class Governor {
@@ -54,24 +60,28 @@ public:
 
     explicit Governor(const GovernorSettings& settings) noexcept;
 
-    // Before the loop starts. The index of the path; kPathsMax where the table is full or the knob
-    // impossible.
+    // Call before the loop starts. Returns the index of the path; kPathsMax where the table is full or the knob
+    // is impossible.
     std::size_t add(const KnobSpec& knob) noexcept;
-    // Another load on the same path, at its start level; what a person set is then gone to by the knob's
-    // slew. An impossible knob leaves the old one.
+    // Puts another load on the path, at its start level. A level that a person set is then approached at the
+    // knob's slew rate. An impossible knob changes nothing.
     void replace(std::size_t path, const KnobSpec& knob) noexcept TACT_RT;
-    // True: a level or its reason changed. rate_hz of the last interval, dt its length.
+    // Applies the law to the rate of the last interval, whose length is dt. True: a level or its reason changed.
     bool step(double rate_hz, Duration dt) noexcept TACT_RT;
-    // One frame, once, and only one that applied the levels as they are. True as above.
+    // Call once for each frame that applied the present levels. True as for step().
     bool update(const DisplaySample& picture) noexcept TACT_RT;
 
     bool set_goal_hz(double goal_hz) noexcept TACT_RT;                // false: not a rate
-    bool set_level(std::size_t path, double level) noexcept TACT_RT;  // turns the law to "fixed"
+    bool set_level(std::size_t path, double level) noexcept TACT_RT;  // selects the law "fixed"
     void set_law(Law law) noexcept TACT_RT;
+    // Makes the path a fitted one and sets its level; refused under the law "fixed". True: the level changed.
+    bool set_fitted_level(std::size_t path, float level, LevelReason reason) noexcept TACT_RT;
     void set_present(std::size_t path, bool present) noexcept TACT_RT;
 
     [[nodiscard]] std::span<const GovernedPath> paths() const noexcept { return {paths_.data(), count_}; }
     [[nodiscard]] float level(std::size_t path) const noexcept { return paths_[path].level; }
+    // True: a visual path is above its floor.
+    [[nodiscard]] bool visual_can_give() const noexcept;
     [[nodiscard]] const GovernorSettings& settings() const noexcept { return settings_; }
 
 private:
@@ -92,12 +102,12 @@ private:
 
     RateFilter rate_;
     CostFit display_cost_;
-    double display_fraction_ = 0.0;  // of a processor, that the visual process has; filtered
-    double frame_s_ = 0.0;           // work of a frame, filtered; 0: none seen since the last change
+    double display_fraction_ = 0.0;  // fraction of one processor used by the visual process; filtered
+    double frame_s_ = 0.0;           // time to draw a frame, filtered; 0: no frame since the last change
     double frame_before_s_ = 0.0;
     double since_down_s_ = 1e9;
-    double display_busy_ = 0.0;   // share of its time that it draws, filtered; 1: it never pauses
-    bool display_binds_ = false;  // the last visual level that was given up, was for the picture's own goal
+    double display_busy_ = 0.0;   // fraction of the time spent drawing, filtered; 1: no pauses
+    bool display_binds_ = false;  // the last fall of a visual level was for the display goal
 };
 
 }  // namespace tact

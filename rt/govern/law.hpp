@@ -1,15 +1,14 @@
-// The named laws by which the governor moves levels. Pure arithmetic, constant time.
+// The governor's named laws. Pure arithmetic, constant time.
 //
-// sensitus  the seed's law (SPEC 1.3), on V = level * items of the path, so equally on the level itself:
+// sensitus  the published law (SPEC 1.3) for V = level * items of the path, applied to the level itself:
 //               V <- V - s V (r_g - r_c) / r_g    if r_c < (1 - e) r_g
 //               V <- V + s V (r_c - r_g) / r_g    if r_c > (1 + e) r_g
-//           with goal r_g, measured rate r_c, gain s in (0, 1], tolerance e. The print has (1 - e) and (r_g -
-//           r_c) in both lines; read so, the second would shrink V when there is time to spare.
-// elastic   the same aim by a measured model of the picture's cost (rt/govern/governor.cpp has the
-// derivation):
-//           one step to where the goal should be, taken when the error is certain (rate_filter.hpp) and the
-//           picture has applied the step before.
-// fixed     the level that a person set, or the start level.
+//           with goal r_g, measured rate r_c, gain s in (0, 1], tolerance e. The paper prints (1 - e) and
+//           (r_g - r_c) in both lines; taken literally, the second line would lower V when there is time to spare.
+// elastic   uses a measured model of the display's cost (derivation: rt/govern/governor.cpp). Takes one step to
+//           the level that should meet the goal, once the error is significant (rate_filter.hpp) and a frame has
+//           applied the previous step.
+// fixed     keeps the level that a person set, or the start level.
 #pragma once
 
 #include <algorithm>
@@ -24,7 +23,7 @@ namespace tact {
 
 enum class Law : std::uint8_t { sensitus, fixed, elastic };
 inline constexpr std::array<std::string_view, 3> kLawNames{"sensitus", "fixed", "elastic"};
-inline constexpr Law kDefaultLaw = Law::elastic;  // measured better, see README.md
+inline constexpr Law kDefaultLaw = Law::elastic;  // better in measurements, see README.md
 
 [[nodiscard]] inline std::optional<Law> law_named(std::string_view name) noexcept {
     for (std::size_t i = 0; i < kLawNames.size(); ++i) {

@@ -1,11 +1,11 @@
-// Is the rate off its goal, or does it only flicker? A mean since the last change, with its uncertainty.
+// Separates an error of the rate from flicker: mean rate since the last change, with its standard error.
 //
-// Judged   off, once the mean is further from the goal than the tolerance plus kSure standard errors of the
-//          mean: a big error is believed after one interval, a small one after as many as it takes
-// Flicker  the standard deviation of an interval's rate, from the differences of intervals next to each
-//          other, so that a step of the load does not count as flicker
-// Forgets  by the weight of kIntervalsMax intervals; at once when the rate leaps, and on restart()
-// Bounded  whatever comes in: rates are cut to [0, 10] goals, the flicker to its own limits
+// Off      the mean differs from the goal by more than the tolerance plus kSure standard errors: a large error
+//          is significant after one interval, a small one after several
+// Flicker  standard deviation of the rate per interval, estimated from differences of consecutive intervals, so
+//          that a step of the load does not count as flicker
+// Memory   at most kIntervalsMax intervals; cleared when the rate jumps and by restart()
+// Bounded  rates are clamped to [0, 10] goals and the flicker to [kFlickerMin, kFlickerMax]
 #pragma once
 
 #include <algorithm>
@@ -20,8 +20,8 @@ class RateFilter {
 public:
     static constexpr double kIntervalsMax = 50.0;
     static constexpr double kSure = 1.5;
-    static constexpr double kLeap = 5.0;                             // flickers
-    static constexpr double kFlickerMin = 0.002, kFlickerMax = 0.1;  // of the goal
+    static constexpr double kLeap = 5.0;                             // jump, in standard deviations
+    static constexpr double kFlickerMin = 0.002, kFlickerMax = 0.1;  // relative to the goal
 
     // rate_hz finite and not negative, goal_hz > 0.
     void add(double rate_hz, double goal_hz) noexcept TACT_RT {
@@ -29,7 +29,7 @@ public:
         if (n_ > 0.0) {
             const double d = r - last_;
             if (std::abs(r - mean_) > kLeap * flicker()) n_ = 0.0;
-            // Differences beyond a leap say nothing about flicker.
+            // Differences beyond a jump are not flicker.
             const double cut = std::min(d * d, kLeap * kLeap * variance_ * 2.0);
             variance_ += 0.05 * (0.5 * cut - variance_);
             variance_ = std::clamp(variance_, kFlickerMin * kFlickerMin, kFlickerMax * kFlickerMax);
@@ -47,7 +47,7 @@ public:
         if (error() > band) return RateIs::high;
         return RateIs::right;
     }
-    [[nodiscard]] double error() const noexcept TACT_RT { return mean_ - 1.0; }  // of the goal
+    [[nodiscard]] double error() const noexcept TACT_RT { return mean_ - 1.0; }  // relative to the goal
     [[nodiscard]] double flicker() const noexcept TACT_RT { return std::sqrt(variance_); }
 
 private:

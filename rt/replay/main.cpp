@@ -1,9 +1,9 @@
-// tact-replay: does a recorded run again, with the controller's own code, and compares every force with the recording.
+// tact-replay: repeats a recorded run with the controller's own code and compares every force with the recording.
 //
-// Exit  0  the same to the bit
+// Exit  0  bit-exact
 //       1  error
 //       2  wrong usage
-//       3  not the same; or the recording does not hold all that it takes, and that is said
+//       3  not bit-exact, or the recording lacks data that an exact replay needs (reported)
 #include <poll.h>
 #include <signal.h>
 #include <unistd.h>
@@ -38,7 +38,7 @@ struct Requests {
     double from_s = 0.0, speed = 1.0, wait_s = 30.0;
 };
 
-// A window may watch: the region goes to whoever asks for it, as from a controller.
+// Shows the replay in a window: serves the region over the link as a controller does.
 class Stage {
 public:
     Stage(const Requests& w, Replay& replay)
@@ -46,15 +46,15 @@ public:
         const Instant begin = Monotonic::now();
         while (!attached_ && stop_asked == 0 && to_s(Monotonic::now() - begin) < w.wait_s) attend(20);
         if (!attached_ && stop_asked == 0)
-            throw StartupError("showing a replay in session '" + w.session + "'", "no window came",
-                               "start it with tact replay --show, or tact-gui --session " + w.session);
+            throw StartupError("showing a replay in session '" + w.session + "'", "no window attached",
+                               "start one with tact replay --show, or tact-gui --session " + w.session);
         if (const RecordedStep* const first = replay.upcoming()) {
             begin_ns_ = first->cycle.now_ns;
             begun_ = Monotonic::now();
             replay.shift_by(begun_ - instant_from_ns(begin_ns_));
         }
     }
-    // False: the window has gone.
+    // False: the window has closed.
     bool wait_for(const CycleTopic& next) {
         const double at_s = static_cast<double>(next.now_ns - begin_ns_) * 1e-9 - from_s_;
         if (at_s < 0.0) {
@@ -68,7 +68,7 @@ public:
         return attached_;
     }
 
-    // What was last stays in the window until it is closed.
+    // Keeps the last frame in the window until it is closed.
     void hold() {
         while (attached_ && stop_asked == 0) attend(50);
     }
@@ -116,7 +116,7 @@ void print_words(const Replay& replay) {
         std::printf("stopped after %llu of %llu steps\n", static_cast<unsigned long long>(r.steps),
                     static_cast<unsigned long long>(all));
     if (!r.first) {
-        std::printf("%llu steps, up to %.3f N: every force is the same to the bit\n",
+        std::printf("%llu steps, up to %.3f N: every force is bit-exact\n",
                     static_cast<unsigned long long>(r.steps), r.force_n_most);
         return;
     }

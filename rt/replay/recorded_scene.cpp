@@ -16,8 +16,8 @@ SceneFile open_recorded_scene(const RecordingReader::About& about, const fs::pat
         SceneFile scene = SceneFile::open(scene_path);
         if (scene.checksum() != about.scene_checksum)
             throw StartupError("replaying on '" + scene.name() + "'",
-                               "this is another scene than the recorded one",
-                               "name the recorded one with --scene, or bake it again as it was");
+                               "the scene differs from the recorded one",
+                               "give the recorded scene with --scene, or bake it again as it was");
         return scene;
     }
     const fs::path recorded(about.scene_path), name = recorded.filename();
@@ -36,15 +36,15 @@ SceneFile open_recorded_scene(const RecordingReader::About& about, const fs::pat
         try {
             SceneFile scene = SceneFile::open(place);
             if (scene.checksum() == about.scene_checksum) return scene;
-        } catch (const StartupError&) {  // no scene: as good as another one
+        } catch (const StartupError&) {  // not a scene: treated as a different one
         }
         another = true;
     }
     throw StartupError(
         "finding the recorded scene '" + name.string() + "'",
-        another ? "what has its name is another scene than the recorded one"
-                : "it is neither beside the recording, nor in this folder, nor among the baked ones",
-        "name the recorded one with --scene, or bake it again as it was");
+        another ? "the file of this name is a different scene"
+                : "it is neither beside the recording, nor in this folder, nor among the baked scenes",
+        "give the recorded scene with --scene, or bake it again as it was");
 }
 
 }  // namespace tact

@@ -1,4 +1,4 @@
-// The scene of a recording.
+// Finds the scene of a recording.
 #pragma once
 
 #include <filesystem>
@@ -8,8 +8,8 @@
 
 namespace tact {
 
-// The file that a person names, or the one of the recorded name that has the recorded checksum: beside the recording, in
-// this folder, or among the scenes that `tact` baked. Recordings of before 2026-11-23 have a path. Throws StartupError.
+// Opens scene_path if given, else the file with the recorded name and checksum: beside the recording, in the current
+// folder, or among the scenes baked by `tact`. Recordings made before 2026-11-23 hold a full path. Throws StartupError.
 [[nodiscard]] SceneFile open_recorded_scene(const RecordingReader::About& about,
                                             const std::filesystem::path& recording,
                                             const std::filesystem::path& scene_path);

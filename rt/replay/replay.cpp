@@ -1,6 +1,6 @@
-// Why it is exact: a cycle is a function of its inputs and of what the cycles before left (rt/servo). The recording has every
-// input; the models are built by the code that built them, from a scene of the same checksum. Where a model asked for another one,
-// built aside, it is built here too, and passed on in the step in which the servo took it.
+// Why the replay is exact: a cycle is a function of its inputs and of the state that earlier cycles left (rt/servo). The
+// recording has every input; the same code builds the models from a scene with the same checksum. If a model requested a
+// rebuild, it is rebuilt here too and installed in the step in which the servo took it.
 #include "rt/replay/replay.hpp"
 
 #include <unistd.h>
@@ -16,14 +16,14 @@
 namespace tact {
 namespace {
 
-// Files that the recorded command line names, as they were, for as long as they are read.
+// Temporary copies of the files that the recorded command line names.
 class RecordedFiles {
 public:
     RecordedFiles() {
         std::string name = (std::filesystem::temp_directory_path() / "tact-replay-XXXXXX").string();
         if (mkdtemp(name.data()) == nullptr)
             throw StartupError("making a folder in '" + std::filesystem::temp_directory_path().string() + "'",
-                               last_error(), "make space there, or set TMPDIR");
+                               last_error(), "free disk space there, or set TMPDIR");
         folder_ = name;
     }
     ~RecordedFiles() {
@@ -102,18 +102,19 @@ Replay::Replay(const ReplaySettings& settings)
     const RecordingReader::About& about = reader_.about();
     if (!about.known)
         throw StartupError("replaying '" + settings.recording.string() + "'",
-                           "its command line, configuration or places were too long to be recorded",
+                           "its command line, configuration or start poses were too long to be recorded",
                            "record a run with shorter ones");
     if (about.first_step != 1)
-        obstacle_ = "it begins in the middle of a run, at step " + std::to_string(about.first_step) +
-                    ": what the models and the safety chain remembered then is not known";
+        obstacle_ = "the recording starts in the middle of a run, at step " +
+                    std::to_string(about.first_step) +
+                    "; the state of the models and of the safety chain at that step is unknown";
     build_models();
     has_step_ = reader_.next(step_);
 }
 
 Replay::~Replay() {
     if (!servo_) return;
-    // The servo may have swapped models; whichever it has is destroyed here.
+    // The servo may have swapped models; its current ones are destroyed here.
     for (std::uint32_t i = 0; i < servo_->state().hands; ++i) delete servo_->state().hand[i].model;
 }
 
@@ -128,7 +129,7 @@ void Replay::build_models() {
             app.parse(words);
         } catch (const CLI::ParseError& e) {
             throw StartupError("reading the recorded command line", e.what(),
-                               "replay with the program that is named in the recording");
+                               "replay with the program version named in the recording");
         }
     }
     const RecordedFiles files;
@@ -167,7 +168,7 @@ void Replay::build_models() {
 
 void Replay::build_model_aside() {
     if (!mailbox_.build.take()) {
-        if (obstacle_.empty()) obstacle_ = "a model was passed on that nobody had asked for here";
+        if (obstacle_.empty()) obstacle_ = "the recording installs a model that this replay did not request";
         return;
     }
     std::unique_ptr<ForceModel> made = mailbox_.build.like().rebuild(mailbox_.build.bodies());
@@ -230,7 +231,7 @@ void Replay::do_step() {
         const bool late = reader_.about().first_step != 1;
         servo_->start(late ? instant_from_ns(step_.cycle.now_ns) + shift_
                            : instant_from_ns(reader_.about().start.started_at_ns) + shift_);
-        // Of a run that is begun in its middle: as near as it can be, the force ramps in.
+        // A recording that starts in the middle of an armed run: arm, so that the force ramps in. Not exact.
         if (late && step_.cycle.run_state >= static_cast<std::uint8_t>(RunState::armed))
             mailbox_.orders.push({.sequence = 0,
                                   .value = 0.0,
@@ -267,15 +268,15 @@ void Replay::compare() {
     for (std::uint32_t i = 0; i < s.hands; ++i) {
         const HandTopic& was = step_.hand[i].t;
         const HandCycle& is = s.hand[i];
-        note(i, "force that the model wants", was.force_model_world_n, is.step.wrench_world.force_n);
-        note(i, "torque that the model wants", was.torque_model_world_n_m, is.step.wrench_world.torque_n_m);
+        note(i, "force of the model", was.force_model_world_n, is.step.wrench_world.force_n);
+        note(i, "torque of the model", was.torque_model_world_n_m, is.step.wrench_world.torque_n_m);
         note(i, "force sent to the device", was.force_world_n, is.shown_world.force_n);
         note(i, "torque sent to the device", was.torque_world_n_m, is.shown_world.torque_n_m);
     }
     const double state_was[3] = {static_cast<double>(step_.cycle.run_state),
                                  static_cast<double>(step_.cycle.run_reason),
                                  static_cast<double>(step_.cycle.timestamps)};
-    note(0, "state, its reason, looks at the clock", state_was,
+    note(0, "state, reason, number of clock readings", state_was,
          Vec3(static_cast<double>(s.run.state), static_cast<double>(s.run.reason),
               static_cast<double>(s.timestamps)));
     if (different_) ++result_.different;

@@ -1,11 +1,12 @@
-// A recorded run, done again by the same code: servo, models, safety chain, governor; in simulated time, deterministic.
+// Replays a recorded run with the controller's code (servo, models, safety chain, governor), in simulated time and
+// deterministically.
 //
-// Given     what was recorded: samples, orders, reports, looks at the clock, deadlines that were found passed, and what
-//           the controller was started with. Models are built anew, from the same scene and settings.
-// Compared  with the recording, to the bit, each step: what the model wants and what the device is sent.
-// Exact     from a run's start on, until the recorder lost a step; what stands in the way is in obstacle().
-// Thread    one, all of it; as fast as it goes.
-// Fails by  StartupError: another scene, a recording that says too little of its start.
+// Given     the recorded samples, orders, reports, clock readings, passed deadlines, and the controller's start
+//           parameters. Models are built from the same scene and settings.
+// Compared  with the recording, bit by bit, each step: the wrenches of the models and the wrenches sent to the devices.
+// Exact     from the start of a run until the recorder lost a step; obstacle() gives the reason if not.
+// Thread    one; as fast as possible.
+// Fails by  StartupError: wrong scene, or too little data about the start.
 #pragma once
 
 #include <cstdint>
@@ -26,13 +27,13 @@
 
 namespace tact {
 
-// The clock of a cycle that is done again: says what it said, look by look.
+// The clock of a replayed cycle: returns the recorded readings in order.
 class ReplayClock final : public Clock {
 public:
     void give(std::span<const std::int64_t> looks_ns, Duration shift) noexcept;
     Instant now() noexcept TACT_RT override { return looks_[std::min(at_++, count_ - 1)]; }
     void wait_until(Instant /*t*/) noexcept TACT_RT override {}
-    // Every look was taken, and no other.
+    // True if each reading was used exactly once.
     [[nodiscard]] bool used_up() const noexcept { return at_ == count_; }
 
 private:
@@ -40,7 +41,7 @@ private:
     std::size_t at_ = 0, count_ = 1;
 };
 
-// Where a replay first went another way.
+// The first difference between recording and replay.
 struct ReplayDifference {
     std::uint64_t step = 0, cycle = 0;
     std::uint32_t hand = 0;
@@ -49,16 +50,16 @@ struct ReplayDifference {
 };
 
 struct ReplayResult {
-    std::uint64_t steps = 0;           // compared, dry ones too
-    std::uint64_t different = 0;       // of them
-    std::uint64_t removed_levels = 0;  // of bone
-    double force_n_most = 0.0;         // sent to the first hand: a replay of nothing compares well too
+    std::uint64_t steps = 0;           // compared steps, including dry ones
+    std::uint64_t different = 0;       // number of different steps
+    std::uint64_t removed_levels = 0;  // bone removed, in density levels
+    double force_n_most = 0.0;  // largest force sent to the first hand; 0 shows that the run had no contact
     std::optional<ReplayDifference> first;
 };
 
 struct ReplaySettings {
     std::filesystem::path recording;
-    std::filesystem::path scene;  // empty: the one that the recording names
+    std::filesystem::path scene;  // empty: the recorded one
 };
 
 class Replay {
@@ -68,18 +69,18 @@ public:
     Replay(const Replay&) = delete;
     Replay& operator=(const Replay&) = delete;
 
-    // Why it cannot be exact; empty: it can.
+    // The reason why the replay cannot be exact; empty if it can.
     [[nodiscard]] const std::string& obstacle() const { return obstacle_; }
     [[nodiscard]] const RecordingReader& recording() const { return reader_; }
-    // The step that do_step() would do; null: there is none any more.
+    // The step that do_step() repeats next; null at the end.
     [[nodiscard]] const RecordedStep* upcoming() const { return has_step_ ? &step_ : nullptr; }
     void do_step();
-    // Before the first step: added to every instant.
+    // Sets an offset for every time stamp; call it before the first step.
     void shift_by(Duration shift) { shift_ = shift; }
     [[nodiscard]] const ReplayResult& result() const { return result_; }
     [[nodiscard]] const Servo& servo() const { return *servo_; }
     [[nodiscard]] OwnedRegion<RtRegion>& region() { return region_; }
-    [[nodiscard]] int shared_fd() const { return system_->fd(); }  // of the system's own region; -1: none
+    [[nodiscard]] int shared_fd() const { return system_->fd(); }  // the system's own region; -1: none
 
 private:
     void build_models();

@@ -17,7 +17,7 @@ ChainOutput OutputChain::apply(const ChainInput& in) noexcept {
     const double elapsed_s = std::max(to_s(in.dt), 0.0);
     const double dt_s = std::min(elapsed_s, to_s(stages::kStepMax));
 
-    // Finite. Also the pose: later stages calculate with it.
+    // Finite. Checks also the pose, because later stages use it.
     Wrench w = stages::finite_or_zero(in.wanted_dev);
     const bool pose_finite = in.T_dev_tool.finite();
     if (!in.wanted_dev.finite() || !pose_finite) {

@@ -1,8 +1,8 @@
-// Off, ready, armed, active, fault: the one place where the state of the controller is decided.
+// The state machine of the controller: off, ready, armed, active, fault.
 //
-// Pure      the next state is a function of the state, what happened since, and the time
-// Order     where several things happened in one cycle, the safer one wins: close, trip, stop, disarm, arm
-// Latched   the first fault stays, with its reason, until a person resets it: to ready, never further
+// Pure      the next state is a function of the current state, the cycle's events and the time
+// Order     of several events in one cycle, the safest wins: close, trip, stop, disarm, arm
+// Latched   the first fault stays with its reason until a person resets it; a reset leads only to ready
 #pragma once
 
 #include "ipc/base/clock.hpp"
@@ -16,16 +16,16 @@ struct RunStatus {
     Instant since{};
 };
 
-// What one cycle has seen.
+// The events of one cycle.
 struct RunEvents {
     bool open = false;  // devices are open and the dry run is over
     bool close = false;
-    bool stop = false;  // signal, or the run's time is over
+    bool stop = false;  // by a signal or at the end of the run time
     bool arm = false;
     bool disarm = false;
     bool reset = false;
     bool hand_present = false;
-    bool arm_barred = false;  // by safety lines: it would trip at once
+    bool arm_barred = false;  // by the safety inputs: arming would trip at once
     bool gui_silent = false;  // only where the configuration asks for a reaction
     RunReason trip = RunReason::none;
 };
@@ -35,9 +35,8 @@ struct RunEvents {
     return s == RunState::armed || s == RunState::active;
 }
 
-// A device that is gone is a fault at any time, and so is an emergency stop. What concerns only the force
-// (its timing, its value) is a fault only while a force may come: nobody has to reset a controller that was
-// slow while it loaded a scene, or whose pedal nobody stood on.
+// A lost device and an emergency stop are faults at any time. Timing and value of the force and the dead-man pedal trip
+// only while the amplifier is on, so that slow loading or a released pedal needs no reset.
 [[nodiscard]] constexpr bool trips(RunState s, RunReason r) noexcept {
     switch (r) {
         case RunReason::device_lost:

@@ -1,8 +1,8 @@
-// What may no longer be trusted: the age of the sample, the timing of the loop, the value of the force.
+// The watchdogs of the loop: device, age of the sample, timing, value of the force, safety inputs.
 //
 // Runs on   servo thread, every cycle, constant time
-// Owns      the number of overruns in a row; nothing else is remembered
-// Fails by  naming a reason and the value measured; rt/safety/state_machine.hpp decides what follows
+// Owns      the number of consecutive overruns; no other state
+// Fails by  returning a reason and the measured value; rt/safety/state_machine.hpp reacts
 #pragma once
 
 #include <cstdint>
@@ -15,12 +15,12 @@ namespace tact {
 
 struct WatchdogSettings {
     Duration sample_age_max =
-        std::chrono::microseconds(3500);  // held for three cycles of 1 kHz, not a fourth
+        std::chrono::microseconds(3500);  // tolerates three missed samples at 1 kHz, not four
     Duration late_max = std::chrono::milliseconds(5);
-    std::uint32_t overruns_warned = 3;  // in a row
-    std::uint32_t overruns_max = 5;     // in a row
-    bool timing_latches = true;         // false: lateness and overruns are counted and warned of, no more
-    // Of a device whose own watchdog tripped: false only where nobody's hand is on it.
+    std::uint32_t overruns_warned = 3;  // consecutive
+    std::uint32_t overruns_max = 5;     // consecutive
+    bool timing_latches = true;         // false: lateness and overruns only cause warnings
+    // A tripped watchdog of the device latches; false only for emulated devices.
     bool device_watchdog_latches = true;
 };
 
@@ -28,18 +28,18 @@ struct WatchdogInput {
     Instant now{};
     Instant sample_taken_at{};
     Duration lateness{0};  // of this cycle
-    bool overran = false;  // the cycle before this one
+    bool overran = false;  // of the last cycle
     bool device_lost = false;
     bool device_fault = false;
     bool force_finite = true;
-    RunReason lines = RunReason::none;  // what the safety lines stop for
+    RunReason lines = RunReason::none;  // stop requested by the safety inputs
     Duration lines_age{0};
-    bool supervisor = false;  // it has dropped the enable line
+    bool supervisor = false;  // the supervisor has dropped the enable line
 };
 
 struct Trip {
     RunReason reason = RunReason::none;
-    double measured = 0.0;  // microseconds or a count, as the reason says
+    double measured = 0.0;  // microseconds or a count, depending on the reason
 };
 
 class Watchdogs {
@@ -48,7 +48,7 @@ public:
 
     Trip check(const WatchdogInput& in) noexcept TACT_RT {
         overruns_in_a_row_ = in.overran ? overruns_in_a_row_ + 1 : 0;
-        // A pedal that is up is no fault while no force may come, so it must not hide one that is.
+        // A released pedal is no fault while the amplifier is off, so it must not mask another fault.
         const bool mild = in.lines == RunReason::dead_man || in.lines == RunReason::supervisor;
         if (in.lines != RunReason::none && !mild) return {in.lines, to_us(in.lines_age)};
         if (in.device_lost) return {RunReason::device_lost, 0.0};

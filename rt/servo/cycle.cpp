@@ -28,10 +28,16 @@ bool add_knobs(Governor& governor, std::span<const VisualPath> visual, const Kno
     return good;
 }
 
+GovernorSettings governor_settings(const ServoSettings& settings) {
+    GovernorSettings s = settings.governor;
+    s.free_running = settings.free_running;
+    return s;
+}
+
 }  // namespace
 
 CycleState::CycleState(const ServoSettings& settings, std::span<const HandParts> parts, Instant now_)
-    : pacer(settings.period, now_), watchdogs(settings.watchdogs), governor(settings.governor) {
+    : pacer(settings.period, now_), watchdogs(settings.watchdogs), governor(governor_settings(settings)) {
     if (parts.empty() || parts.size() > kHandsMax) throw std::logic_error("servo: one or two hands");
     if (settings.visual_paths.empty()) throw std::logic_error("servo: a scene has a visual path");
     hands = static_cast<std::uint32_t>(parts.size());

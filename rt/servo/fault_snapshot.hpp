@@ -1,4 +1,4 @@
-// The state of the loop at the first fault, for the log.
+// Records the state of the loop at the first fault for the log.
 //
 // Thread    servo; TACT_RT
 #pragma once

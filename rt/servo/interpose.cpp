@@ -1,4 +1,4 @@
-// The interposers. libc offers its own entries as __libc_malloc and so on; the mutex is found with dlsym.
+// The interposers. They call libc's __libc_malloc and so on, and the real pthread_mutex_lock found with dlsym.
 #include "rt/servo/rt_guard.hpp"
 
 #ifndef TACT_SANITIZED
@@ -63,8 +63,8 @@ int posix_memalign(void** out, std::size_t align, std::size_t n) noexcept {
 using MutexLock = int (*)(pthread_mutex_t*);
 static std::atomic<MutexLock> real_mutex_lock{nullptr};
 
-// dlsym may lock a mutex itself, on this very way: such a nested call is answered without taking it. It
-// happens only at the first lock of the process, before there is a second thread.
+// dlsym may itself call pthread_mutex_lock. Such a nested call returns without locking; it happens only at the
+// first lock of the process, before a second thread exists.
 int pthread_mutex_lock(pthread_mutex_t* mutex) noexcept {
     if (tact::rt_section_depth != 0) [[unlikely]]
         tact::rt_guard::seen_lock("pthread_mutex_lock");
@@ -83,7 +83,7 @@ int pthread_mutex_lock(pthread_mutex_t* mutex) noexcept {
 }  // extern "C"
 
 namespace tact::rt_guard {
-// Before there is a second thread, so that no servo cycle ever is the one that looks the mutex up.
+// Call before a second thread exists: finds pthread_mutex_lock, so no servo cycle has to call dlsym.
 bool install() noexcept {
     pthread_mutex_t probe = PTHREAD_MUTEX_INITIALIZER;
     pthread_mutex_lock(&probe);

@@ -1,4 +1,4 @@
-// The safety lines' causes and states in the terms of the state machine and of the topics.
+// Maps causes and states of the safety lines to those of the state machine and of the topics.
 #pragma once
 
 #include "hal/api/lines.hpp"

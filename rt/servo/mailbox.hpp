@@ -1,7 +1,7 @@
-// Mailbox between the servo thread and the housekeeping thread, inside tact-rt. Neither ever waits.
+// Mailbox between the servo thread and the housekeeping thread, inside tact-rt. Neither thread ever waits.
 //
-// To the servo      orders (validated commands), the report of the visual process, a new force model, the stop signal
-// To housekeeping   the old force model, a request to build another, a snapshot at a fault, the end of the run
+// To the servo      validated commands (orders), reports of the visual process, a new force model, the stop signal
+// To housekeeping   the old force model, a request to build a model, the snapshot of a fault, the end of the run
 #pragma once
 
 #include <atomic>
@@ -10,14 +10,14 @@
 #include <utility>
 
 #include "ipc/shm/latest.hpp"
-#include "ipc/shm/ring.hpp"
 #include "ipc/topics/record.hpp"
 #include "rt/force/force_model.hpp"
+#include "rt/servo/servo_orders.hpp"
 #include "rt/servo/servo_pulse.hpp"
 
 namespace tact {
 
-// The state of the loop at the first fault.
+// State of the loop at the first fault.
 struct FaultSnapshot {
     std::uint64_t cycle;
     std::int64_t taken_at_ns;
@@ -26,12 +26,12 @@ struct FaultSnapshot {
     double measured;
     double pos_world_m[3];
     double velocity_world_m_s[3];
-    double wanted_n[3];  // by the model
+    double wanted_n[3];  // force requested by the model
     double applied_before_n[3];
     std::uint64_t reason;  // RunReason
 };
 
-// One model on its way in, one on its way out.
+// Exchanges force models: one slot for the new model, one for the old.
 class ModelHandover {
 public:
     ModelHandover() = default;
@@ -42,26 +42,26 @@ public:
         const std::unique_ptr<ForceModel> never_taken(incoming_.exchange(nullptr));
     }
 
-    // Housekeeping. False: the one before has not been taken yet; the model stays with the caller.
+    // Housekeeping. False: the servo has not taken the previous model yet; the caller keeps this one.
     bool offer(std::unique_ptr<ForceModel>& model) {
         ForceModel* expected = nullptr;
-        // Release: the servo sees a whole model; pairs with take().
+        // Release: publishes the complete model; pairs with take().
         if (!incoming_.compare_exchange_strong(expected, model.get(), std::memory_order_release))
             return false;
         static_cast<void>(model.release());
         return true;
     }
-    // Housekeeping. The model that the servo no longer uses, to be destroyed off its thread.
+    // Housekeeping. Returns the model that the servo no longer uses, to destroy it off the servo thread.
     std::unique_ptr<ForceModel> collect() {
         return std::unique_ptr<ForceModel>(outgoing_.exchange(nullptr, std::memory_order_acquire));
     }
-    // Servo. Null where nothing came, or where the old one still waits to be collected.
+    // Servo. Null: no new model, or the old one has not been collected yet.
     ForceModel* take() noexcept TACT_RT {
         if (incoming_.load(std::memory_order_relaxed) == nullptr) return nullptr;
         if (outgoing_.load(std::memory_order_relaxed) != nullptr) return nullptr;
         return incoming_.exchange(nullptr, std::memory_order_acquire);
     }
-    // Servo. Only after take() gave one; pairs with collect().
+    // Servo. Call only after take() returned a model; pairs with collect().
     void give_back(ForceModel* old) noexcept TACT_RT { outgoing_.store(old, std::memory_order_release); }
 
 private:
@@ -69,11 +69,11 @@ private:
     std::atomic<ForceModel*> outgoing_{nullptr};
 };
 
-// One request at a time for a model that is built aside. The model itself comes back through ModelHandover.
-// While one is under way nothing else is offered there, so the model that it is built like stays in use.
+// Requests a model that another thread builds, one at a time. The model returns through ModelHandover. No other model
+// is offered there meanwhile, so the model that serves as its pattern stays in use.
 class BuildRequest {
 public:
-    // Servo. False: the one before is not settled.
+    // Servo. False: the previous request is not settled.
     bool ask(const ForceModel& like, const ModelBodies& bodies) noexcept TACT_RT {
         if (state_.load(std::memory_order_relaxed) != State::none) return false;
         like_ = &like;
@@ -81,14 +81,14 @@ public:
         state_.store(State::asked, std::memory_order_release);  // pairs with take()
         return true;
     }
-    // Servo. Nothing could be built.
+    // Servo. True: the model could not be built.
     [[nodiscard]] bool refused() const noexcept TACT_RT {
         return state_.load(std::memory_order_acquire) == State::refused;
     }
-    // Servo: the model was taken, or the refusal seen.
+    // Servo. Call when the model was taken or the refusal handled.
     void settle() noexcept TACT_RT { state_.store(State::none, std::memory_order_relaxed); }
 
-    // Housekeeping. True once for each request; like() and bodies() are its own until it answers.
+    // Housekeeping. True once per request; like() and bodies() stay valid until it answers.
     bool take() {
         State expected = State::asked;
         return state_.compare_exchange_strong(expected, State::taken, std::memory_order_acquire);
@@ -105,12 +105,12 @@ private:
 };
 
 struct ServoMailbox {
-    Ring<ServoOrder, 64> orders{};
+    ServoOrders orders;
     Latest<HousekeepingReport> housekeeping{};
     Latest<FaultSnapshot> fault{};
     ModelHandover model;
     BuildRequest build;
-    std::atomic<int> stop_signal{0};  // signal number, or -1: the run's time is over
+    std::atomic<int> stop_signal{0};  // signal number; -1: the run's time limit
     std::atomic<bool> ended{false};
     ServoPulse pulse;
 };

@@ -1,5 +1,6 @@
 #include "rt/servo/model_exchange.hpp"
 
+#include "rt/servo/fit_level.hpp"
 #include "rt/servo/publish_levels.hpp"
 #include "rt/servo/report.hpp"
 
@@ -39,7 +40,13 @@ std::uint32_t id_in_hand(const ModelBodies& b) noexcept {
     return b.active < b.count ? b.id[b.active] : ModelBodies::kNone;
 }
 
-// Reports what changed and, where the hand holds another structure, governs it anew.
+void govern_anew(CycleState& c, const ServoSettings& settings) noexcept {
+    c.governor.replace(kForcePathIndex, c.hand[0].model->knob());
+    make_level_rows(c);
+    choose_level(c, settings);
+}
+
+// Reports changed bodies. If the hand holds another structure, restarts the governor for it.
 void report_bodies(CycleState& c, const ServoSettings& settings, const ServoIo& io,
                    const ModelBodies& before) noexcept {
     const ForceModel& model = *c.hand[0].model;
@@ -52,7 +59,7 @@ void report_bodies(CycleState& c, const ServoSettings& settings, const ServoIo& 
            static_cast<double>(model.items(1.0F)));
     if (now.active < now.count && now.structure[now.active] != c.mailbox.governed_structure) {
         c.mailbox.governed_structure = now.structure[now.active];
-        c.governor.replace(kForcePathIndex, model.knob());
+        govern_anew(c, settings);
     }
     ++c.report.levels_sequence;
     publish_levels(c, settings, io.region);
@@ -69,7 +76,7 @@ void take_model(CycleState& c, const ServoSettings& settings, const ServoIo& io)
     if (!fresh->adopt(*old)) {
         fresh->reset(h.tool);
         h.chain.restart();
-        c.governor.replace(kForcePathIndex, fresh->knob());
+        govern_anew(c, settings);
         const ModelBodies now = fresh->bodies();
         if (now.active < now.count) c.mailbox.governed_structure = now.structure[now.active];
         ++c.report.levels_sequence;

@@ -1,8 +1,9 @@
-// Stage 6: models come and go. What no constant time can make is built aside and taken over at a cycle boundary.
+// Stage 6: exchanges force models. Work without a constant-time bound is done by the builder thread; the servo takes
+// the finished model at a cycle boundary.
 //
-// Takes     a model that was rebuilt goes on where the old one was; any other enters with zero force and the ramp from
-//           its beginning.
-// Asks      for one model at a time: what is ordered while one is being built is asked for after it has come.
+// Takes     a rebuilt model continues from the state of the old one; any other model starts with zero force and the
+//           ramp from its beginning.
+// Requests  one model at a time: orders given during a build are requested after it has arrived.
 // Thread    servo; TACT_RT
 #pragma once
 
@@ -12,8 +13,7 @@
 namespace tact::servo {
 
 void exchange_models(CycleState& c, const ServoSettings& settings, const ServoIo& io) noexcept TACT_RT;
-// False: the model refused, as it knows which bodies and settings it has. Another structure in the hand is another
-// load: it enters at a level that fits, and the governor goes on from there.
+// False: the model refused the order. Another structure in the hand starts at a level that fits its cost.
 [[nodiscard]] bool order_model(CycleState& c, const ServoSettings& settings, const ServoIo& io,
                                const ServoOrder& order) noexcept TACT_RT;
 

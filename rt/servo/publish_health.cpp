@@ -25,6 +25,14 @@ void publish_health(CycleState& c, const ServoSettings& settings, Latest<HealthT
     t.overruns = c.pacer.overruns();
     t.overrun_at_ns = c.report.overrun_at_ns;
     t.skipped = c.pacer.skipped();
+    t.armed_cycles = c.armed.cycles();
+    t.deadline_misses = c.armed.deadline_misses();
+    t.deadline_missed_at_ns = to_ns(c.armed.missed_at());
+    t.deadline_miss_share = static_cast<float>(c.armed.last_second_share());
+    t.force_error_n_p50 = static_cast<float>(c.armed.force_error_n_p50());
+    t.force_step_n_max = static_cast<float>(c.armed.force_step_n_max());
+    t.level_settled_s = static_cast<float>(c.armed.level_settled_s());
+    t.model_ns_max = settings.model_deadline ? settings.model_max.count() : 0;
     t.allocations = rt_guard::counts().allocations;
     t.locks = rt_guard::counts().locks;
     t.page_faults = std::max(c.housekeeping.page_faults, c.report.page_faults);
@@ -32,6 +40,8 @@ void publish_health(CycleState& c, const ServoSettings& settings, Latest<HealthT
     t.events = c.report.events;
     t.command_sequence = c.report.last_sequence;
     t.command_result = static_cast<std::uint32_t>(c.report.last_result);
+    t.state_sequence = c.report.state_sequence;
+    t.state_result = static_cast<std::uint16_t>(c.report.state_result);
     t.schedule_flags = c.report.schedule_flags;
     t.gui_heartbeat_age_ns = c.housekeeping.gui_heartbeat_ns < 0
                                  ? -1

@@ -1,4 +1,4 @@
-// How the controller and its devices are doing: ten times a second, and at every change of state.
+// Publishes the health of controller and devices, ten times a second and at every change of state.
 //
 // Thread    servo; TACT_RT
 #pragma once
@@ -10,7 +10,7 @@ namespace tact::servo {
 void publish_health(CycleState& c, const ServoSettings& settings,
                     Latest<HealthTopic>& topic) noexcept TACT_RT;
 void publish_devices(CycleState& c, Latest<DevicesTopic>& topic) noexcept TACT_RT;
-// Since the start; once a second.
+// Histogram since the start; once a second.
 void publish_lateness(const CycleState& c, Latest<LatenessTopic>& topic) noexcept TACT_RT;
 
 }  // namespace tact::servo

@@ -30,7 +30,10 @@ void publish_levels(CycleState& c, const ServoSettings& settings, RtRegion& regi
     std::memcpy(t.law, law.data(), std::min(law.size(), kLawNameMax - 1));
     const auto paths = c.governor.paths();
     t.count = static_cast<std::uint32_t>(std::min(paths.size(), kPathsMax));
-    for (std::size_t i = 0; i < t.count; ++i) put_path(t.path[i], paths[i]);
+    for (std::size_t i = 0; i < t.count; ++i) {
+        put_path(t.path[i], paths[i]);
+        t.path[i].changed_at_ns = c.report.level_changed_at_ns[i];
+    }
     for (std::size_t i = 0; i < settings.visual_paths.size(); ++i) {
         const VisualPath& visual = settings.visual_paths[i];
         PathLevel& p = t.path[visual_index(i)];

@@ -1,4 +1,4 @@
-// The governor's levels, for the visual process and for whoever watches.
+// Publishes the governor's levels for the visual process and for monitoring.
 //
 // Thread    servo; TACT_RT
 #pragma once
@@ -7,7 +7,7 @@
 
 namespace tact::servo {
 
-// The place of a visual path among the governor's paths, by its place in ServoSettings::visual_paths.
+// Index of a visual path in the governor, from its index in ServoSettings::visual_paths.
 [[nodiscard]] constexpr std::size_t visual_index(std::size_t path) {
     return path == 0 ? kDisplayPathIndex : kForcePathIndex + path;
 }

@@ -6,7 +6,7 @@ namespace tact::servo {
 
 namespace {
 
-constexpr double kMemory_s = 1.0;  // of what a whole step costs
+constexpr double kMemory_s = 1.0;  // of the costs of whole steps
 
 bool holds_rate(const CycleState& c, const ServoSettings& settings) noexcept {
     return settings.free_running && !c.dry && c.governor.settings().law != Law::fixed;

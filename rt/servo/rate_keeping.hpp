@@ -1,6 +1,6 @@
-// Keeps the rate of a freely running loop between two steps of the law (rt/govern/rate_hold.hpp).
+// Holds the rate of a free-running loop between two steps of the law (rt/govern/rate_hold.hpp).
 //
-// Which     loops of fixed rate have their instants and their deadline for that; a level that a person fixed stays.
+// Inactive  in loops of fixed rate, and under the law "fixed".
 // Thread    servo; TACT_RT
 #pragma once
 
@@ -9,14 +9,14 @@
 
 namespace tact::servo {
 
-// Reads the clock. What a cycle depends on is recorded, each reading of the clock among it.
+// Reads the clock and records the reading, because replays need every input of a cycle.
 [[nodiscard]] Instant timestamp(CycleState& c, Clock& clock) noexcept TACT_RT;
-// Waits where the loop is ahead of its goal and the display is coarser than it could be: the display has the time at
-// once, long before the law makes it finer. The instant at which the loop goes on.
+// Sleeps while the loop is ahead of its goal and a visual level is below 1, so the display gets the time at once.
+// Returns the instant at which the loop continues.
 [[nodiscard]] Instant rest(CycleState& c, const ServoSettings& settings, Clock& clock) noexcept TACT_RT;
-// Of the models' work, the fraction that this step may recompute.
+// Fraction of the models' work that this step recomputes.
 [[nodiscard]] double work_fraction(CycleState& c, const ServoSettings& settings) noexcept TACT_RT;
-// Remembers what a step costs that did all of its work.
+// Adds the cost of a step that did all of its work to the statistics.
 void count_work(CycleState& c) noexcept TACT_RT;
 
 }  // namespace tact::servo

@@ -1,6 +1,6 @@
-// What a recording needs of a run, so that the same code can repeat it: its inputs as they came, and its results.
+// Publishes the inputs and results of each cycle, so that a recording can be replayed by the same code.
 //
-// Thread    servo; TACT_RT but for start_topic()
+// Thread    servo; TACT_RT except start_topic()
 #pragma once
 
 #include <span>
@@ -9,7 +9,7 @@
 
 namespace tact::servo {
 
-// How the loop begins, but for the instant.
+// Settings and devices at the start of the loop, without the start time.
 [[nodiscard]] StartTopic start_topic(const ServoSettings& settings, std::span<const HandParts> hands,
                                      bool lines);
 void publish_cycle(const CycleState& c, RtRegion& region) noexcept TACT_RT;

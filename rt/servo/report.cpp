@@ -21,6 +21,10 @@ void acknowledge(CycleState& c, RtRegion& region, const ServoOrder& order, Comma
     if (order.sequence == 0) return;
     c.report.last_sequence = order.sequence;
     c.report.last_result = result;
+    const auto kind = static_cast<CommandKind>(order.kind);
+    if (kind != CommandKind::arm && kind != CommandKind::disarm) return;
+    c.report.state_sequence = order.sequence;
+    c.report.state_result = result;
 }
 
 void record_mailbox(const CycleState& c, RtRegion& region, MailboxKind kind,

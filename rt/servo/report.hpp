@@ -1,4 +1,4 @@
-// Events and answers of a cycle, and what a recording needs of the mailbox.
+// Publishes events, answers to commands, and mailbox entries for recordings.
 //
 // Thread    servo; TACT_RT
 #pragma once
@@ -10,7 +10,7 @@ namespace tact::servo {
 
 void report(CycleState& c, RtRegion& region, EventCode code, double a, double b,
             std::uint16_t detail = 0) noexcept TACT_RT;
-// Answers a command; one without a sequence number was given by the controller itself.
+// Answers a command. A command without a sequence number came from the controller itself.
 void acknowledge(CycleState& c, RtRegion& region, const ServoOrder& order,
                  CommandResult result) noexcept TACT_RT;
 void record_mailbox(const CycleState& c, RtRegion& region, MailboxKind kind,

@@ -1,10 +1,9 @@
-// Counts what the servo thread must not do: heap and mutex calls while it is inside a cycle (RtSection).
+// Counts forbidden calls of the servo thread: heap and mutex calls inside a cycle (RtSection).
 //
-// How      interpose.cpp defines malloc, calloc, realloc, free, the aligned ones and pthread_mutex_lock in
-//          the program itself, so that calls from inside shared libraries are seen too; each forwards to
-//          libc.
-// Linked   into tact-rt and tests/rt_safe, which list interpose.cpp. Not under sanitizers, which own malloc.
-// Modes    count (tact-rt; shown in the health topic) or abort with a message (tests/rt_safe)
+// How      interpose.cpp defines malloc, calloc, realloc, free, the aligned variants and pthread_mutex_lock in
+//          the program, so that calls from shared libraries count too; each forwards to libc.
+// Linked   into tact-rt and tests/rt_safe, which list interpose.cpp. Not under sanitizers, which replace malloc.
+// Modes    count (tact-rt; published in the health topic) or abort with a message (tests/rt_safe)
 #pragma once
 
 #include <cstdint>
@@ -12,12 +11,12 @@
 namespace tact::rt_guard {
 
 struct Counts {
-    std::uint64_t allocations = 0;  // malloc, calloc, realloc, free and their like
+    std::uint64_t allocations = 0;  // malloc, calloc, realloc, free and aligned variants
     std::uint64_t locks = 0;        // pthread_mutex_lock
 };
 
 [[nodiscard]] Counts counts() noexcept;
-// Defined beside the interposers: naming it links them in. False under sanitizers.
+// Defined with the interposers, so that a call links them in. False under sanitizers.
 bool install() noexcept;
 void abort_on_violation(bool on) noexcept;
 

@@ -1,5 +1,6 @@
 #include "rt/servo/servo.hpp"
 
+#include "rt/servo/fit_level.hpp"
 #include "rt/servo/model_exchange.hpp"
 #include "rt/servo/publish_health.hpp"
 #include "rt/servo/publish_levels.hpp"
@@ -28,10 +29,11 @@ Servo::Servo(const ServoParts& parts, const ServoSettings& settings)
     c_.lines.fitted = parts.lines != nullptr;
     servo::set_display_present(c_, settings_, false);
     servo::bound_by_delay(c_, settings_);
+    servo::make_level_rows(c_);
 }
 
 void Servo::warm_up() noexcept {
-    // Bounded in time too: a step of 100 000 atoms takes a millisecond.
+    // Also limited in time: a step of 100 000 atoms takes a millisecond.
     constexpr Duration kMax = std::chrono::milliseconds(200);
     const Instant begin = io_.clock.now();
     for (std::uint32_t i = 0; i < settings_.dry_cycles && io_.clock.now() - begin < kMax; ++i) dry_cycle();
@@ -53,7 +55,7 @@ void Servo::start(Instant now) noexcept {
     c_.before = now;
     c_.overran = false;
     c_.behind = Duration{0};
-    c_.out_of_time = 0;
+    c_.armed = {};
     for (std::uint32_t i = 0; i < c_.hands; ++i) c_.hand[i].model->reset(c_.hand[i].tool);
     c_.pacer.restart(now + settings_.period);
     c_.watchdogs.forget();
@@ -61,6 +63,7 @@ void Servo::start(Instant now) noexcept {
     c_.govern.hold.restart();
     c_.report.health_at = now;
     servo::start_interval(c_, now);
+    servo::choose_level(c_, settings_);
     c_.run = next_status(c_.run, {.open = true}, now);
     servo::report(c_, io_.region, EventCode::loop_started, 0.0, 0.0);
     servo::publish_levels(c_, settings_, io_.region);

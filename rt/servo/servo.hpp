@@ -1,9 +1,9 @@
-// The servo loop: one cycle of pure stages (rt/servo/stage_*.hpp), at a fixed rate or as often as the processor allows.
+// The servo loop: runs the stages (rt/servo/stage_*.hpp) in order, at a fixed rate or as fast as the processor allows.
 //
-// Runs on   the servo thread; in tests and replays on any thread, in lockstep with a ManualClock
+// Runs on   the servo thread; in tests and replays on any thread, with a ManualClock
 // Owns      the CycleState; borrows everything in ServoParts
-// Writes    the region "tact.rt", but for the topics of other threads; each model publishes its own topic there
-// Fails by  going to zero force and latching a fault (rt/safety); it never stops by itself
+// Writes    the region "tact.rt" except topics of other threads; each model publishes its own topic there
+// Fails by  zero force and a latched fault (rt/safety); the loop goes on
 #pragma once
 
 #include <cstdint>
@@ -20,8 +20,8 @@ struct ServoParts {
     std::span<const HandParts> hands;  // 1 or 2
     RtRegion& region;
     ServoMailbox& mailbox;
-    Lines* lines = nullptr;               // null: none are fitted
-    const CycleScript* script = nullptr;  // of a replay, read in every cycle
+    Lines* lines = nullptr;               // null: no safety lines
+    const CycleScript* script = nullptr;  // replay only; read in every cycle
 };
 
 class Servo {
@@ -30,26 +30,26 @@ public:
     Servo(const Servo&) = delete;
     Servo& operator=(const Servo&) = delete;
 
-    // Cycles with the gate closed that warm caches and pages; then counters from zero, state ready.
+    // Runs dry cycles with the gate closed, which warm caches and measure costs; then calls start().
     void warm_up() noexcept;
-    // Its parts, for a replay: one such cycle; the start at an instant.
+    // The parts of warm_up(), for replays: one dry cycle; reset of counters and state ready at `now`.
     void dry_cycle() noexcept;
     void start(Instant now) noexcept;
     void cycle() noexcept TACT_RT;
-    // Until the stop signal has led to zero force and the amplifier is off.
+    // Runs cycles until a stop signal has led to zero force and the amplifier is off.
     void run() noexcept;
 
     [[nodiscard]] bool finished() const noexcept { return c_.finished; }
     [[nodiscard]] const CycleState& state() const noexcept { return c_; }
     [[nodiscard]] const Governor& governor() const noexcept { return c_.governor; }
     void set_schedule_flags(std::uint32_t flags) noexcept { c_.report.schedule_flags = flags; }
-    // For the last health, read by the servo thread itself after its last cycle.
+    // Publishes the last health and lateness; called by the servo thread after its last cycle.
     void publish_end(std::uint64_t page_faults) noexcept;
 
 private:
     ServoIo io_;
     ServoSettings settings_;
-    StartTopic start_topic_;  // but for the instant
+    StartTopic start_topic_;  // without the start time
     CycleState c_;
 };
 

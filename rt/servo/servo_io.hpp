@@ -1,4 +1,4 @@
-// What the stages of a cycle reach besides the CycleState. Borrowed; outlives the loop.
+// Clock, shared memory, mailbox and lines that the stages use besides the CycleState. Borrowed; outlives the loop.
 #pragma once
 
 #include "hal/api/lines.hpp"
@@ -13,8 +13,8 @@ struct ServoIo {
     Clock& clock;
     RtRegion& region;
     ServoMailbox& mailbox;
-    Lines* lines = nullptr;               // null: none are fitted
-    const CycleScript* script = nullptr;  // of a replay, read in every cycle
+    Lines* lines = nullptr;               // null: no safety lines
+    const CycleScript* script = nullptr;  // replay only; read in every cycle
 };
 
 }  // namespace tact

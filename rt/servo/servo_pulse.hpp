@@ -1,6 +1,6 @@
-// The heartbeat of the servo thread, as the supervisor watches it from outside.
+// Heartbeat of the servo thread, monitored by the supervisor thread.
 //
-// Thread    the servo writes all but `drops`, which the supervisor writes; both read
+// Thread    the servo writes all members except `drops`, which the supervisor writes; both read
 #pragma once
 
 #include <atomic>
@@ -9,10 +9,10 @@
 namespace tact {
 
 struct ServoPulse {
-    std::atomic<std::int64_t> beat_ns{0};  // of the newest cycle
-    std::atomic<bool> enabled{false};      // the amplifier is wanted on
-    std::atomic<std::uint64_t> rearms{0};  // by a person
-    std::atomic<std::uint64_t> drops{0};   // by the supervisor
+    std::atomic<std::int64_t> beat_ns{0};  // time of the newest cycle
+    std::atomic<bool> enabled{false};      // the servo commands the amplifier on
+    std::atomic<std::uint64_t> rearms{0};  // number of re-arms by a person
+    std::atomic<std::uint64_t> drops{0};   // number of drops of the enable line by the supervisor
 };
 
 }  // namespace tact

@@ -42,13 +42,14 @@ void note_overrun(CycleState& c, Instant end, RtRegion& region) noexcept {
 void close(CycleState& c, const ServoSettings& settings, const ServoIo& io) noexcept {
     const Instant end = timestamp(c, io.clock);
     c.cost = end - c.now;
+    c.govern.other_s = to_s(c.cost - c.model_cost);
     publish_cycle(c, io.region);
     if (c.dry) return;
     c.statistics.spent(c.cost);
     c.govern.cost += c.cost;
     count_work(c);
     if (settings.free_running) {
-        c.behind = c.cost;  // without a plan, a long cycle is the only way to be late
+        c.behind = c.cost;  // without a planned time, only a long cycle is late
     } else {
         c.behind = end - c.planned - settings.period;
         c.overran = c.pacer.ended(end);

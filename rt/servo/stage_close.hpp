@@ -1,4 +1,4 @@
-// Stage 14: the end of the cycle. Its cost, whether it overran, its record and its trace.
+// Stage 14: ends the cycle. Measures its cost, detects an overrun, publishes record and trace.
 //
 // Thread    servo; TACT_RT
 #pragma once

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 
+#include "rt/servo/fit_level.hpp"
 #include "rt/servo/publish_levels.hpp"
 #include "rt/servo/report.hpp"
 
@@ -10,10 +11,15 @@ namespace tact::servo {
 
 namespace {
 
-constexpr double kSlowUpdateFraction = 0.9;
-
-// The levels as they are, to see which ones change.
+// Copy of all levels, to detect changes.
 using Levels = std::array<float, Governor::kPathsMax>;
+
+Levels levels_of(const Governor& governor) noexcept {
+    Levels levels{};
+    const auto paths = governor.paths();
+    for (std::size_t i = 0; i < paths.size(); ++i) levels[i] = paths[i].level;
+    return levels;
+}
 
 void report_levels(CycleState& c, const ServoSettings& settings, RtRegion& region, const Levels& before,
                    bool changed) noexcept {
@@ -21,6 +27,7 @@ void report_levels(CycleState& c, const ServoSettings& settings, RtRegion& regio
     if (changed) ++c.report.levels_sequence;
     for (std::size_t i = 0; i < paths.size(); ++i) {
         if (paths[i].level == before[i]) continue;
+        c.report.level_changed_at_ns[i] = to_ns(c.now);
         report(c, region, EventCode::level_changed, static_cast<double>(i),
                static_cast<double>(paths[i].level), static_cast<std::uint16_t>(paths[i].reason));
         if (!paths[i].knob.haptic) c.govern.display.asked(c.report.levels_sequence, c.now);
@@ -41,8 +48,8 @@ bool sample_display(CycleState& c) noexcept {
     return sample && c.governor.update(*sample);
 }
 
-// A slow update that takes longer than its period falls behind the hand, and with it what the force is computed on: to
-// the law that is a rate too low, in proportion. From kSlowUpdateFraction of a period on no level rises any more.
+// A slow update that takes longer than kSlowUpdateFraction of its period makes the force's data lag the hand. The law
+// then gets a proportionally lower rate, so levels stop rising and then fall.
 double rate_kept_up(const CycleState& c, double rate_hz) noexcept {
     const double slow_update_s = c.hand[0].model->slow_update_s();
     if (!(slow_update_s > 0.0)) return rate_hz;
@@ -50,13 +57,12 @@ double rate_kept_up(const CycleState& c, double rate_hz) noexcept {
                                  slow_update_s);
 }
 
-// A loop of fixed rate never shows more than its rate. The law needs to know whether there is time to spare: the rate
-// that the cycles of this interval would have allowed. It is cut at a tenth above the goal, so that levels come back
-// by a few percent a step and not in one leap.
-// A freely running loop that is held near its goal shows little else: the law needs the rate that whole steps without
-// rests would have made of the same time. Work is counted, not time: a step that lost its processor in the middle would
-// weigh too much. Dips that were lifted and peaks that were cut even out, so the mean of what the law gets is at the
-// goal where the mean rate is.
+// Rate with which the law can detect spare time.
+// Fixed rate: the measured rate never exceeds the loop's rate, so the law gets the rate that the cost of the cycles
+// would have allowed, at most 1.1 times the goal, so that levels return by a few percent per step.
+// Free running: rate_hold keeps the measured rate near the goal, so the law gets the rate that whole steps without
+// sleep would have reached. It counts work instead of time, because a preempted step would weigh too much.
+// Recovered deficits and sleep cancel, so the law's mean rate is at the goal when the mean rate is.
 double rate_for_law(const CycleState& c, const ServoSettings& settings, Duration interval) noexcept {
     const GovernCycle& g = c.govern;
     const double measured_hz = static_cast<double>(g.cycles) / std::max(to_s(interval), 1e-9);
@@ -98,17 +104,19 @@ void govern(CycleState& c, const ServoSettings& settings, RtRegion& region) noex
     ++g.cycles;
     g.model_cost += c.model_cost;
     g.recomputed += c.recomputed_fraction;
-    if (c.dry) return;
-    Levels before{};
-    const auto paths = c.governor.paths();
-    for (std::size_t i = 0; i < paths.size(); ++i) before[i] = paths[i].level;
+    if (c.dry) return calibrate_level(c, settings);
+    Levels before = levels_of(c.governor);
+    if (fit_level(c, settings)) {
+        report_levels(c, settings, region, before, true);
+        before = levels_of(c.governor);
+    }
 
     const bool pending = c.housekeeping.gui_attached != 0 && g.display.pending(c.now);
     if (sample_display(c)) {
         report_levels(c, settings, region, before, true);
         return start_interval(c, c.now);
     }
-    // A measurement from before the display applied the levels tells nothing about them.
+    // Rates measured before the display applies the levels do not describe them.
     if (pending && c.governor.settings().law == Law::elastic) {
         if (!g.display.pending(c.now)) start_interval(c, c.now);
         return;
@@ -118,6 +126,7 @@ void govern(CycleState& c, const ServoSettings& settings, RtRegion& region) noex
     g.law_rate_hz = rate_kept_up(c, rate_for_law(c, settings, interval));
     g.model_cost_s = to_s(g.model_cost) / static_cast<double>(g.cycles);
     set_display_present(c, settings, c.housekeeping.gui_attached != 0);
+    limit_by_slow_update(c);
     const bool changed = c.governor.step(g.law_rate_hz, interval);
     report_levels(c, settings, region, before, changed || resized(c, settings));
     start_interval(c, c.now);

@@ -1,4 +1,5 @@
-// Stage 13: the governor. It is asked once an interval, and at each frame that was drawn with the present levels.
+// Stage 13: levels. The haptic level is fitted every cycle; the law runs once an interval and at each frame that was
+// drawn with the present levels.
 //
 // Thread    servo; TACT_RT
 #pragma once
@@ -9,7 +10,7 @@ namespace tact::servo {
 
 void govern(CycleState& c, const ServoSettings& settings, RtRegion& region) noexcept TACT_RT;
 void start_interval(CycleState& c, Instant now) noexcept TACT_RT;
-// The visual paths come and go together.
+// Sets all visual paths present or absent.
 void set_display_present(CycleState& c, const ServoSettings& settings, bool present) noexcept TACT_RT;
 
 }  // namespace tact::servo

@@ -28,7 +28,7 @@ void check_lines(CycleState& c, const ServoSettings& settings, const ServoIo& io
     static_cast<void>(io.lines->read(l.sample, c.now));
     l.age = l.sample.sequence == 0 ? Duration{0} : c.now - l.sample.taken_at;
     l.stops = c.dry ? RunReason::none : lines_stop(c, settings);
-    // Contacts that have not been closed long enough since the start are no fault; nothing is armed over them.
+    // Contacts that have not been closed long enough since the start bar arming but are no fault.
     c.events.arm_barred = l.stops != RunReason::none || l.sample.state == LinesState::stopped;
     if (c.dry || (before.state == l.sample.state && before.cause == l.sample.cause)) return;
     report(c, io.region, EventCode::lines_changed, static_cast<double>(shown(l.sample.state)),
@@ -46,7 +46,7 @@ bool supervisor_dropped(CycleState& c, const ServoIo& io) noexcept {
     return dropped;
 }
 
-// Both end at ready and armed, never at a force.
+// A reset ends in ready and arming in armed, never with force.
 void rearm_lines(CycleState& c, RunState before, const ServoIo& io) noexcept {
     const bool reset = before == RunState::fault && c.run.state == RunState::ready;
     const bool armed = before == RunState::ready && c.run.state == RunState::armed;
@@ -59,7 +59,7 @@ void rearm_lines(CycleState& c, RunState before, const ServoIo& io) noexcept {
 void drive_lines(CycleState& c, const ServoIo& io) noexcept {
     bool enable = false;
     for (std::uint32_t i = 0; i < c.hands; ++i) enable = enable || c.hand[i].out.enable;
-    // The time first: the supervisor must never see an enable with an older beat.
+    // Store the time first, so that the supervisor never reads an enable with an older beat.
     io.mailbox.pulse.beat_ns.store(to_ns(c.now), std::memory_order_relaxed);
     io.mailbox.pulse.enabled.store(enable && !c.dry, std::memory_order_release);
     if (io.lines == nullptr) return;

@@ -1,4 +1,4 @@
-// Stages 3 and 11: the safety lines. What they stop, when a person has re-armed them, what they show.
+// Stages 3 and 11: read the safety lines, re-arm them, drive their outputs.
 //
 // Thread    servo; TACT_RT
 #pragma once
@@ -8,13 +8,13 @@
 
 namespace tact::servo {
 
-// Reads the lines: what they stop, and whether arming is barred.
+// Reads the lines; sets the reason for a stop and whether arming is barred.
 void check_lines(CycleState& c, const ServoSettings& settings, const ServoIo& io) noexcept TACT_RT;
 // True: the supervisor has dropped the enable line since the last cycle.
 [[nodiscard]] bool supervisor_dropped(CycleState& c, const ServoIo& io) noexcept TACT_RT;
 // After the state machine: a reset or arming by a person re-arms lines and supervisor.
 void rearm_lines(CycleState& c, RunState before, const ServoIo& io) noexcept TACT_RT;
-// The heartbeat for the supervisor, and the outputs.
+// Updates the heartbeat for the supervisor and writes the outputs.
 void drive_lines(CycleState& c, const ServoIo& io) noexcept TACT_RT;
 
 }  // namespace tact::servo

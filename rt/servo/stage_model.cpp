@@ -28,7 +28,9 @@ ToolDrive drive_of(const CycleState& c, const HandCycle& h, const ServoSettings&
 
 void step_models(CycleState& c, const ServoSettings& settings, const ServoIo& io) noexcept {
     const Instant begin = timestamp(c, io.clock);
-    const Instant end = settings.model_deadline ? begin + settings.model_max : Instant::max();
+    // Dry cycles have no deadline: they measure the cost of whole steps, and no hand is on the device.
+    const bool limited = settings.model_deadline && !c.dry;
+    const Instant end = limited ? begin + settings.model_max : Instant::max();
     c.budget = {.fidelity = io.script != nullptr ? io.script->level : c.governor.level(kForcePathIndex),
                 .deadline = end,
                 .work_fraction = static_cast<float>(work_fraction(c, settings))};
@@ -41,10 +43,10 @@ void step_models(CycleState& c, const ServoSettings& settings, const ServoIo& io
             h.deadline = {.checks = 0, .passed_at = io.script->deadline_check[i], .replayed = true};
         c.budget.deadline = Deadline(end, &h.deadline);
         h.step = h.model->step(h.tool, c.budget);
-        if (h.step.status == StepStatus::out_of_time) ++c.out_of_time;
         c.recomputed_fraction += static_cast<double>(h.step.load.recomputed_fraction) / c.hands;
     }
     c.model_cost = timestamp(c, io.clock) - begin;
+    c.deadline_missed = limited && c.model_cost > settings.model_max;
 }
 
 }  // namespace tact::servo

@@ -1,7 +1,7 @@
 // Stage 7: steps the force models within their budget.
 //
-// Drives    a tool runs while its switch is on and the force is on; a switch that cannot be read is off.
-// Budget    the governor's level, and a deadline beneath it; of a repeated cycle as recorded.
+// Drives    a tool runs while its switch and the force are on; a switch that cannot be read is off.
+// Budget    the governor's level, and a deadline as a safety net; in a replay the recorded values.
 // Thread    servo; TACT_RT
 #pragma once
 
@@ -10,7 +10,7 @@
 
 namespace tact::servo {
 
-// Sets budget, each hand's step, model_cost and recomputed_fraction. Reads the clock twice.
+// Sets budget, each hand's step, model_cost, deadline_missed and recomputed_fraction. Reads the clock twice.
 void step_models(CycleState& c, const ServoSettings& settings, const ServoIo& io) noexcept TACT_RT;
 
 }  // namespace tact::servo

@@ -14,7 +14,7 @@ bool concerns_state(CommandKind kind) noexcept {
     return kind == CommandKind::arm || kind == CommandKind::disarm || kind == CommandKind::reset_fault;
 }
 
-// Of the levels.
+// Applies an order that sets law, goal or level.
 bool order_governor(CycleState& c, const ServoSettings& settings, const ServoOrder& order) noexcept {
     switch (static_cast<CommandKind>(order.kind)) {
         case CommandKind::set_law:
@@ -65,6 +65,17 @@ void apply(CycleState& c, const ServoSettings& settings, const ServoIo& io,
     c.order = order;
 }
 
+// An arm that is pending together with a disarm is refused, whichever was ordered first.
+void take_state_order(CycleState& c, const ServoSettings& settings, const ServoIo& io) noexcept {
+    ServoOrder disarm{}, arm{};
+    const bool disarms = io.mailbox.orders.take(CommandKind::disarm, disarm);
+    const bool arms = io.mailbox.orders.take(CommandKind::arm, arm);
+    if (arms) record_mailbox(c, io.region, MailboxKind::order, arm);
+    if (disarms) record_mailbox(c, io.region, MailboxKind::order, disarm);
+    if (arms && disarms) c.mailbox.refused_arm = arm;
+    if (arms || disarms) apply(c, settings, io, disarms ? disarm : arm);
+}
+
 void watch_gui(CycleState& c, const ServoSettings& settings, RtRegion& region) noexcept {
     MailboxCycle& m = c.mailbox;
     const bool attached = c.housekeeping.gui_attached != 0;
@@ -90,11 +101,13 @@ void watch_gui(CycleState& c, const ServoSettings& settings, RtRegion& region) n
 void take_orders(CycleState& c, const ServoSettings& settings, const ServoIo& io) noexcept {
     c.events = {};
     c.order = {};
+    c.mailbox.refused_arm = {};
     if (io.mailbox.housekeeping.count() != c.mailbox.reports_seen) {
         c.mailbox.reports_seen = io.mailbox.housekeeping.count();
         if (io.mailbox.housekeeping.read(c.housekeeping))
             io.region.reports.push({.step = c.step, .said = c.housekeeping});
     }
+    take_state_order(c, settings, io);
     ServoOrder order{};
     for (int i = 0;
          i < kOrdersPerCycle && c.order.kind == 0 && io.mailbox.orders.next(c.mailbox.orders, order); ++i) {
@@ -111,7 +124,12 @@ void answer_state_order(CycleState& c, RunState before, RtRegion& region) noexce
     if (kind == CommandKind::arm) good = amplifier_on(c.run.state);
     if (kind == CommandKind::disarm) good = c.run.state == RunState::ready;
     if (kind == CommandKind::reset_fault) good = before == RunState::fault && c.run.state == RunState::ready;
+    // The last answer is that to the newest order.
+    const ServoOrder& arm = c.mailbox.refused_arm;
+    const bool arm_is_newer = arm.sequence > c.order.sequence;
+    if (arm.kind != 0 && !arm_is_newer) acknowledge(c, region, arm, CommandResult::refused_state);
     acknowledge(c, region, c.order, good ? CommandResult::done : CommandResult::refused_state);
+    if (arm.kind != 0 && arm_is_newer) acknowledge(c, region, arm, CommandResult::refused_state);
 }
 
 }  // namespace tact::servo

@@ -1,7 +1,8 @@
-// Stage 2: the mailbox. Orders of a person, and what the visual process reports.
+// Stage 2: takes orders and the reports of the visual process from the mailbox.
 //
-// Orders    at most four a cycle, and none behind one that concerns the state; the state machine answers that one.
-// Silence   of a visual process that ever reported, whether it left or hangs.
+// Orders    arm and disarm first, before all others; disarm wins. Then at most four others per cycle, and none after an
+//           order to the state machine, which answers it.
+// Silence   reported for a visual process that has reported before, whether it ended or hangs.
 // Thread    servo; TACT_RT
 #pragma once
 
@@ -10,9 +11,9 @@
 
 namespace tact::servo {
 
-// Sets housekeeping, order and events of this cycle; answers every other order.
+// Sets housekeeping, order and events of this cycle; answers all orders except those to the state machine.
 void take_orders(CycleState& c, const ServoSettings& settings, const ServoIo& io) noexcept TACT_RT;
-// After the state machine.
+// Call after the state machine.
 void answer_state_order(CycleState& c, RunState before, RtRegion& region) noexcept TACT_RT;
 
 }  // namespace tact::servo

@@ -1,4 +1,4 @@
-// Stage 5: from the devices' frames to the world.
+// Stage 5: transforms poses and velocities from the device frames to the world frame.
 //
 // Thread    servo; TACT_RT
 #pragma once
@@ -7,7 +7,7 @@
 
 namespace tact::servo {
 
-// Sets each hand's tool. Without a usable sample the last good one stays; the watchdog decides.
+// Sets each hand's tool. Without a usable sample the last good pose stays; the watchdogs handle the loss.
 void pose(CycleState& c, const ServoSettings& settings) noexcept TACT_RT;
 
 }  // namespace tact::servo

@@ -10,7 +10,7 @@ namespace tact::servo {
 
 namespace {
 
-// The topic and the models number the same; neither knows the other.
+// The topic and the models use the same constants without including each other.
 static_assert(ModelBodies::kMax == kBodiesMax && ModelBodies::kNone == kNoBody &&
               ModelBodies::kFixed == kBodyFixed);
 
@@ -61,13 +61,22 @@ void publish(CycleState& c, const ServoSettings& settings, RtRegion& region) noe
     if (c.dry) return;
     c.statistics.rate.count();
     c.statistics.work.add(c.recomputed_fraction);
+    c.armed.add({.armed = c.run.state == RunState::active,
+                 .deadline_missed = c.deadline_missed,
+                 .level = static_cast<double>(c.budget.fidelity),
+                 .error_n = c.hand[0].step.load.error,
+                 .force_world_n = c.hand[0].shown_world.force_n},
+                c.now);
     if (c.now - c.report.health_at >= std::chrono::milliseconds(100)) {
         c.statistics.rate.turn(c.now);
         c.statistics.work.turn(c.now);
         c.report.health_at = c.now;
         c.report.health_due = true;
         publish_devices(c, region.devices);
-        if (c.statistics.second_over(c.now)) publish_lateness(c, region.lateness);
+        if (c.statistics.second_over(c.now)) {
+            c.armed.second_over();
+            publish_lateness(c, region.lateness);
+        }
         bound_by_delay(c, settings);
     }
     if (c.report.health_due) publish_health(c, settings, region.health);

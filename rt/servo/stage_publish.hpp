@@ -1,4 +1,4 @@
-// Stage 12: publishes the cycle. Tools and bodies each cycle, health and devices ten times a second.
+// Stage 12: publishes tools and bodies each cycle, health and devices ten times a second.
 //
 // Thread    servo; TACT_RT
 #pragma once
@@ -7,7 +7,7 @@
 
 namespace tact::servo {
 
-// Each model publishes its own topic here too (ForceModel::publish).
+// Also lets each model publish its own topic (ForceModel::publish).
 void publish(CycleState& c, const ServoSettings& settings, RtRegion& region) noexcept TACT_RT;
 
 }  // namespace tact::servo

@@ -11,7 +11,7 @@ namespace tact::servo {
 
 namespace {
 
-// A stop ramps out in rt/safety's ramp_out_s; the amplifier goes off after this at the latest.
+// A stop ramps the force out within rt/safety's ramp_out_s; the amplifier is off after kStopMax at the latest.
 constexpr Duration kStopMax = std::chrono::milliseconds(100);
 
 WatchdogInput watched_of(CycleState& c, const ServoSettings& settings, const ServoIo& io) noexcept {
@@ -57,7 +57,7 @@ void advance_state(CycleState& c, const ServoIo& io) noexcept {
     if (!c.dry) c.run = next_status(c.run, c.events, c.now);
 }
 
-// A limit that acts for a second would fill the ring with itself; each is reported at most twice a second.
+// Each limit is reported at most twice a second, so that a lasting one does not fill the event ring.
 void report_limits(CycleState& c, HandCycle& h, RtRegion& region) noexcept {
     if (c.dry || h.out.acts == 0 || !force_may_flow(c.run.state)) return;
     const ChainSettings& limit = h.chain.settings();
@@ -85,8 +85,8 @@ void report_notice(CycleState& c, HandCycle& h, std::uint32_t hand, RtRegion& re
 }
 
 void apply_chain(CycleState& c, HandCycle& h, const ServoSettings& settings, RtRegion& region) noexcept {
-    // Where an emulated device's watchdog latches no fault, a cycle without enable gives it its edge, and
-    // the ramp starts anew.
+    // If the watchdog of an emulated device latches no fault, one cycle without enable provides its rising edge,
+    // and the ramp restarts.
     const bool dropped = h.sample.state == DeviceState::watchdog_tripped;
     if (dropped && amplifier_on(c.run.state))
         report(c, region, EventCode::device_watchdog, to_us(c.dt) * 1e-3, 0.0);

@@ -1,4 +1,4 @@
-// Stage 9: watchdogs, state machine, and the chain that every force passes.
+// Stage 9: watchdogs, state machine, and the output chain for every force.
 //
 // Thread    servo; TACT_RT
 #pragma once
@@ -8,7 +8,7 @@
 
 namespace tact::servo {
 
-// Sets trip, run, and each hand's out and shown_world. A fault leaves a snapshot in the mailbox.
+// Sets trip, run, and each hand's out and shown_world. A fault publishes a snapshot in the mailbox.
 void make_safe(CycleState& c, const ServoSettings& settings, const ServoIo& io) noexcept TACT_RT;
 
 }  // namespace tact::servo

@@ -7,7 +7,7 @@
 
 namespace tact::servo {
 
-// Of each hand: the newest sample, its status, and whether it is usable (not lost, all of it finite).
+// Sets each hand's newest sample, its status, and whether it is usable (device not lost, all values finite).
 void sense(CycleState& c) noexcept TACT_RT;
 
 }  // namespace tact::servo

@@ -8,11 +8,11 @@ namespace tact::servo {
 
 namespace {
 
-// Of a hand and an arm together, the lightest: a damper is stable for it at a delay.
+// Least effective mass of hand and arm; bounds the damping that is stable at a delay.
 constexpr double kHandMassLeastKg = 0.1;
 
-// Beyond what is stable at today's delay the whole field is felt weaker, so that no pose is unstable; walls and
-// damping have bounds of their own. While nothing is felt the gains settle at once.
+// Scales the whole field down to the stiffness that is stable at the present delay; walls and damping have bounds of
+// their own. Without force at the device, the gains settle at once.
 void smooth_gains(HandCycle& h, const ServoSettings& settings, const DelayBounds& bounds,
                   double dt_s) noexcept {
     const auto within = [](double wanted, double max) { return wanted > max ? max / wanted : 1.0; };

@@ -1,4 +1,4 @@
-// Stage 8: field, walls and damping, each within what is stable at the delay of the devices.
+// Stage 8: limits field, walls and damping to values that are stable at the delay of the devices.
 //
 // Thread    servo; TACT_RT
 #pragma once

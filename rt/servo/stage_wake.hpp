@@ -1,4 +1,4 @@
-// Stage 1: waits for the instant of the cycle, and takes it.
+// Stage 1: waits for the planned time of the cycle and reads the clock.
 //
 // Thread    servo; TACT_RT
 #pragma once
@@ -8,7 +8,7 @@
 
 namespace tact::servo {
 
-// Sets now, planned, lateness and dt, and counts the cycle. A dry or freely running cycle is never late.
+// Sets now, planned, lateness and dt, and counts the cycle. Dry and free-running cycles are never late.
 void wake(CycleState& c, const ServoSettings& settings, Clock& clock) noexcept TACT_RT;
 
 }  // namespace tact::servo

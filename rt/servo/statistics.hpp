@@ -11,7 +11,7 @@
 
 namespace tact {
 
-// Updates per second over a sliding second, in tenths.
+// Updates per second over a sliding window of ten slots of 0.1 s.
 class RateWindow {
 public:
     void start(Instant now) noexcept {
@@ -22,7 +22,7 @@ public:
         ++in_slot_;
         ++total_;
     }
-    // A tenth of a second is over.
+    // Call every 0.1 s.
     void turn(Instant now) noexcept TACT_RT {
         slots_[next_ % kSlots] = {now - slot_at_, in_slot_};
         ++next_;
@@ -54,8 +54,8 @@ private:
     std::uint64_t in_slot_ = 0, total_ = 0;
 };
 
-// How a freely running loop held its rate in the last tenth of a second: how much of the model's work its
-// updates did anew, and how long it rested.
+// How a free-running loop held its rate in the last 0.1 s: the recomputed fraction of the model's work, and the
+// fraction of the time that the loop slept.
 class WorkWindow {
 public:
     void start(Instant now) noexcept {
@@ -68,7 +68,7 @@ public:
         ++n_;
     }
     void rested(Duration d) noexcept TACT_RT { rest_ += d; }
-    // A tenth of a second is over.
+    // Call every 0.1 s.
     void turn(Instant now) noexcept TACT_RT {
         mean_ = n_ > 0 ? sum_ / static_cast<double>(n_) : 1.0;
         least_ = now_least_;
@@ -81,7 +81,7 @@ public:
     }
     [[nodiscard]] double recomputed_fraction_mean() const noexcept TACT_RT { return mean_; }
     [[nodiscard]] double recomputed_fraction_least() const noexcept TACT_RT { return least_; }
-    [[nodiscard]] double rested() const noexcept TACT_RT { return rested_; }  // of the time
+    [[nodiscard]] double rested() const noexcept TACT_RT { return rested_; }  // fraction of the time
 
 private:
     double sum_ = 0.0, now_least_ = 1.0;
@@ -129,7 +129,7 @@ public:
     RateWindow rate;
     WorkWindow work;
     DurationHistogram lateness;  // since start
-    WindowMetrics metrics;       // of the last whole second; before the first, so far
+    WindowMetrics metrics;       // of the last whole second; in the first second, so far
 
 private:
     [[nodiscard]] WindowMetrics evaluate() const noexcept {

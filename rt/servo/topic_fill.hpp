@@ -1,4 +1,4 @@
-// Vectors and durations as topics carry them.
+// Converts vectors and durations to topic members.
 #pragma once
 
 #include <algorithm>
@@ -17,7 +17,7 @@ inline void put(float (&to)[3], const Vec3& from) noexcept TACT_RT {
 inline void put(double (&to)[4], const Quat& from) noexcept TACT_RT {
     std::copy_n(from.coeffs().data(), 4, to);
 }
-// 0 to 2 s.
+// Clamped to 0 to 2 s, in ns.
 [[nodiscard]] inline std::int32_t cut_ns(Duration d) noexcept TACT_RT {
     return static_cast<std::int32_t>(std::clamp<std::int64_t>(d.count(), 0, 2'000'000'000));
 }

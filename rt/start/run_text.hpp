@@ -1,4 +1,4 @@
-// How this controller was started, for recordings: its arguments and the files that they name.
+// The start parameters of this controller, for recordings: its arguments and the files that they name.
 #pragma once
 
 #include <span>
@@ -8,7 +8,7 @@
 
 namespace tact {
 
-// Start-up. What does not fit, or cannot be read any more, is marked as too long.
+// Start-up. Marks texts that do not fit, or files that cannot be read, as too long.
 void tell_how_started(std::span<char* const> arguments, const StartOptions& options, RunText& text);
 
 }  // namespace tact

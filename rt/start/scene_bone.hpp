@@ -1,7 +1,7 @@
-// The bone of a run: a copy of the scene's in the region "tact.bone", which a window may watch, and the octree over it.
+// The bone of a run: a copy of the scene's bone in the region "tact.bone", which a window may map, and the octree over it.
 //
-// Memory   all of it is filled, so every page is there before the servo thread needs it.
-// Thread   made at the start (may throw StartupError); then the bone belongs to the servo thread. Outlives its models.
+// Memory   filled at start-up, so every page is resident before the servo thread needs it.
+// Thread   constructed at start-up (may throw StartupError); then owned by the servo thread. Outlives its models.
 #pragma once
 
 #include <optional>
@@ -14,7 +14,7 @@ namespace tact {
 
 class SceneBone {
 public:
-    explicit SceneBone(const SceneFile& scene);  // with a section BONE
+    explicit SceneBone(const SceneFile& scene);  // scene: with a section BONE
     [[nodiscard]] DrillBone& bone() { return *bone_; }
     [[nodiscard]] int fd() const { return region_->fd(); }
 

@@ -16,12 +16,12 @@ namespace {
 
 using nlohmann::json;
 
-constexpr std::uintmax_t kFileBytesMax = std::uintmax_t{16} << 20;  // a report with a whole run's rows
-constexpr double kFarthestM = 1e3;                                  // the model says what its scene allows
+constexpr std::uintmax_t kFileBytesMax = std::uintmax_t{16} << 20;  // more than any report of a run
+constexpr double kFarthestM = 1e3;  // plausibility only; the model checks its scene's range
 
 [[noreturn]] void fail(const std::string& where, const std::string& why) {
-    throw StartupError("reading the places in " + where, why,
-                       "give the file that tact run --json or --out wrote");
+    throw StartupError("reading the start poses in " + where, why,
+                       "give a file written by tact run --json or --out");
 }
 
 template <std::size_t N>
@@ -31,7 +31,7 @@ std::array<double, N> numbers(const json& body, const char* key, const std::stri
     if (found == body.end() || !found->is_array() || found->size() != N)
         fail(where, std::string(key) + " is not a list of " + std::to_string(N) + " numbers");
     for (std::size_t i = 0; i < N; ++i) {
-        if (!(*found)[i].is_number()) fail(where, std::string(key) + " holds something else than numbers");
+        if (!(*found)[i].is_number()) fail(where, std::string(key) + " holds values that are not numbers");
         values[i] = (*found)[i].get<double>();
     }
     return values;
@@ -45,25 +45,25 @@ bool flag(const json& body, const char* key, const std::string& where) {
 }
 
 StartBody parse_body(const json& body, const std::string& where, const std::vector<std::string>& names) {
-    if (!body.is_object()) fail(where, "it is no object");
+    if (!body.is_object()) fail(where, "it is not a JSON object");
     StartBody start;
     const auto structure = body.find("structure");
     if (structure == body.end() || !structure->is_number_unsigned() ||
         structure->get<std::uint64_t>() >= names.size())
-        fail(where,
-             "structure is not one of 0 to " + std::to_string(names.size() - 1) + ", as this scene has");
+        fail(where, "structure is outside 0 to " + std::to_string(names.size() - 1) +
+                        ", the structures of this scene");
     start.structure = structure->get<std::uint32_t>();
     const auto name = body.find("name");
     if (name != body.end() && (!name->is_string() || name->get<std::string>() != names[start.structure]))
         fail(where, "structure " + std::to_string(start.structure) + " of this scene is '" +
-                        names[start.structure] + "', and not what the file calls it");
+                        names[start.structure] + "', but the file has another name");
     const auto p_a = numbers<3>(body, "pos_model_a", where);
     const auto q = numbers<4>(body, "quat_model_body_xyzw", where);
     start.T_model_body = {kAngstromM * Vec3(p_a.data()), Quat(q.data())};
     const double turn = start.T_model_body.q.norm();
     if (!start.T_model_body.finite() || start.T_model_body.p_m.cwiseAbs().maxCoeff() > kFarthestM ||
         !(turn > 0.98 && turn < 1.02))
-        fail(where, "its place is not finite, or its rotation no unit quaternion");
+        fail(where, "its position is not finite, or its rotation is not a unit quaternion");
     start.T_model_body.q.normalize();
     start.fixed = flag(body, "fixed", where);
     start.in_hand = flag(body, "in_hand", where);
@@ -81,7 +81,7 @@ std::vector<StartBody> parse_start_bodies(const std::string& text, const std::st
     if (!all.is_object() || bodies == all.end() || !bodies->is_array())
         fail(where, "it has no list \"bodies\"");
     if (bodies->empty() || bodies->size() > ModelBodies::kMax)
-        fail(where, "it lists " + std::to_string(bodies->size()) + " bodies, not 1 to " +
+        fail(where, "it lists " + std::to_string(bodies->size()) + " bodies instead of 1 to " +
                         std::to_string(ModelBodies::kMax));
     std::vector<StartBody> start;
     for (std::size_t i = 0; i < bodies->size(); ++i)
@@ -92,7 +92,7 @@ std::vector<StartBody> parse_start_bodies(const std::string& text, const std::st
 std::vector<StartBody> read_start_bodies(const std::filesystem::path& path,
                                          const std::vector<std::string>& names) {
     std::error_code error;
-    const auto bytes = std::filesystem::file_size(path, error);  // an error for what is no file, too
+    const auto bytes = std::filesystem::file_size(path, error);  // fails also if the path is not a file
     std::ifstream in(path, std::ios::binary);
     if (error || !in) fail("'" + path.string() + "'", "the file cannot be opened");
     if (bytes > kFileBytesMax) fail("'" + path.string() + "'", "it is larger than any report of a run");

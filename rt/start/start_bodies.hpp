@@ -1,13 +1,12 @@
-// Where the bodies of a run start: what the options say, or a file in which an earlier run wrote its end.
+// Start poses of the bodies of a run: from the options, or from a file with the final poses of an earlier run.
 //
-// File     JSON, an object with a list "bodies", as in the report of `tact run --json`. Of each body:
-//          "structure" (index in the scene), "pos_model_a" (centre of mass, model axes, angstrom) and
-//          "quat_model_body_xyzw" (unit length within 2 %, then normalized); may have "name" (of the
-//          structure, which then has to be so called in this scene), "fixed" and "in_hand" (true or false).
-//          Anything else in the file is passed over.
-// Copies   of the first structure stand free on a circle about the map, in the plane of the screen, a tenth
-//          outside of its box, the first of them at the top.
-// Thread   start-up only. Fails by StartupError naming the file, the body and what is wrong.
+// File     JSON, an object with a list "bodies", as in the report of `tact run --json`. Each body has "structure" (index
+//          in the scene), "pos_model_a" (centre of mass, model axes, angstrom) and "quat_model_body_xyzw" (unit length
+//          within 2 %, then normalized). Optional: "name" (must equal the structure's name in this scene), "fixed" and
+//          "in_hand" (true or false). Other members are ignored.
+// Copies   of the first structure are free, on a circle around the map in the plane of the screen, a tenth outside its
+//          box, the first copy at the top.
+// Thread   start-up only. Fails by StartupError with file, body and problem.
 #pragma once
 
 #include <cstdint>
@@ -26,7 +25,7 @@ std::vector<StartBody> read_start_bodies(const std::filesystem::path& path,
 std::vector<StartBody> parse_start_bodies(const std::string& text, const std::string& file,
                                           const std::vector<std::string>& names);
 
-// All copies of structure 0 but the first.
+// The copies of structure 0, without the first body.
 std::vector<StartBody> copies_about(const DensityGrid& grid, std::uint32_t copies);
 
 }  // namespace tact

@@ -10,8 +10,8 @@
 namespace tact {
 namespace {
 
-constexpr double kTubeM = 40e-3;     // that is felt, where it is thick enough
-constexpr double kTubeBalls = 28.0;  // of a diameter each; DrillTool::kMax with the tip and the rounding
+constexpr double kTubeM = 40e-3;     // length of the tube in the force model, if it is thick enough
+constexpr double kTubeBalls = 28.0;  // longest tube in diameters; DrillTool::kMax minus tip and rounding
 
 DriveSwitch switch_named(const std::string& name) {
     return name == "line" ? DriveSwitch::line : name == "always" ? DriveSwitch::always : DriveSwitch::button;
@@ -78,8 +78,8 @@ std::unique_ptr<DrillModel> load_drill(const SceneFile& scene, const RtConfig& c
     const SceneMeta meta = read_meta(scene);
     DrillSettings settings = hand == 0 ? burr_settings(config, seed) : suction_tube_settings(config, seed);
     if (fit_to_voxels(settings, meta, shared.bone().octree.bricks()))
-        spdlog::warn("{} of {:.2f} mm is felt, as thin as the voxels allow",
-                     settings.tool.cuts ? "a shaft" : "a suction tube", 2e3 * settings.tool.shaft_radius_m);
+        spdlog::warn("the {} is thinner than the voxels allow; the force model uses a diameter of {:.2f} mm",
+                     settings.tool.cuts ? "shaft" : "suction tube", 2e3 * settings.tool.shaft_radius_m);
     auto model = std::make_unique<DrillModel>(meta, shared.bone(), settings);
     model->publish_to(shared.publisher());
     return model;

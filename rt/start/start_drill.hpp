@@ -1,6 +1,6 @@
-// A scene with bone: a burr in the first hand, a suction tube in the second, as the configuration has them.
+// A drilling scene: a burr in the first hand, a suction tube in the second, with the settings of the configuration.
 //
-// Thread  start-up. Values are checked where the models are made.
+// Thread  start-up. The models check the values.
 #pragma once
 
 #include <memory>
@@ -29,17 +29,17 @@ private:
 };
 
 [[nodiscard]] DrillSettings burr_settings(const RtConfig& config, std::uint64_t seed);
-// A tube: a ball at its tip and a shaft as thick. It cuts nothing.
+// A tube: a ball at its tip and a shaft of the same diameter. It does not cut.
 [[nodiscard]] DrillSettings suction_tube_settings(const RtConfig& config, std::uint64_t seed);
 [[nodiscard]] DrillRates drill_rates(const RtConfig& config);
 // The switch of the burr (hand 0) or of the suction (hand 1).
 [[nodiscard]] DriveInput drill_switch(const RtConfig& config, std::uint32_t hand);
 
-// Nothing thinner than a voxel can be felt: shaft and tube become as thick as one. True: one did. A head that is too
-// small stays as it is, and the model refuses it.
+// Widens a shaft or tube that is thinner than a voxel to one voxel; returns true if it did. Leaves a head that is too
+// small unchanged; the model then refuses it.
 [[nodiscard]] bool fit_to_voxels(DrillSettings& settings, const SceneMeta& meta, const BoneBricks& bricks);
 
-// The tool of a hand. The shared scene outlives it.
+// Loads the tool of a hand. The shared scene must outlive it.
 [[nodiscard]] std::unique_ptr<DrillModel> load_drill(const SceneFile& scene, const RtConfig& config,
                                                      std::uint64_t seed, DrillScene& shared,
                                                      std::uint32_t hand);

@@ -54,10 +54,10 @@ void describe(CLI::App& app, StartOptions& o, StartOverrides& v) {
     app.add_option("--priority", v.priority, "FIFO priority of the servo thread; 0: ordinary scheduling")
         ->check(CLI::Range(0, 94));
     auto* offset = app.add_option("--start-offset-a", o.start_offset_a,
-                                  "Start distance of the first body from the place in its file (angstrom)")
+                                  "Start distance of the first body from its pose in the scene (angstrom)")
                        ->check(CLI::Range(0.0, 1e4));
     auto* rotation = app.add_option("--start-rotation-deg", o.start_rotation_deg,
-                                    "Start rotation of the first body from the place in its file (degrees)")
+                                    "Start rotation of the first body from its pose in the scene (degrees)")
                          ->check(CLI::Range(0.0, 180.0));
     auto* copies =
         app.add_option("--copies", o.copies,
@@ -111,7 +111,7 @@ RtConfig configure(const StartOptions& o, const StartOverrides& v) {
         c.servo.free_running = false;
     }
     if (v.free_run) c.servo.free_running = true;
-    // A FIFO loop that never sleeps would be throttled, so free running is ordinary unless asked otherwise.
+    // The kernel throttles a FIFO loop that never sleeps, so free running uses ordinary scheduling by default.
     if (c.servo.free_running && !v.priority) c.servo.priority = 0;
     if (v.priority) c.servo.priority = *v.priority;
     if (v.core) c.servo.core = *v.core;

@@ -1,6 +1,6 @@
-// The command line of the controller, and what follows from it and from the configuration.
+// The command line of the controller, and the settings from command line and configuration.
 //
-// Thread  start-up. Also of a replay, which starts the models as the recorded controller did.
+// Thread  start-up. A replay uses it too, to start the models as the recorded controller did.
 #pragma once
 
 #include <cstdint>
@@ -30,7 +30,7 @@ struct StartOptions {
     SurfaceSettings surface;
 };
 
-// The command line goes on top of the file, so it is parsed into these and applied after it.
+// Values of the command line, which override those of the configuration file.
 struct StartOverrides {
     std::optional<double> rate_hz, goal_hz, display_goal_hz, force_scale;
     std::optional<std::string> law, hand, hand2, surface_mode, pedal, burr_shape;
@@ -41,7 +41,7 @@ struct StartOverrides {
 };
 
 void describe(CLI::App& app, StartOptions& options, StartOverrides& overrides);
-// Throws StartupError for a file or value that cannot be.
+// Throws StartupError for an invalid file or value.
 [[nodiscard]] RtConfig configure(const StartOptions& options, const StartOverrides& overrides);
 
 }  // namespace tact

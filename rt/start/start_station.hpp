@@ -1,9 +1,9 @@
-// The report of tact station verify in the log of the controller.
+// Logs the report of tact station verify.
 #pragma once
 
 namespace tact {
 
-// Logs whether one applies to this machine and kernel, and how old it is. Nothing depends on it.
+// Logs whether a report applies to this machine and kernel, and its age. Nothing depends on it.
 void log_station_report();
 
 }  // namespace tact

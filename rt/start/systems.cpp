@@ -18,7 +18,7 @@
 namespace tact {
 namespace {
 
-// Null: the system has no model for that hand.
+// Null: the system has no model for the hand.
 using Model = std::unique_ptr<ForceModel>;
 
 Model make_docking(const SystemInput& in, SharedScene* /*shared*/, std::uint32_t hand) {
@@ -68,7 +68,7 @@ std::unique_ptr<SharedScene> share_bone(const SystemInput& in) {
 std::string summary_of_drilling(const RtRegion& region) {
     DrillTopic t{};
     if (!region.drill.read(t)) return {};
-    return fmt::format("{:.1f} mm3 of bone taken",
+    return fmt::format("{:.1f} mm3 of bone removed",
                        1e9 * static_cast<double>(t.hand[0].removed_levels) * t.level_m3);
 }
 
@@ -92,7 +92,7 @@ std::span<const System> systems() { return kSystems; }
 const System& system_of(SceneKind kind) {
     for (const System& s : kSystems)
         if (s.kind == kind) return s;
-    throw StartupError("choosing the force model", "this controller knows no scene of this kind",
+    throw StartupError("choosing the force model", "this controller does not support this kind of scene",
                        "use the controller of the version that baked the scene");
 }
 

@@ -1,4 +1,4 @@
-// The systems that the controller knows: one row for each kind of scene. A new system is a folder in rt/force and a row.
+// The systems that the controller supports: one row per kind of scene. A new system needs a folder in rt/force and a row.
 //
 // Thread  start-up; fails by StartupError
 #pragma once
@@ -17,14 +17,14 @@
 
 namespace tact {
 
-// What the models of a run have in common, and a region that a window may map. Outlives the models.
+// Data shared by the models of a run, with an optional region that a window may map. Outlives the models.
 class SharedScene {
 public:
     virtual ~SharedScene() = default;
     [[nodiscard]] virtual int fd() const { return -1; }  // of the region; -1: none
 };
 
-// What a system starts from; outlives it.
+// The inputs of a system; outlives it.
 struct SystemInput {
     const SceneFile& scene;
     const StartOptions& options;
@@ -36,10 +36,10 @@ struct System {
     SceneKind kind;
     const char* name;
     std::span<const VisualPath> visual_paths;
-    // The model of a hand, with the topic that it publishes.
+    // Makes the model of a hand and sets the topic that it publishes.
     std::unique_ptr<ForceModel> (*make)(const SystemInput& input, SharedScene* shared, std::uint32_t hand);
-    std::unique_ptr<SharedScene> (*share)(const SystemInput& input) = nullptr;  // null: nothing is shared
-    DriveInput (*drive)(const RtConfig& config, std::uint32_t hand) = nullptr;  // null: no tool is driven
+    std::unique_ptr<SharedScene> (*share)(const SystemInput& input) = nullptr;  // null: no shared data
+    DriveInput (*drive)(const RtConfig& config, std::uint32_t hand) = nullptr;  // null: no driven tools
     std::string (*summary)(const RtRegion& region) = nullptr;  // for the log at the end; null: none
 };
 
@@ -53,10 +53,10 @@ public:
 
     [[nodiscard]] int fd() const { return shared_ ? shared_->fd() : -1; }  // of the shared region; -1: none
     [[nodiscard]] std::span<const VisualPath> visual_paths() const { return system_.visual_paths; }
-    // A hand for which the system has no model holds nothing.
+    // Returns a PointerModel if the system has no model for the hand.
     [[nodiscard]] std::unique_ptr<ForceModel> make_model(std::uint32_t hand) const;
     [[nodiscard]] DriveInput drive(std::uint32_t hand) const;
-    [[nodiscard]] std::string summary() const;  // empty: there is nothing to say
+    [[nodiscard]] std::string summary() const;  // empty: none
 
 private:
     SystemInput input_;

@@ -1,6 +1,6 @@
-// The paths of the display: their knobs, and what the visual process reports of each.
+// The fidelity paths of the display: their knobs, and the load that the visual process reports for each.
 //
-// Floor     the level at which a person still recognizes what is shown. The slew is the law's.
+// Floor     the lowest level at which a person recognizes the scene. The law sets the slew.
 #pragma once
 
 #include <array>
@@ -10,12 +10,12 @@
 
 namespace tact {
 
-// Triangles, of a surface or of contours.
+// Triangles of a surface or of contours.
 inline constexpr std::array kMeshPaths{VisualPath{{.path = kMeshPath, .floor = 0.01F, .start = 1.0F},
                                                   &HousekeepingReport::gui_vertices_max,
                                                   &HousekeepingReport::gui_busy_s}};
-// Rays through bone: with fewer, walls and openings cannot be told apart. A tenth of the dust and the water still shows
-// where the burr cuts and what is hidden.
+// Rays through bone: below the floor, walls and openings look alike. A tenth of the dust and water particles still shows
+// where the burr cuts and what they hide.
 inline constexpr std::array kBonePaths{VisualPath{{.path = kVolumePath, .floor = 0.03F, .start = 1.0F},
                                                   &HousekeepingReport::gui_vertices_max,
                                                   &HousekeepingReport::gui_busy_s},

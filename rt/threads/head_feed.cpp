@@ -24,7 +24,7 @@ const char* words(TrackerLink link) noexcept {
         case TrackerLink::bus_off:
             return "its bus is off after errors";
         case TrackerLink::gone:
-            return "its interface is gone; it is looked for twice a second";
+            return "its interface is gone; retrying twice per second";
     }
     return "unknown";
 }
@@ -53,7 +53,7 @@ TrackerInfo HeadFeed::open() {
 }
 
 void HeadFeed::start() {
-    // The new thread inherits a mask that lets no signal in: they belong to main.
+    // The new thread inherits a mask that blocks all signals; main handles them.
     sigset_t all, before;
     sigfillset(&all);
     pthread_sigmask(SIG_SETMASK, &all, &before);
@@ -116,7 +116,7 @@ void HeadFeed::publish() noexcept {
     const bool fresh = newest_.state == TrackerState::fresh;
     put(filter_.pose().p_m, h.pos_screen_m);
     std::copy_n(filter_.pose().q.coeffs().data(), 4, h.quat_screen_head_xyzw);
-    // A head that is not seen stands.
+    // Zero velocity if the tracker has lost the head.
     put(fresh ? filter_.twist().linear_m_s : Vec3(Vec3::Zero()), h.velocity_screen_m_s);
     put(fresh ? filter_.twist().angular_rad_s : Vec3(Vec3::Zero()), h.angular_screen_rad_s);
     h.quality = newest_.quality;

@@ -1,8 +1,8 @@
-// From the head tracker to the head topic: filtered, in the frame of the screen; and what it counts to the tracker topic.
+// Publishes the filtered head pose in the screen frame (topic `head`) and the tracker's counters (topic `tracker`).
 //
-// Thread   "head", ordinary scheduling; it sees every sample of a tracker of up to 500 Hz and publishes
-//          each once. step() may be called instead, by a test.
-// Fails by the topic's state and link. Nothing of it reaches the force.
+// Thread   "head", ordinary scheduling; reads every sample of a tracker of up to 500 Hz and publishes each once. Tests
+//          call step() instead.
+// Fails by the topic's state and link. The force does not depend on it.
 #pragma once
 
 #include <atomic>
@@ -46,11 +46,11 @@ private:
     std::unique_ptr<Tracker> tracker_;
     Latest<HeadTopic>& topic_;
     Latest<TrackerTopic>& counts_;
-    double rate_hz_ = 0.0;  // that its maker names
+    double rate_hz_ = 0.0;  // nominal rate of the tracker
     Instant counted_at_{};
     HeadFilter filter_;
     TrackerSample newest_;
-    std::uint64_t filtered_ = 0;  // sequence of the sample that the filter saw last
+    std::uint64_t filtered_ = 0;  // sequence number of the last filtered sample
     TrackerLink link_ = TrackerLink::closed;
     std::atomic<bool> leave_{false};
     std::thread thread_;

@@ -4,20 +4,17 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 #include <iterator>
 #include <numeric>
 
 #include "ipc/topics/text.hpp"
-#include "rt/govern/law.hpp"
 #include "rt/threads/thread_setup.hpp"
 
 namespace tact {
 
 namespace {
 
-constexpr int kPollMs = 10;           // a command waits for no longer than this
-constexpr int kCommandsPerTurn = 16;  // the ring holds 64: a flood costs bounded work and is seen as missed
+constexpr int kPollMs = 10;  // longest wait of a command
 
 std::atomic<ServoMailbox*> signalled{nullptr};
 static_assert(std::atomic<ServoMailbox*>::is_always_lock_free);
@@ -27,75 +24,7 @@ extern "C" void on_signal(int number) {
     if (mailbox != nullptr) mailbox->stop_signal.store(number, std::memory_order_relaxed);
 }
 
-// A place that some scene may have: no model is kilometres wide. What a scene really has the model says.
-bool read_pose(const CommandTopic& command, ServoOrder& order) {
-    double square = 0.0;
-    for (const double p : command.pos_model_m)
-        if (!(std::abs(p) <= 1e3)) return false;
-    for (const double q : command.quat_model_body_xyzw) square += q * q;
-    if (!(square > 0.98 && square < 1.02)) return false;
-    std::copy(std::begin(command.pos_model_m), std::end(command.pos_model_m), order.pos_model_m);
-    for (int i = 0; i < 4; ++i)
-        order.quat_model_body_xyzw[i] = command.quat_model_body_xyzw[i] / std::sqrt(square);
-    return true;
-}
-
-// Which bodies there are only the servo knows.
-bool read_body_order(const CommandTopic& command, ServoOrder& order) {
-    order.body = command.body;
-    const bool id = command.body != 0 && command.body != kNoBody;
-    const bool yes_or_no = command.value == 0.0 || command.value == 1.0;
-    switch (static_cast<CommandKind>(command.kind)) {
-        case CommandKind::select_body:
-            return command.body != 0;
-        case CommandKind::fix_body:
-            return id && yes_or_no;
-        case CommandKind::place_body:
-            return id && read_pose(command, order);
-        case CommandKind::add_body:
-            return command.body <= 0xFFFFU && read_pose(command, order);
-        case CommandKind::remove_body:
-            return id;
-        case CommandKind::set_detail_filter:  // how wide a filter may be the model knows
-            order.pos_model_m[0] = command.pos_model_m[0];
-            return command.body <= 0xFFU && std::isfinite(command.pos_model_m[0]);
-        default:  // options
-            return yes_or_no;
-    }
-}
-
 }  // namespace
-
-CheckedCommand check_command(const CommandTopic& command, std::span<const std::string> path_names) {
-    CheckedCommand checked;
-    checked.order = {.sequence = command.sequence, .value = command.value, .kind = command.kind, .index = 0};
-    if (command.kind == 0 || command.kind > static_cast<std::uint16_t>(kLastCommand)) {
-        checked.result = CommandResult::unknown;
-        return checked;
-    }
-    const bool ends = std::memchr(command.text, 0, sizeof command.text) != nullptr;
-    if (!std::isfinite(command.value) || !ends || command.sequence == 0) {
-        checked.result = CommandResult::refused_value;
-        return checked;
-    }
-    const std::string_view text(command.text);
-    const auto kind = static_cast<CommandKind>(command.kind);
-    if (kind == CommandKind::set_law) {
-        const auto law = law_named(text);
-        if (!law) checked.result = CommandResult::refused_value;
-        checked.order.index = law ? static_cast<std::uint32_t>(*law) : 0;
-    } else if (kind == CommandKind::set_level) {
-        const auto found = std::find(path_names.begin(), path_names.end(), text);
-        const bool good = found != path_names.end() && command.value >= 0.0 && command.value <= 1.0;
-        if (!good) checked.result = CommandResult::refused_value;
-        checked.order.index = good ? static_cast<std::uint32_t>(found - path_names.begin()) : 0;
-    } else if (kind == CommandKind::set_goal_hz) {
-        if (!(command.value >= 1.0 && command.value <= 1e7)) checked.result = CommandResult::refused_value;
-    } else if (command.kind >= static_cast<std::uint16_t>(CommandKind::select_body)) {
-        if (!read_body_order(command, checked.order)) checked.result = CommandResult::refused_value;
-    }
-    return checked;
-}
 
 bool plausible(const LoadTopic& load) {
     const auto time = [](double s) { return std::isfinite(s) && s >= 0.0 && s < 1e9; };
@@ -120,7 +49,7 @@ Housekeeping::Housekeeping(HousekeepingSettings settings, OwnedRegion<RtRegion>&
 void Housekeeping::catch_signals(ServoMailbox& mailbox) {
     signalled.store(&mailbox);
     struct sigaction action {};
-    action.sa_handler = &on_signal;  // no SA_RESTART: the poll of the housekeeping thread ends at once
+    action.sa_handler = &on_signal;  // no SA_RESTART: interrupts the poll of the housekeeping thread
     for (const int number : {SIGINT, SIGTERM, SIGHUP, SIGXCPU}) sigaction(number, &action, nullptr);
     signal(SIGPIPE, SIG_IGN);
 }
@@ -146,7 +75,7 @@ void Housekeeping::run() {
                 faults > settings_.page_faults_at_start ? faults - settings_.page_faults_at_start : 0;
             reported_at = now;
             notify_service(now);
-            spdlog::default_logger_raw()->flush();  // what nobody read, said now that somebody does
+            spdlog::default_logger_raw()->flush();  // reports dropped log lines once there is room
         }
         report();
         const bool over = settings_.seconds > 0.0 && to_s(now - begin) >= settings_.seconds;
@@ -163,7 +92,7 @@ void Housekeeping::serve_link() {
     if (news.gui_left) {
         gui_ = {};
         report_.gui_attached = 0;
-        spdlog::info("the visual process left");
+        spdlog::info("visual process detached");
     }
     if (news.gui_arrived) {
         std::string refusal;
@@ -173,7 +102,7 @@ void Housekeeping::serve_link() {
             spdlog::warn("refused the region of the visual process {}: {}", news.gui_pid, refusal);
             return;
         }
-        commands_ = gui_->commands.tail();  // what an earlier controller was told is not for this one
+        commands_.restart(gui_->commands);  // ignores commands for an earlier controller
         loads_seen_ = frames_seen_ = 0;
         report_.gui_attached = 1;
         report_.gui_generation = gui_.generation();
@@ -203,7 +132,7 @@ void Housekeeping::pass_on_frames() {
         return;
     }
     DisplayTopic picture{};
-    picture.taken_at_ns = to_ns(Monotonic::now());  // what the other process wrote there is not believed
+    picture.taken_at_ns = to_ns(Monotonic::now());  // the other process's time stamp is not trusted
     picture.metrics = frames.metrics;
     region_->picture.publish(picture);
 }
@@ -236,22 +165,7 @@ void Housekeeping::serve_gui() {
         }
     }
     pass_on_frames();
-    CommandTopic command{};
-    const std::uint64_t missed = commands_.missed;
-    for (int i = 0; i < kCommandsPerTurn && gui_->commands.next(commands_, command); ++i) {
-        const CheckedCommand checked = check_command(command, settings_.path_names);
-        if (checked.result == CommandResult::none) {
-            mailbox_.orders.push(checked.order);
-            continue;
-        }
-        // The servo answers all commands, so that the answers come in order: a refused one goes as kind none.
-        ++bad_input_;
-        mailbox_.orders.push({.sequence = command.sequence,
-                              .value = 0.0,
-                              .kind = static_cast<std::uint32_t>(CommandKind::none),
-                              .index = static_cast<std::uint32_t>(checked.result)});
-    }
-    bad_input_ += commands_.missed - missed;
+    bad_input_ += commands_.pass_on(gui_->commands, settings_.path_names, mailbox_.orders);
 }
 
 void Housekeeping::log_events() {

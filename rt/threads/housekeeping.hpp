@@ -1,9 +1,9 @@
-// The housekeeping thread: everything of tact-rt that may wait, allocate or speak.
+// The housekeeping thread: all work of tact-rt that may wait, allocate or log.
 //
-// Does      serves the link, maps the GUI's region, checks its commands and loads and passes them on to the
-//           servo, prints events, has models built, collects old ones, ends the run after its time
+// Does      serves the link, maps the GUI's region, checks its commands and loads and passes them to the servo, logs
+//           events, has models rebuilt, destroys old ones, ends the run after its time
 // Runs on   the main thread, ordinary scheduling; never on the servo's core by choice
-// Hostile   what the GUI's region holds is checked field by field; what is wrong is counted and dropped
+// Hostile   checks every field of the GUI's region; counts and drops invalid ones
 #pragma once
 
 #include <csignal>
@@ -18,25 +18,19 @@
 #include "ipc/shm/region.hpp"
 #include "ipc/topics/regions.hpp"
 #include "rt/servo/mailbox.hpp"
+#include "rt/threads/command_feed.hpp"
 #include "rt/threads/model_builder.hpp"
 #include "rt/threads/service_notify.hpp"
 
 namespace tact {
 
-// A command in the servo's terms, or why not. path_names in the order of the governor's paths.
-struct CheckedCommand {
-    ServoOrder order{};
-    CommandResult result = CommandResult::none;  // none: fit to pass on
-};
-[[nodiscard]] CheckedCommand check_command(const CommandTopic& command,
-                                           std::span<const std::string> path_names);
-// False: some field cannot be true.
+// False: some field has an impossible value.
 [[nodiscard]] bool plausible(const LoadTopic& load);
 
 struct HousekeepingSettings {
     std::string session = "default";
     double seconds = 0.0;       // 0: until a signal
-    bool arm_with_gui = false;  // arm once, when the visual process has drawn
+    bool arm_with_gui = false;  // arm once, after the visual process has drawn its first frame
     std::vector<std::string> path_names;
     int servo_thread_id = 0;
     std::uint64_t page_faults_at_start = 0;
@@ -46,11 +40,11 @@ class Housekeeping {
 public:
     Housekeeping(HousekeepingSettings settings, OwnedRegion<RtRegion>& region, ServoMailbox& mailbox,
                  LinkServer& link);
-    // Passes an order from the command line.
+    // Passes on an order from the command line.
     void order(CommandKind kind, double value, std::uint32_t index);
-    // Until the servo has ended.
+    // Returns when the servo has ended.
     void run();
-    // The signals that stop a run go to `mailbox`; installs the handlers.
+    // Installs handlers that pass stop signals to `mailbox`.
     static void catch_signals(ServoMailbox& mailbox);
 
 private:
@@ -68,7 +62,7 @@ private:
     LinkServer& link_;
     ModelBuilder builder_;
     MappedRegion<GuiRegion> gui_;
-    RingCursor commands_;
+    CommandFeed commands_;
     RingCursor events_;
     std::uint64_t loads_seen_ = 0, frames_seen_ = 0;
     LinkServer::Recorders recorders_;

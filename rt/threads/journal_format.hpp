@@ -1,4 +1,4 @@
-// Log lines as journald reads them from standard error: the level in front, no time of our own.
+// Log format for journald on standard error: level prefix, no time stamp.
 #pragma once
 
 #include <spdlog/formatter.h>
@@ -7,10 +7,10 @@
 
 namespace tact {
 
-// Whether that file is the stream that JOURNAL_STREAM names, and not one that it was redirected to since.
+// True if the file is the stream named by JOURNAL_STREAM, not a later redirection.
 [[nodiscard]] bool is_journal_stream(int fd);
 
-// "<4>text": syslog levels. Each line of a message has its own, because journald makes an entry of each.
+// "<4>text" with syslog levels. Each line of a message has a prefix, because journald makes one entry per line.
 [[nodiscard]] std::unique_ptr<spdlog::formatter> make_journal_formatter();
 
 }  // namespace tact

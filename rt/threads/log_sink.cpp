@@ -18,7 +18,7 @@
 namespace tact {
 namespace {
 
-// As spdlog's own: info green, warning yellow, error red.
+// The colours of spdlog: info green, warning yellow, error red.
 std::string_view colour_of(spdlog::level::level_enum level) {
     switch (level) {
         case spdlog::level::info:
@@ -53,10 +53,10 @@ public:
 
 private:
     enum class Way : std::uint8_t {
-        plain,  // a file
-        own,    // opened anew, never waits
-        send,
-        ask,  // it cannot be opened anew: whether there is room is asked first
+        plain,  // file
+        own,    // reopened as non-blocking
+        send,   // socket
+        ask,    // cannot be reopened: poll for room first
     };
 
     void sink_it_(const spdlog::details::log_msg& message) override {
@@ -68,11 +68,11 @@ private:
     void say_dropped() {
         if (dropped_ == 0) return;
         const std::string text =
-            std::to_string(dropped_) + " lines of this log were dropped: nobody read them";
+            std::to_string(dropped_) + " log lines were dropped because standard error was not read";
         if (put({"tact-rt", spdlog::level::warn, text})) dropped_ = 0;
     }
 
-    // False: not, or not the whole of it.
+    // False: not written, or only in part.
     bool put(const spdlog::details::log_msg& message) {
         spdlog::memory_buf_t line;
         formatter_->format(message, line);
@@ -111,7 +111,7 @@ private:
         }
         pollfd room{.fd = fd_, .events = POLLOUT, .revents = 0};
         if (poll(&room, 1, 0) == 1 && room.revents == POLLOUT)
-            return write(fd_, text, std::min<std::size_t>(size, PIPE_BUF));  // so much a pipe with room takes
+            return write(fd_, text, std::min<std::size_t>(size, PIPE_BUF));  // a ready pipe accepts this much
         errno = EAGAIN;
         return -1;
     }
@@ -120,7 +120,7 @@ private:
     const bool coloured_;
     Way way_ = Way::plain;
     int own_ = -1;
-    bool torn_ = false;  // half a line is there, without its end
+    bool torn_ = false;  // the last line was written only in part
     std::uint64_t dropped_ = 0;
 };
 

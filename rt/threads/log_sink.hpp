@@ -1,9 +1,9 @@
-// The log of tact-rt: it waits for nobody. Where nobody reads standard error, lines are dropped and counted, and the
-// count is said as soon as there is room again: with the next line, or by flush().
+// A log sink that never blocks. If nobody reads standard error, it drops and counts lines, and logs the count as soon as
+// there is room again: with the next line, or in flush().
 //
-// Takes    a pipe, a terminal, a socket or a file. What others have open with it does not change: a pipe or a terminal
-//          is opened once more, for this process alone.
-// Thread   any; a line waits for the one before it, which waits for nothing
+// Takes    a pipe, a terminal, a socket or a file. A pipe or terminal is reopened as non-blocking for this process alone,
+//          so that the mode of other users' descriptors does not change.
+// Thread   any; lines are serialized, and none blocks
 #pragma once
 
 #include <spdlog/sinks/sink.h>
@@ -12,7 +12,7 @@
 
 namespace tact {
 
-// fd stays the caller's, and open while there is a sink.
+// The caller owns fd and keeps it open as long as the sink exists.
 [[nodiscard]] std::shared_ptr<spdlog::sinks::sink> make_log_sink(int fd);
 
 }  // namespace tact

@@ -14,7 +14,7 @@ ModelBuilder::ModelBuilder(ServoMailbox& mailbox, int servo_thread_id)
     : mailbox_(mailbox), servo_thread_id_(servo_thread_id) {
     pthread_attr_t attributes;
     pthread_attr_init(&attributes);
-    pthread_attr_setstacksize(&attributes, std::size_t{1} << 20);  // it is locked as a whole
+    pthread_attr_setstacksize(&attributes, std::size_t{1} << 20);  // small, because all of it is locked
     const int error = pthread_create(&thread_, &attributes, &body, this);
     pthread_attr_destroy(&attributes);
     if (error != 0)
@@ -28,7 +28,7 @@ ModelBuilder::~ModelBuilder() {
     pthread_join(thread_, nullptr);
 }
 
-// Release: what was written before is the other side's from now on; pairs with the loads that acquire.
+// Release: passes earlier writes to the other thread; pairs with the acquire loads.
 void ModelBuilder::turn(State to) noexcept {
     state_.store(to, std::memory_order_release);
     state_.notify_all();
@@ -52,7 +52,7 @@ void* ModelBuilder::body(void* self) {
 void ModelBuilder::build() noexcept {
     const Instant begin = Monotonic::now();
     try {
-        failure_ = "there is nothing to build";
+        failure_ = "the model has nothing to rebuild";
         model_ = mailbox_.build.like().rebuild(mailbox_.build.bodies());
     } catch (const std::exception& e) {
         failure_ = e.what();
@@ -65,11 +65,11 @@ void ModelBuilder::poll() {
     if (s == State::idle && mailbox_.build.take()) {
         turn(State::work);
     } else if (s == State::done && model_ != nullptr) {
-        if (!mailbox_.model.offer(model_)) return;  // next turn
-        spdlog::info("built another force model in {:.2f} s", took_s_);
+        if (!mailbox_.model.offer(model_)) return;  // retry in the next poll
+        spdlog::info("rebuilt the force model in {:.2f} s", took_s_);
         turn(State::idle);
     } else if (s == State::done) {
-        spdlog::error("could not build another force model: {}\n  the one before goes on", failure_);
+        spdlog::error("could not rebuild the force model: {}\n  the old model stays in use", failure_);
         mailbox_.build.refuse();
         turn(State::idle);
     }

@@ -1,10 +1,10 @@
-// Builds models aside for the servo, one at a time, on a thread of its own: another density may take seconds.
+// Rebuilds models for the servo, one at a time, on a thread of its own: another density may take seconds.
 //
-// Does      takes the servo's request from the mailbox, has the model rebuilt, offers it to the servo
-// Runs on   attend() on the housekeeping thread, which it never holds up; the work on a thread below ordinary
-//           priority, off the servo's core where there is another
-// Fails by  refusing the request, with the reason in the log; the model in use goes on
-// Ends      by waiting for the work under way
+// Does      takes the servo's request from the mailbox, rebuilds the model, offers it to the servo
+// Runs on   poll() on the housekeeping thread, without blocking it; the work on a thread below ordinary priority, off the
+//           servo's core if possible
+// Fails by  refusing the request, with the reason in the log; the model in use stays
+// Ends      after the current work
 #pragma once
 
 #include <pthread.h>
@@ -24,7 +24,7 @@ public:
     ModelBuilder(const ModelBuilder&) = delete;
     ModelBuilder& operator=(const ModelBuilder&) = delete;
 
-    // Housekeeping, every turn.
+    // Housekeeping thread, every loop.
     void poll();
 
 private:
@@ -36,7 +36,7 @@ private:
     ServoMailbox& mailbox_;
     int servo_thread_id_;
     std::atomic<State> state_{State::idle};
-    // The builder's own while there is work, else the housekeeping thread's.
+    // Owned by the builder thread in state `work`, else by the housekeeping thread.
     std::unique_ptr<ForceModel> model_;
     std::string failure_;
     double took_s_ = 0.0;

@@ -25,14 +25,14 @@ std::int64_t number_in(const char* variable) {
     return error == std::errc{} && end == all.data() + all.size() ? number : -1;
 }
 
-// As sd_watchdog_enabled(3): not for a process that merely inherited the variables.
+// As sd_watchdog_enabled(3): ignores variables inherited from another process.
 Duration watchdog_limit() {
     const std::int64_t process = number_in("WATCHDOG_PID"), us = number_in("WATCHDOG_USEC");
     if (us <= 0 || us > 86'400'000'000 || (process >= 0 && process != getpid())) return Duration{0};
     return std::chrono::microseconds(us);
 }
 
-// As sd_notify(3): a path, or with '@' a name in the kernel's own space.
+// As sd_notify(3): a path, or with '@' an abstract socket name.
 int connect_to_manager() {
     const char* const name = std::getenv("NOTIFY_SOCKET");
     sockaddr_un address{};
@@ -53,7 +53,7 @@ int connect_to_manager() {
 
 bool WatchdogFeed::due(std::int64_t heartbeat, Instant now) noexcept {
     if (every_ <= Duration{0}) return false;
-    if (!heartbeat_) {  // no cycle has been seen to follow another yet
+    if (!heartbeat_) {  // first call: no advance known yet
         heartbeat_ = heartbeat;
         return false;
     }
@@ -93,7 +93,7 @@ void ServiceNotify::stopping() {
     send("STOPPING=1\nSTATUS=stopping\n");
 }
 
-// One that is not delivered is not repeated: the service manager then acts as if the servo stood still.
+// Does not repeat a lost message: the service manager then acts as if the servo had stopped.
 void ServiceNotify::send(const std::string& lines) const {
     static_cast<void>(::send(fd_, lines.data(), lines.size(), MSG_DONTWAIT | MSG_NOSIGNAL));
 }

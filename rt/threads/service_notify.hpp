@@ -1,13 +1,13 @@
-// Reports the controller to the service manager (systemd) over NOTIFY_SOCKET. Without that variable nothing happens.
+// Reports the controller's state to the service manager (systemd) over NOTIFY_SOCKET. Does nothing without that variable.
 //
 // READY=1     once the servo's heartbeat has advanced
-// WATCHDOG=1  a quarter of WATCHDOG_USEC apart, only while the servo's heartbeat advances: a servo that stands still is
-//             a service that gets restarted, even where all other threads are alive
-// STATUS=     state and rate, once a second where they changed
+// WATCHDOG=1  every quarter of WATCHDOG_USEC, only while the servo's heartbeat advances: systemd then restarts a
+//             service with a stopped servo even if all other threads run
+// STATUS=     state and rate, on change, at most once per second
 // STOPPING=1  once, when the run is about to end
-// Runs on     the housekeeping thread, and never waits: a datagram that the service manager has no room for is dropped.
-//             libsystemd's sd_notify() waits for room (seen with a manager that does not read), and brings six more
-//             libraries into the locked memory of this process.
+// Runs on     the housekeeping thread without blocking: a datagram for which the service manager has no room is dropped.
+//             libsystemd's sd_notify() waits for room (measured with a manager that does not read), and adds six
+//             libraries to the locked memory of this process.
 #pragma once
 
 #include <cstdint>
@@ -18,13 +18,13 @@
 
 namespace tact {
 
-// When to feed the watchdog. A pure function of what it is given, for tests.
+// Decides when to feed the watchdog. Deterministic, for tests.
 class WatchdogFeed {
 public:
-    // limit: of the service manager; zero: it has no watchdog.
+    // limit: watchdog timeout of the service manager; zero: none.
     explicit WatchdogFeed(Duration limit) noexcept : every_(limit / 4) {}
 
-    // True: feed it now. heartbeat: any number that changes with each servo cycle.
+    // True: feed the watchdog now. heartbeat: any number that changes with each servo cycle.
     bool due(std::int64_t heartbeat, Instant now) noexcept;
 
 private:
@@ -35,7 +35,7 @@ private:
 
 struct ServiceState {
     std::int64_t heartbeat = 0;
-    const char* state = "";  // of the run: "active"
+    const char* state = "";  // run state, such as "active"
     double rate_hz = 0.0;
 };
 

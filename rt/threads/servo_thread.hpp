@@ -1,6 +1,6 @@
-// The thread that runs the servo loop: scheduled as asked, with a small stack that is locked and touched before the loop.
+// The thread of the servo loop: scheduled as requested, with a small stack that is locked and touched before the loop.
 //
-// Thread    start() and join() on one thread, that of the start-up
+// Thread    start() and join() on the start-up thread
 #pragma once
 
 #include <pthread.h>
@@ -17,21 +17,20 @@ class ServoThread {
 public:
     ServoThread(Servo& servo, const ScheduleRequest& request, Platform& platform, ServoMailbox& mailbox)
         : servo_(servo), request_(request), platform_(platform), mailbox_(mailbox) {}
-    // Stops the loop in order where that has not happened, so that nothing it uses goes before it.
+    // Stops the loop if it still runs, so that it ends before the objects that it uses.
     ~ServoThread();
     ServoThread(const ServoThread&) = delete;
     ServoThread& operator=(const ServoThread&) = delete;
 
-    // Returns once the loop is warm; platform then says what was reached. Throws StartupError.
+    // Returns after the warm-up; `platform` then holds the result of the thread setup. Throws StartupError.
     void start();
-    // Until the loop has ended.
+    // Returns when the loop has ended.
     void join();
 
     // After start().
     [[nodiscard]] int id() const { return id_; }
-    [[nodiscard]] std::uint64_t faults_at_start() const {
-        return faults_at_start_;
-    }  // page faults before the loop
+    // Page faults before the loop.
+    [[nodiscard]] std::uint64_t faults_at_start() const { return faults_at_start_; }
 
 private:
     static void* body(void* self);

@@ -9,12 +9,12 @@
 namespace tact {
 namespace {
 
-constexpr double kPredictedMaxS = 0.01;  // an older sample is not believed to move on
+constexpr double kPredictedMaxS = 0.01;  // longest extrapolation of a sample
 
 }  // namespace
 
 SlowUpdateThread::SlowUpdateThread(ForceModel& model, const Latest<ToolTopic>& tool, int servo_thread_id) {
-    // The new thread inherits a mask that lets no signal in: they belong to main.
+    // The new thread inherits a mask that blocks all signals; main handles them.
     sigset_t all, before;
     sigfillset(&all);
     pthread_sigmask(SIG_SETMASK, &all, &before);

@@ -1,8 +1,8 @@
-// Calls the slow half of a model, for models that have one.
+// The thread that calls slow_update() of a model, for models that have one.
 //
-// Gives     the tool as the servo published it last, moved on by its velocity to now
-// Runs on   a thread of its own, off the servo's core where there is another; kSlowUpdatePeriod, or as often as it gets through
-// Thread    constructed and destroyed on main; the model outlives it
+// Input     the tool state last published by the servo, extrapolated to now with its velocity
+// Runs on   a thread of its own, off the servo's core if possible; every kSlowUpdatePeriod, or less often if it is late
+// Thread    constructed and destroyed on main; the model must outlive it
 #pragma once
 
 #include <atomic>
@@ -22,7 +22,7 @@ public:
     SlowUpdateThread(const SlowUpdateThread&) = delete;
     SlowUpdateThread& operator=(const SlowUpdateThread&) = delete;
 
-    // Once, at a time.
+    // One update at the given time.
     static void step(ForceModel& model, const Latest<ToolTopic>& tool, Instant now) noexcept;
 
 private:

@@ -32,10 +32,10 @@ void Supervisor::start(int servo_thread_id) {
         prepare_helper_thread("supervisor", servo_thread_id);
         sched_param param{};
         param.sched_priority = kPriority;
-        pthread_setschedparam(pthread_self(), SCHED_FIFO, &param);  // where it is not permitted, ordinary
+        pthread_setschedparam(pthread_self(), SCHED_FIFO, &param);  // ordinary scheduling if not permitted
         ServoClock clock(Duration{0});
         while (!leave_.load(std::memory_order_relaxed)) {
-            // Acquire: a beat at least as new as the enable that is seen; pairs with the servo's store.
+            // Acquire: the beat read below is at least as new as this enable; pairs with the servo's store.
             const bool enabled = pulse_.enabled.load(std::memory_order_acquire);
             const Instant beat = instant_from_ns(pulse_.beat_ns.load(std::memory_order_relaxed));
             const std::uint64_t rearms = pulse_.rearms.load(std::memory_order_acquire);

@@ -1,10 +1,10 @@
-// Watches the servo's heartbeat from outside its thread, and drops the enable line when it stands still.
+// Monitors the servo's heartbeat on another thread, and drops the enable line when the heartbeat stops.
 //
-// Latched  from the drop until a person re-arms; the servo, once it runs again, finds the drop in the
-//          pulse and latches the fault
-// Thread   "supervisor", FIFO 95 where that is permitted, off the servo's core where there is another; it
-//          sleeps between looks of a millisecond. look() is a function of what it is given, for tests.
-// Not here the device's own enable: HapticDevice belongs to the servo thread. Its own watchdog sees the same
+// Latched  from the drop until a person re-arms; the servo, once it runs again, finds the drop in the pulse and latches
+//          the fault
+// Thread   "supervisor", FIFO 95 if permitted, off the servo's core if possible; checks once per millisecond. check() is
+//          deterministic, for tests.
+// Not here the device's own enable: HapticDevice belongs to the servo thread. The device's watchdog detects the same
 //          silence.
 #pragma once
 
@@ -23,7 +23,7 @@ class Supervision {
 public:
     explicit Supervision(Duration silence_max) noexcept : silence_max_(silence_max) {}
 
-    // True in the look that drops.
+    // True: drop the enable line now.
     bool check(Instant beat, bool enabled, std::uint64_t rearms, Instant now) noexcept;
     [[nodiscard]] bool dropped() const noexcept { return dropped_; }
     [[nodiscard]] std::uint64_t drops() const noexcept { return drops_; }
@@ -39,7 +39,7 @@ public:
     static constexpr int kPriority = kSupervisorPriority;
     static constexpr Duration kEvery = std::chrono::milliseconds(1);
 
-    // `drop` is called on the supervisor's thread; it must not wait.
+    // `drop` runs on the supervisor's thread and must not block.
     Supervisor(ServoPulse& pulse, Duration silence_max, std::function<void()> drop);
     ~Supervisor();
     Supervisor(const Supervisor&) = delete;

@@ -30,7 +30,7 @@ std::string limit_text(rlim_t v, double unit, const char* name) {
     return out.str();
 }
 
-// "2-3,6": the last number of a kernel cpu list; -1 where it is empty.
+// The last number of a kernel cpu list such as "2-3,6"; -1 if empty.
 int last_cpu(const std::string& list) {
     const auto digit = list.find_last_of("0123456789");
     if (digit == std::string::npos) return -1;
@@ -47,8 +47,7 @@ std::string first_line(const char* path) {
 }
 
 void lock_memory(Platform& platform) {
-    // Pages that come later are locked only where the limit leaves room for them: with a small limit every
-    // later map of this process would fail instead.
+    // Locks future pages only if the limit is infinite: with a small limit, later maps of this process would fail.
     rlimit limit{};
     getrlimit(RLIMIT_MEMLOCK, &limit);
     const bool unlimited = limit.rlim_cur == RLIM_INFINITY || geteuid() == 0;
@@ -57,9 +56,9 @@ void lock_memory(Platform& platform) {
         return;
     }
     platform.findings.push_back(
-        "cannot lock memory (" + std::string(std::strerror(errno)) + "): RLIMIT_MEMLOCK is " +
+        "cannot lock memory (" + std::string(std::strerror(errno)) + "; RLIMIT_MEMLOCK is " +
         limit_text(limit.rlim_cur, 1024.0 * 1024.0, " MiB") +
-        ". Going on with touched pages that may be swapped out.\n  fix: " + kLimitsFix);
+        "). Continuing with touched pages that may be swapped out.\n  fix: " + kLimitsFix);
 }
 
 void hold_dma_latency(Platform& platform) {
@@ -74,7 +73,7 @@ void hold_dma_latency(Platform& platform) {
     if (fd >= 0) ::close(fd);
     platform.findings.push_back(
         "cannot hold /dev/cpu_dma_latency at 0 (" + why +
-        "). Going on; a sleeping core may wake up to 100 us late.\n  fix: " + kLimitsFix);
+        "). Continuing; a sleeping core may wake up to 100 us late.\n  fix: " + kLimitsFix);
 }
 
 void take_fifo(const ScheduleRequest& request, Platform& platform) {
@@ -86,7 +85,7 @@ void take_fifo(const ScheduleRequest& request, Platform& platform) {
     }
     platform.flags |= kScheduleFifo;
     if (request.limit_processor_time) {
-        // Against a runaway loop above everything else: SIGXCPU, which stops the run in order, after 1 s.
+        // Protects the machine from a runaway loop: SIGXCPU after 1 s, which ends the run in order.
         const rlimit limit{1'000'000, 2'000'000};
         setrlimit(RLIMIT_RTTIME, &limit);
     }
@@ -95,7 +94,7 @@ void take_fifo(const ScheduleRequest& request, Platform& platform) {
 void pin(const ScheduleRequest& request, Platform& platform) {
     const std::string isolated = first_line("/sys/devices/system/cpu/isolated");
     int core = request.core;
-    // Pinned without FIFO, a thread could not move away from whoever else runs there.
+    // Without FIFO, do not pin: the thread could not move away from other threads on its core.
     if (core == -1) core = last_cpu(isolated);
     if (core == -1 && (platform.flags & kScheduleFifo) != 0) {
         cpu_set_t allowed;
@@ -113,7 +112,7 @@ void pin(const ScheduleRequest& request, Platform& platform) {
     if (error != 0) {
         platform.findings.push_back("cannot pin the servo to core " + std::to_string(core) + " (" +
                                     std::strerror(error) +
-                                    "). Going on wherever the kernel puts it.\n  fix: choose "
+                                    "). Continuing on the core that the kernel chooses.\n  fix: choose "
                                     "one of " +
                                     first_line("/sys/devices/system/cpu/online") + " with --core");
         return;
@@ -125,18 +124,18 @@ void pin(const ScheduleRequest& request, Platform& platform) {
 void warn_of_throttling(Platform& platform) {
     const std::string runtime = first_line("/proc/sys/kernel/sched_rt_runtime_us");
     if (runtime.empty() || runtime == "-1") return;
-    platform.findings.push_back("a FIFO loop that never sleeps is throttled: the kernel takes " +
+    platform.findings.push_back("the kernel throttles a FIFO loop that never sleeps: it takes " +
                                 std::to_string(1'000'000 - std::stol(runtime)) +
-                                " us of every second from it.\n  fix: a shorter spin tail, a fixed rate, or "
-                                "--priority 0");
+                                " us of every second from it.\n  fix: reduce servo.spin_us, choose a fixed "
+                                "rate, or set --priority 0");
 }
 
-// Touches the stack below this frame, so that its pages are there before the loop is.
+// Touches the stack below this frame, so that its pages are resident before the loop starts.
 [[gnu::noinline]] void touch_stack() {
     constexpr std::size_t kBytes = 192 * 1024;
     unsigned char block[kBytes];
     for (std::size_t i = 0; i < kBytes; i += 1024) block[i] = 0;
-    asm volatile("" : : "r"(block) : "memory");  // the stores have to happen
+    asm volatile("" : : "r"(block) : "memory");  // keeps the stores
 }
 
 }  // namespace
@@ -164,7 +163,7 @@ void prepare_process(const ScheduleRequest& request, Platform& platform) {
 void prepare_thread(const ScheduleRequest& request, Platform& platform) {
     sigset_t all;
     sigfillset(&all);
-    sigdelset(&all, SIGXCPU);  // of this thread's own processor time
+    sigdelset(&all, SIGXCPU);  // sent for this thread's processor time
     pthread_sigmask(SIG_BLOCK, &all, nullptr);
     pthread_setname_np(pthread_self(), "servo");
     take_fifo(request, platform);
@@ -175,7 +174,7 @@ void prepare_thread(const ScheduleRequest& request, Platform& platform) {
 
 void prepare_builder_thread(int servo_thread_id) {
     prepare_helper_thread("builder", servo_thread_id);
-    // On Linux niceness belongs to the thread. What is refused here costs no more than some fairness.
+    // On Linux niceness is per thread. A refusal only costs some fairness.
     static_cast<void>(setpriority(PRIO_PROCESS, static_cast<id_t>(gettid()), 10));
 }
 

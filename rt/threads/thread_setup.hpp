@@ -1,7 +1,7 @@
-// Making a thread and its process fit for real time, as far as this machine permits.
+// Prepares a thread and its process for real time, as far as this machine permits.
 //
-// Refused  every step that is refused is a finding: what was tried, why it failed, the command that fixes it,
-//          and how the run goes on. Nothing here is fatal; what was reached is shown in the health topic.
+// Refused  each refused step gives a finding: the step, the cause, the fix, and the consequence. No step is fatal; the
+//          health topic shows the result.
 // Thread   prepare_process() at start-up on the main thread, the others on the thread that they prepare
 #pragma once
 
@@ -16,33 +16,33 @@ namespace tact {
 
 struct Platform {
     std::uint32_t flags = 0;            // ScheduleFlag
-    std::vector<std::string> findings;  // degraded, in words, each with its fix
-    int dma_latency_fd = -1;            // kept open while the loop runs
+    std::vector<std::string> findings;  // messages about refused steps, each with its fix
+    int dma_latency_fd = -1;            // open while the loop runs
 };
 
 struct ScheduleRequest {
     int priority = kServoPriority;  // FIFO; 0: ordinary
-    int core = -1;                  // -1: chosen here; -2: not pinned
+    int core = -1;                  // -1: automatic; -2: not pinned
     bool lock_memory = true;
     bool limit_processor_time = true;  // RLIMIT_RTTIME; off for a loop that never sleeps
 };
 
-// malloc that gives nothing back and maps nothing, memory locked, wake-up latency of the processor held down.
+// Makes malloc keep its memory and avoid mmap, locks memory, and limits the processor's wake-up latency.
 void prepare_process(const ScheduleRequest& request, Platform& platform);
-// Scheduling class, core, signal mask, touched stack. No allocation afterwards on this thread.
+// Sets scheduling class, core and signal mask, and touches the stack. The thread must not allocate afterwards.
 void prepare_thread(const ScheduleRequest& request, Platform& platform);
-// Off the core that the servo is pinned to where there is another, no signals.
+// Moves the thread off the servo's core if possible, and blocks signals.
 void prepare_helper_thread(const char* name, int servo_thread_id);
-// A thread that may take its time: the same, below ordinary priority.
+// The same, below ordinary priority.
 void prepare_builder_thread(int servo_thread_id);
 void release_process(Platform& platform);
 
-// Whether a list of the kernel ("0-2,5") has that core.
+// True if a kernel cpu list ("0-2,5") contains the core.
 [[nodiscard]] bool in_cpu_list(const std::string& list, int cpu);
 
-// Minor and major faults of the calling thread so far: a system call, so not within cycles.
+// Minor and major page faults of the calling thread; a system call, so not within cycles.
 [[nodiscard]] std::uint64_t own_page_faults() noexcept;
-// The same of another thread of this process, from /proc; 0 where it cannot be read.
+// The same for another thread of this process, from /proc; 0 if not readable.
 [[nodiscard]] std::uint64_t page_faults_of(int thread_id);
 
 }  // namespace tact

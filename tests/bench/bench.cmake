@@ -1,5 +1,5 @@
-# tact_bench(bench/ipc_bench.cpp USES shm topics): a Google Benchmark program in build/<preset>/bench. Times of a
-# sanitized build mean nothing, so there are none in those. CTest only sees that each still runs (label bench).
+# tact_bench(bench/ipc_bench.cpp USES shm topics): a Google Benchmark program in build/<preset>/bench. Sanitized builds
+# have none, because their times mean nothing. CTest only checks that each still runs (label bench).
 find_package(benchmark REQUIRED)
 function(tact_bench source)
     if(TACT_SANITIZE)

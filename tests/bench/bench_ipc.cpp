@@ -17,26 +17,20 @@
 namespace tact {
 namespace {
 
-constexpr std::size_t kBatches = 400;
-constexpr std::size_t kPerBatch = 200;
-
-struct Times {
-    double p50_ns = 0.0, max_ns = 0.0;
-};
+constexpr std::size_t kTimes = 50'000;
 
 template <class Work>
-Times measure(Work&& work) {
-    std::vector<double> batch_ns(kBatches);
-    for (double& ns : batch_ns) {
+Percentiles measure(Work&& work) {
+    std::vector<double> times_ns(kTimes);
+    for (double& ns : times_ns) {
         const Instant start = Monotonic::now();
-        for (std::size_t i = 0; i < kPerBatch; ++i) work();
-        ns = static_cast<double>((Monotonic::now() - start).count()) / static_cast<double>(kPerBatch);
+        work();
+        ns = static_cast<double>((Monotonic::now() - start).count());
     }
-    std::sort(batch_ns.begin(), batch_ns.end());
-    return {batch_ns[kBatches / 2], batch_ns.back()};
+    return percentiles(times_ns);
 }
 
-// Values whose first and last numbers agree, so that a reader can tell a torn one.
+// Values whose first and last numbers agree, so that a reader detects a torn one.
 struct ServoSide {
     RtRegion& region;
     ToolTopic tool{};
@@ -94,13 +88,12 @@ IpcBench bench_ipc() {
     IpcBench bench;
 
     measure([&] { writer.publish_state(); });  // warms caches and clocks
-    const Times publish = measure([&] { writer.publish_state(); });
-    bench.publish_ns_p50 = publish.p50_ns;
-    bench.publish_ns_max = publish.max_ns;
-    bench.publish_tool_ns_p50 = measure([&] { writer.publish_tool(); }).p50_ns;
+    bench.clock_ns = measure([] {});
+    bench.publish_ns = measure([&] { writer.publish_state(); });
+    bench.publish_tool_ns = measure([&] { writer.publish_tool(); });
     writer.publish_state();
-    bench.read_ns_p50 = measure([&] { reader.read_state(); }).p50_ns;
-    bench.trace_push_ns_p50 = measure([&] { writer.push_trace(); }).p50_ns;
+    bench.read_ns = measure([&] { reader.read_state(); });
+    bench.trace_push_ns = measure([&] { writer.push_trace(); });
 
     std::atomic<int> step{0};  // 0: the other thread reads; 1: it writes; 2: it ends
     std::thread other([&] {
@@ -109,9 +102,9 @@ IpcBench bench_ipc() {
         bench.torn += other_reader.torn;  // read after join()
         while (step.load(std::memory_order_acquire) == 1) writer.publish_state();
     });
-    bench.publish_contended_ns_p50 = measure([&] { writer.publish_state(); }).p50_ns;
+    bench.publish_contended_ns = measure([&] { writer.publish_state(); });
     step.store(1, std::memory_order_release);
-    bench.read_contended_ns_p50 = measure([&] { reader.read_state(); }).p50_ns;
+    bench.read_contended_ns = measure([&] { reader.read_state(); });
     step.store(2, std::memory_order_release);
     other.join();
     bench.torn += reader.torn;

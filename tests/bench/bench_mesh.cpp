@@ -1,7 +1,5 @@
 #include "tests/bench/bench_mesh.hpp"
 
-#include <time.h>
-
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -10,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "ipc/base/clock.hpp"
 #include "ipc/base/random.hpp"
 #include "ipc/scene/mesh/mesh_cut.hpp"
 
@@ -18,7 +17,7 @@ namespace {
 
 constexpr std::uint32_t kTorusSide = 1024, kBaseSide = 8;
 
-// Grid numbers in the order in which they go, and where each goes.
+// Grid indices in contraction order, and the target of each.
 struct Contractions {
     std::vector<std::uint32_t> gone;
     std::vector<std::uint32_t> into = std::vector<std::uint32_t>(std::size_t{kTorusSide} * kTorusSide);
@@ -82,11 +81,11 @@ ProgressiveMeshData torus() {
         const std::uint32_t k = steps - 1 - s;
         data.parent[k] = number[c.into[c.gone[s]]];
         data.merged[k] = data.vertex[data.parent[k]];
-        // Somewhere else, so that there is something to copy.
+        // Another position, so that there is something to copy.
         data.merged[k].position_m[2] += 1e-7F * static_cast<float>(s);
         data.error_m[k] = 1e-7F * static_cast<float>(s + 1);
     }
-    // Triangles by counting sort on the level where two of their corners meet.
+    // Triangles by counting sort on the level at which two of their corners merge.
     std::vector<std::array<std::uint32_t, 3>> triangle;
     std::vector<std::uint32_t> level;
     data.triangle_count.assign(steps + 1, 0);
@@ -98,7 +97,7 @@ ProgressiveMeshData torus() {
             for (const auto& t :
                  {std::array{at(0, 0), at(1, 0), at(1, 1)}, std::array{at(0, 0), at(1, 1), at(0, 1)}}) {
                 auto v = t;
-                std::uint32_t k = 0;  // of the lowest level that has it, counted from the base
+                std::uint32_t k = 0;  // index of the lowest level that contains it, counted from the base
                 while (k == 0) {
                     std::uint32_t& last = *std::max_element(v.begin(), v.end());
                     if (last < data.base_vertices) break;
@@ -124,23 +123,17 @@ ProgressiveMeshData torus() {
     return data;
 }
 
-double processor_ms() {
-    timespec t{};
-    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
-    return 1e3 * static_cast<double>(t.tv_sec) + 1e-6 * static_cast<double>(t.tv_nsec);
-}
-
+// The times of so many runs; parts_per_ms: 1 for milliseconds.
 template <class Prepare, class Timed>
-double median_ms(int runs, Prepare&& prepare, Timed&& timed) {
-    std::vector<double> times_ms;
+Percentiles times(int runs, double parts_per_ms, Prepare&& prepare, Timed&& timed) {
+    std::vector<double> all;
     for (int i = 0; i < runs; ++i) {
         prepare();
-        const double begin_ms = processor_ms();
+        const Instant begin = Monotonic::now();
         timed();
-        times_ms.push_back(processor_ms() - begin_ms);
+        all.push_back(parts_per_ms * 1e-3 * to_us(Monotonic::now() - begin));
     }
-    std::sort(times_ms.begin(), times_ms.end());
-    return times_ms[times_ms.size() / 2];
+    return percentiles(all);
 }
 
 }  // namespace
@@ -155,26 +148,26 @@ MeshBench bench_mesh() {
     };
     MeshBench bench;
     bench.bytes_per_vertex = static_cast<double>(mesh.memory_bytes()) / all;
-    bench.jump_ms = median_ms(
-        15, [&] { go(all); }, [&] { go(few); });
-    bench.jump_back_ms = median_ms(
-        15, [&] { go(few); }, [&] { go(all); });
+    bench.jump_ms = times(
+        15, 1.0, [&] { go(all); }, [&] { go(few); });
+    bench.jump_back_ms = times(
+        15, 1.0, [&] { go(few); }, [&] { go(all); });
     go(few);
     std::vector<std::byte> copy(sizeof(PackedVertex) * few + std::size_t{12} * cut.triangles());
-    bench.copy_ms = median_ms(
-        15, [] {},
+    bench.copy_ms = times(
+        15, 1.0, [] {},
         [&] {
             std::memcpy(copy.data(), cut.vertex().data(), sizeof(PackedVertex) * few);
             std::memcpy(copy.data() + sizeof(PackedVertex) * few, cut.index().data(),
                         std::size_t{12} * cut.triangles());
         });
     // A walk of a thousand takes its milliseconds times a thousand in nanoseconds each.
-    bench.ns_per_contraction = 1e3 * median_ms(
-                                         101, [&] { go(half); }, [&] { cut.set_vertices(half - 1000); });
-    bench.ns_per_vertex_split = 1e3 * median_ms(
-                                          101, [&] { go(half - 1000); }, [&] { cut.set_vertices(half); });
-    bench.changes_ms = median_ms(
-        101,
+    bench.ns_per_contraction = times(
+        101, 1e3, [&] { go(half); }, [&] { cut.set_vertices(half - 1000); });
+    bench.ns_per_vertex_split = times(
+        101, 1e3, [&] { go(half - 1000); }, [&] { cut.set_vertices(half); });
+    bench.changes_ms = times(
+        101, 1.0,
         [&] {
             go(half);
             cut.set_vertices(half - 1000);

@@ -1,7 +1,7 @@
-// What particles cost, measured by tact-gui, who moves them: for `tact bench drilling`. Keys: gui/drilling/bench_particles.hpp.
+// Cost of particles, measured by tact-gui: for `tact bench drilling`. Keys: gui/drilling/bench_particles.hpp.
 //
-// Without   the visual process on this machine: no keys, and a line on standard error that says so
-// Fails by  StartupError where it is there and does not do it
+// Without   tact-gui on this machine: no keys, and a message on standard error
+// Fails by  StartupError if tact-gui exists and fails
 #pragma once
 
 #include <nlohmann/json.hpp>

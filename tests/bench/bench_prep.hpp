@@ -1,11 +1,11 @@
-// What simplification costs on this machine and how good it is: asked of tact-prep, which alone can do it.
+// Cost and quality of mesh simplification on this machine, measured by tact-prep.
 #pragma once
 
 #include <nlohmann/json.hpp>
 
 namespace tact::launch {
 
-// The numbers of `tact-prep bench --json`. Takes about three seconds. Throws StartupError where it fails.
+// Returns the result of `tact-prep bench --json`. Takes about three seconds. Throws StartupError if it fails.
 [[nodiscard]] nlohmann::json bench_prep();
 
 }  // namespace tact::launch

@@ -1,22 +1,22 @@
-// How punctually this machine wakes a servo thread: for `tact bench servo`.
+// Wake-up lateness of a servo thread on this machine: for `tact bench servo`.
 //
-// Method   a thread set up like the servo's (FIFO and last core where permitted, memory locked) runs empty
-//          cycles on the servo's clock and pacer: planned instant, sleep, spin tail, one clock read. Lateness
-//          is that read minus the plan, as in tact-rt. A second round without the spin tail shows what the
-//          kernel alone gives.
-// Takes    `seconds` for each round. Throws StartupError where no thread can be started.
+// Method   a thread set up like the servo's (FIFO and last core if permitted, memory locked) runs empty
+//          cycles on the servo's clock and pacer: planned start time, sleep, spin tail, one clock reading. Lateness
+//          is that reading minus the plan, as in tact-rt. A second round without the spin tail shows the kernel's
+//          lateness alone.
+// Takes    `seconds` per round. Throws StartupError if the thread cannot be started.
 #pragma once
 
 #include <cstdint>
 
-#include "ipc/base/clock.hpp"
+#include "tests/bench/loop_thread.hpp"
 
 namespace tact {
 
 struct ServoBenchSettings {
     Duration period = std::chrono::milliseconds(1);
-    Duration spin_tail = std::chrono::microseconds(100);  // the default of deploy/tact.toml
-    int priority = 80;                                    // FIFO; 0: ordinary scheduling
+    Duration spin_tail = kServoSpinTail;
+    int priority = kServoPriority;
     double seconds = 3.0;
 };
 
@@ -28,9 +28,9 @@ struct LatenessMetrics {
 struct ServoBench {
     LatenessMetrics lateness;         // sleep and spin tail
     LatenessMetrics lateness_asleep;  // sleep alone
-    std::uint64_t overruns = 0;       // cycles that woke after the next one was due
-    bool fifo = false;                // whether the priority was permitted
-    int core = -1;                    // pinned to it; -1: not pinned
+    std::uint64_t overruns = 0;       // cycles that woke after the start time of the next one
+    bool fifo = false;                // true: the priority was permitted
+    int core = -1;                    // core of the thread; -1: not pinned
 };
 
 [[nodiscard]] ServoBench bench_servo(const ServoBenchSettings& settings = {});

@@ -1,11 +1,11 @@
-// Time of one picture of bone, and how it looks.
+// Time and appearance of a frame of bone.
 //
-// Bone      the temporal bone of tact-prep, `voxels` a side, as it is first seen; 960 x 540 pixels
-// sharp     one ray a pixel of the whole view
-// moving    the view turns a little each picture, so many rays
-// drilled   the view rests, a burr of 3 mm takes its way through the bone: bricks sent and tiles seen through again
-// Picture   TACT_BONE_PICTURE names a PNG to write of the last, with voxels and what it is in its name
-// Skipped   where there is no display
+// Bone      the temporal bone of tact-prep, `voxels` per side, in its first view; 960 x 540 pixels
+// sharp     one ray per pixel of the whole view
+// moving    the view turns a little each frame, so many rays are needed
+// drilled   the view rests, a burr of 3 mm moves through the bone: bricks are uploaded and tiles traced again
+// Picture   TACT_BONE_PICTURE names a PNG for the last frame; the file name gets voxels and case
+// Skipped   without a display
 #include <benchmark/benchmark.h>
 
 #include <cmath>
@@ -79,7 +79,7 @@ struct BonePicture {
     }
 };
 
-// Figures of one loop of pictures, each of its own preparation.
+// Metrics of a loop of frames, each with its own preparation.
 void bone_pictures(benchmark::State& state, const char* what, std::uint32_t rays,
                    const std::function<void(BonePicture&, int)>& prepare) {
     if (std::getenv("DISPLAY") == nullptr) {
@@ -108,13 +108,13 @@ void moving(benchmark::State& state) {
     bone_pictures(state, "moving", static_cast<std::uint32_t>(state.range(1)),
                   [](BonePicture& p, int n) { p.camera.rotate(n % 64 < 32 ? 3.0F : -3.0F, 0.5F, kHeight); });
 }
-// Over the side that is seen first, 1 mm deep, 0.5 mm a picture.
+// Over the side of the first view, 1 mm deep, 0.5 mm per frame.
 void drilled(benchmark::State& state) {
     bone_pictures(state, "drilled", 1U << 30U, [](BonePicture& p, int n) {
         const BoneBricks& b = p.bone.bricks;
         const double edge = b.size[0], r = 3e-3 / b.voxel_m;
         const double way = std::fmod(0.5e-3 / b.voxel_m * n, 0.3 * edge);
-        // Where a finger along the line of sight through that place meets bone.
+        // The point at which the line of sight through `at` meets bone.
         Vec3 at(0.35 * edge + way, 0.45 * edge, edge - 2.0);
         while (at.z() > 0.0 &&
                p.drilled[b.voxel(static_cast<std::uint32_t>(at.x()), static_cast<std::uint32_t>(at.y()),

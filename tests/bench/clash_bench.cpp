@@ -1,6 +1,6 @@
-// The clash force: a ball of protein of 3500 atoms that moves among others, by how many of them it meets.
+// The clash force: a ball of protein of 3500 atoms that moves among others, by the number of others in contact.
 //
-// Arguments of a run: neighbours around it, distance of their middles in angstrom (radii are 25: 48 touch).
+// Arguments of a run: bodies around it, distance of their centres in angstrom (radii are 25: 48 is contact).
 #include <benchmark/benchmark.h>
 
 #include <cmath>

@@ -1,9 +1,9 @@
-// Time of one picture of dust, water, blood and paste in a hole in bone, and how it looks.
+// Time and appearance of a frame of dust, water, blood and paste in a hole in bone.
 //
-// Size      960 x 540 pixels; the hole fills most of the picture
-// Figures   ms a picture, of the particles alone: the bone behind them is a mesh that is drawn once
-// Picture   TACT_CLOUD_PICTURE names a PNG to write after the largest
-// Skipped   where there is no display
+// Size      960 x 540 pixels; the hole fills most of the frame
+// Metrics   ms per frame, of the particles alone: the bone behind them is a mesh that is drawn once
+// Picture   TACT_CLOUD_PICTURE names a PNG for the largest case
+// Skipped   without a display
 #include <benchmark/benchmark.h>
 
 #include <cmath>
@@ -25,7 +25,7 @@ namespace {
 constexpr int kWidth = 960, kHeight = 540;
 constexpr std::uint32_t kEdge = 128;
 
-// A plate along z = 60 with a bowl in it, open towards z.
+// A plate at z = 60 with a bowl that opens towards z.
 double solid(const Vec3& p) {
     const double bowl = (p - Vec3(64.0, 64.0, 62.0)).norm();
     const double plate =
@@ -75,7 +75,7 @@ void fill(Particles& particles, const BoneBricks& bricks, std::uint32_t most) {
                                Vec3::Zero());
         }
         static_cast<void>(particles.step(down, 10.0, Vec3::Zero(), {}));
-        if (particles.all().size() < before + 20) break;  // it is full
+        if (particles.all().size() < before + 20) break;  // full
     }
 }
 

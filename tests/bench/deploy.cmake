@@ -1,1 +1,1 @@
-# Benches of deploy.
+# Benchmarks of deploy.

@@ -1,4 +1,4 @@
-// The inner loop of docking: sums over points of a density map, by kernel, count of points and voxel size.
+// The inner loop of docking: sums over points of a density map, by kernel, number of points and voxel size.
 //
 // For each kernel of this processor: 200 points in random order (a codebook) and 100 000 along a Morton curve
 // (atoms), as the force model stores them. Arguments of a run: points, voxel in picometres.
@@ -18,7 +18,7 @@
 namespace tact {
 namespace {
 
-// A ball of protein: one heavy atom in 18 cubic angstrom at 100 000.
+// A ball of protein: one heavy atom per 18 cubic angstrom at 100 000 atoms.
 constexpr double kBallM = 75e-10;
 
 PointSet ball(std::size_t count) {

@@ -6,11 +6,12 @@
 #include <numbers>
 
 #include "ipc/base/error.hpp"
+#include "tests/bench/loop_thread.hpp"
 
 namespace tact::launch {
 namespace {
 
-constexpr double kSurfaceShare = 0.78;  // of the block's height
+constexpr double kSurfaceShare = 0.78;  // fraction of the block's height
 constexpr double kShellM = 3e-3;
 
 SceneMeta plain_meta() {
@@ -25,12 +26,12 @@ double waves(double x, double y, double z) {
            0.5 * std::sin(2.9 * x - 1.9 * y + 2.3 * z);
 }
 
-// How many voxels are bone, brick by brick: those whose revision moved are counted again.
+// Counts voxels of bone, brick by brick; counts again only bricks whose revision changed.
 class SolidVoxels {
 public:
     SolidVoxels(const BoneSample& bone, const std::vector<std::uint32_t>& revision)
         : bone_(bone), revision_(revision), seen_(revision.size(), ~0U), solid_(revision.size()) {}
-    // Since it was asked last.
+    // Voxels lost since the last call.
     std::uint64_t lost() {
         std::uint64_t lost = 0;
         for (std::size_t b = 0; b < seen_.size(); ++b) {
@@ -90,17 +91,18 @@ BoneSample bone_of_raw_file(const std::filesystem::path& file, std::array<std::u
     std::error_code none;
     const auto there = std::filesystem::file_size(file, none);
     if (none || there != bytes)
-        throw StartupError(attempt,
-                           none ? none.message()
-                                : "it has " + std::to_string(there) + " bytes, not " + std::to_string(bytes),
-                           "give the size of a raw file of one byte a voxel with --size X Y Z");
+        throw StartupError(
+            attempt,
+            none ? none.message()
+                 : "it has " + std::to_string(there) + " bytes instead of " + std::to_string(bytes),
+            "use a raw file of one byte per voxel, and give its size with --size X Y Z");
     std::ifstream in(file, std::ios::binary);
     bone.density.assign(bone.bricks.bytes(), 0);
     std::vector<char> row(voxels[0]);
     for (std::uint32_t z = 0; z < voxels[2]; ++z)
         for (std::uint32_t y = 0; y < voxels[1]; ++y) {
             if (!in.read(row.data(), static_cast<std::streamsize>(row.size())))
-                throw StartupError(attempt, "it ended early", "copy it again");
+                throw StartupError(attempt, "the file ended early", "copy it again");
             for (std::uint32_t x = 0; x < voxels[0]; ++x)
                 bone.density[bone.bricks.voxel(x, y, z)] = static_cast<std::uint8_t>(row[x]);
         }
@@ -138,7 +140,7 @@ std::vector<DrillStep> drill_along(BoneSample& bone, const std::vector<Vec3>& pa
     settings.tool.shaft_radius_m = 0.0;
     settings.force_n_max = 100.0;
     std::vector<std::uint32_t> revision(bone.bricks.brick_count());
-    for (int pass = 0; pass < way.passes; ++pass) {
+    const auto go = [&](int pass) {
         if (pass > 0) bone.density = fresh;
         DrillBone drilled(bone.bricks, bone.density, revision);
         DrillModel model(plain_meta(), drilled, settings);
@@ -146,36 +148,49 @@ std::vector<DrillStep> drill_along(BoneSample& bone, const std::vector<Vec3>& pa
         if (!path_m.empty()) tool.T_world_tool.p_m = path_m.front();
         model.reset(tool);
         model.turn_burr({.burr_rad_s = 0.0, .step_s = way.step_s});
-        for (int i = 0; i < ForceFade::kRampSteps; ++i)
+        for (int i = 0; i < ForceFade::ramp_steps(way.step_s); ++i)
             static_cast<void>(model.step(tool, {.fidelity = way.fidelity}));
         std::uint64_t removed = model.removed_levels();
         SolidVoxels solid(bone, revision);
         if (way.count_voxels) static_cast<void>(solid.lost());
         model.turn_burr({.burr_rad_s = way.burr_rad_s, .step_s = way.step_s});
+        LoopPace pace(way.paced && pass == 0 ? way.step_s : 0.0);
         for (std::size_t i = 0; i < path_m.size(); ++i) {
             tool.twist_world.linear_m_s =
                 i == 0 ? Vec3(Vec3::Zero()) : Vec3((path_m[i] - path_m[i - 1]) / way.step_s);
             tool.T_world_tool.p_m = path_m[i];
+            pace.wait();
             const Instant begin = Monotonic::now();
             const StepResult result = model.step(tool, {.fidelity = way.fidelity});
             const double us = to_us(Monotonic::now() - begin);
             DrillStep& step = steps[i];
-            step.us = std::min(step.us, us);
+            if (pass == 0) step.us = us;
+            step.best_us = std::min(step.best_us, us);
             step.force_n = result.wrench_world.force_n;
             step.removed_levels = model.removed_levels() - removed;
             removed = model.removed_levels();
             if (way.count_voxels) step.removed_voxels = solid.lost();
         }
+    };
+    for (int pass = 0; pass < way.passes; ++pass) {
+        if (way.paced && pass == 0)
+            run_as_loop(kServoPriority, [&] { go(0); });
+        else
+            go(pass);
     }
     return steps;
 }
 
-double percentile_us(const std::vector<DrillStep>& steps, double share) {
+Percentiles times_us(const std::vector<DrillStep>& steps) {
     std::vector<double> us;
     for (const DrillStep& s : steps) us.push_back(s.us);
-    if (us.empty()) return 0.0;
-    std::sort(us.begin(), us.end());
-    return us[static_cast<std::size_t>(share * static_cast<double>(us.size() - 1))];
+    return percentiles(us);
+}
+
+Percentiles best_times_us(const std::vector<DrillStep>& steps) {
+    std::vector<double> us;
+    for (const DrillStep& s : steps) us.push_back(s.best_us);
+    return percentiles(us);
 }
 
 }  // namespace tact::launch

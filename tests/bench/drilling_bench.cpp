@@ -1,11 +1,11 @@
 // A burr that strokes over bone and sinks into it: time of the servo's step, force and erosion together.
 //
-// Case      radius and voxel in tenths of a millimetre, shaft or none; 60 mm/s to and fro, sinking by 0.6 R in a second,
-//           default level, solid bone with a grain. 512^3 voxels of 0.1 mm where the environment variable
-//           TACT_BENCH_LARGE is set, 192^3 otherwise.
-// Figures   step_us: of DrillModel::step(); bricks: changed a step; mhz: of a counting loop between the steps, median, to
-//           judge the others by.
-// Kernels   ns of one brick in the surface of a ball of 10 voxels, of sixteen cuts, and of pulling a brick up.
+// Case      radius and voxel in tenths of a millimetre, shaft or none; 60 mm/s to and fro, sinking by 0.6 R per second,
+//           default level, solid bone with a grain. 512^3 voxels of 0.1 mm if the environment variable
+//           TACT_BENCH_LARGE is set, otherwise 192^3.
+// Metrics   step_us: of DrillModel::step(); bricks: changed per step; mhz: median of a counting loop between the steps, as a
+//           reference for the machine.
+// Kernels   ns per brick in the surface of a ball of 10 voxels, of sixteen cuts, and of an update of its moments.
 // Measured  see rt/force/drilling/README.md.
 #include <benchmark/benchmark.h>
 

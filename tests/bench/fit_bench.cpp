@@ -1,5 +1,5 @@
-// What the fit of bodies in a map costs, and a refinement: 100^3 voxels of 2.7 Å at 11.5 Å, as a map of a
-// chaperonin has them, with as many atoms as its ring of seven.
+// Cost of the fit of bodies in a map, and of a refinement: 100^3 voxels of 2.7 Å at 11.5 Å, like a map of a
+// chaperonin, with the number of atoms of its ring of seven.
 #include <benchmark/benchmark.h>
 
 #include "ipc/base/random.hpp"

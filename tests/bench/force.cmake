@@ -1,4 +1,4 @@
-# Benches of force.
+# Benchmarks of force.
 tact_bench(bench/docking_bench.cpp USES scene force)
 tact_bench(bench/clash_bench.cpp USES scene force)
 tact_bench(bench/refine_bench.cpp USES scene force prep_surface prep_synthetic)

@@ -1,4 +1,4 @@
-# Benches of gui.
+# Benchmarks of gui.
 if(TACT_GUI)
     tact_bench(bench/draw_bench.cpp USES gui_window gui_dashboard gui_render scene base)
     tact_bench(bench/bone_bench.cpp USES gui_window gui_dashboard gui_render prep_synthetic scene image base)

@@ -1,4 +1,4 @@
-// What shared memory costs: publish and read of each state, push and next of each ring, in a mapped region.
+// Cost of shared memory: publish and read of each state, push and next of each ring, in a mapped region.
 #include <benchmark/benchmark.h>
 
 #include <memory>

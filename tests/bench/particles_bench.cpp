@@ -1,6 +1,6 @@
-// Particles about a hole in bone: what a move costs, and how well a step keeps its budget.
+// Particles near a hole in bone: cost of a move, and how well a step keeps its budget.
 //
-// Figures   particle_ns_each; over_p50, over_p99: a step's time over its budget, of the steps that had more to do
+// Metrics   particle_ns_each; over_p50, over_p99: a step's time over its budget, of the steps with more work
 //           than their budget; alive
 #include <benchmark/benchmark.h>
 
@@ -24,7 +24,7 @@ void step_of_a_budget(benchmark::State& state) {
             for (std::uint32_t x = 0; x < 256; ++x) density[bricks.voxel(x, y, z)] = 200;
     Particles particles(bricks, density, {.most = most});
     SeededRandom random(1);
-    // Most lie where they fell; a hundredth comes anew with every step.
+    // Most lie where they fell; a hundredth is added in each step.
     const auto fill = [&](std::size_t count) {
         for (std::size_t misses = 0; count > 0 && misses < 1000 && particles.all().size() < most;) {
             const double far = 90.0 * random.uniform(), angle = 6.28 * random.uniform();

@@ -11,9 +11,9 @@ constexpr std::size_t kPathMax = 10'000'000;
 }
 
 std::vector<Vec3> read_positions(const std::filesystem::path& file, double unit_m) {
-    const std::string attempt = "read the positions in " + file.string();
+    const std::string attempt = "reading the positions in " + file.string();
     std::ifstream in(file);
-    if (!in) throw StartupError(attempt, "it cannot be read", "check the path");
+    if (!in) throw StartupError(attempt, "the file cannot be read", "check the path");
     std::vector<Vec3> path;
     std::string line;
     std::size_t number = 0;
@@ -23,8 +23,8 @@ std::vector<Vec3> read_positions(const std::filesystem::path& file, double unit_
         Vec3 p;
         std::istringstream words(line);
         if (!(words >> p.x() >> p.y() >> p.z()) || !p.allFinite() || path.size() == kPathMax)
-            throw StartupError(attempt, "line " + std::to_string(number) + " is no position",
-                               "give x y z on each line, ten million at the most");
+            throw StartupError(attempt, "line " + std::to_string(number) + " is not a position",
+                               "give x y z on each line, at most ten million lines");
         path.emplace_back(unit_m * p);
     }
     return path;

@@ -1,4 +1,4 @@
-// A path of a tool as text: x y z a line, a millisecond apart; empty lines and those that begin with # are left out.
+// Reads a tool path from text: one line x y z per millisecond; ignores empty lines and lines that begin with #.
 #pragma once
 
 #include <filesystem>
@@ -8,8 +8,8 @@
 
 namespace tact::launch {
 
-// In metres; unit_m: of the file. Fails by StartupError: the file cannot be read, a line is no position, or there are
-// more than ten million.
+// Returns metres; unit_m: unit of the file. Fails by StartupError: the file cannot be read, a line is not a position, or
+// there are more than ten million.
 [[nodiscard]] std::vector<Vec3> read_positions(const std::filesystem::path& file, double unit_m);
 
 }  // namespace tact::launch

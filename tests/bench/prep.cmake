@@ -1,2 +1,2 @@
-# Benches of prep.
+# Benchmarks of prep.
 tact_bench(bench/simplify_bench.cpp USES base scene prep_mesh prep_synthetic)

@@ -1,10 +1,9 @@
 // Refinement around a moving probe: processor time of one step, on a rough torus.
 //
 // Case      a step of 1 % of the diagonal, full detail within 5 % of it (Chebyshev), a bell beyond.
-//           40,000 vertices; a million where the environment variable
-//           TACT_BENCH_LARGE is set.
-// Figures   step_us: processor time of the thread, percentiles over the steps; ops: splits and merges a step;
-//           active: vertices; late: steps that ended without full detail. Still: the probe stands.
+//           40,000 vertices; a million if the environment variable TACT_BENCH_LARGE is set.
+// Metrics   step_us: processor time of the thread, percentiles over the steps; ops: splits and merges per step;
+//           active: vertices; late: steps that ended without full detail. Still: the probe is at rest.
 // Measured  see rt/force/surface/REFINEMENT.md.
 #include <benchmark/benchmark.h>
 #include <time.h>

@@ -1,2 +1,2 @@
-# Benches of assets.
+# Benchmarks of ipc/scene.
 tact_bench(bench/fit_bench.cpp USES base scene)

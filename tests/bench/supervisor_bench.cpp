@@ -1,8 +1,8 @@
-// From the last beat of a servo that hogs its processor to the enable line's fall, with the threads and priorities
-// of tact-rt: five milliseconds of silence, a look of the supervisor, a look of the lines.
+// Time from the last heartbeat of a servo that occupies its processor to the fall of the enable line, with the threads and
+// priorities of tact-rt: five milliseconds of silence, a check of the supervisor, a sample of the lines.
 //
-// A fall later than 10 ms is counted. It is an error where TACT_ASSERT_TIMES is set and real-time priorities are
-// permitted, and only there: on a machine that others use it says something of them.
+// Falls later than 10 ms are counted. They are an error only if TACT_ASSERT_TIMES is set and real-time priorities are
+// permitted: on a shared machine they depend on its other users.
 #include <benchmark/benchmark.h>
 
 #include <algorithm>
@@ -15,7 +15,7 @@ namespace tact {
 namespace {
 
 constexpr double kMostS = 10e-3;
-constexpr Duration kLetGo = std::chrono::milliseconds(100);  // many looks of the supervisor
+constexpr Duration kLetGo = std::chrono::milliseconds(100);  // many checks of the supervisor
 
 bool may_use_fifo() {
     bool may = false;
@@ -25,8 +25,8 @@ bool may_use_fifo() {
     return may;
 }
 
-// From the last beat to the fall; nothing where the servo had itself let go (a fault, on a busy host) before it was
-// made to stand: then there is nothing to drop.
+// Time from the last heartbeat to the fall; nothing if the servo had already released the line (a fault, on a busy host)
+// before it was stopped: then there is nothing to drop.
 std::optional<double> fall_s(RealLoop& loop) {
     std::uint64_t before = loop.drops();
     for (; !loop.brought_up(); before = loop.drops()) usleep(1000);

@@ -10,9 +10,9 @@ namespace tact::launch {
 namespace {
 
 constexpr double kInS = 0.25, kTapsHz = 3.0;
-constexpr double kTouchS = 2.0, kTurnRad = 0.03;  // of a wandering hand: from lift to lift, and a step
+constexpr double kTouchS = 2.0, kTurnRad = 0.03;  // wandering hand: time between lifts, turn per step
 
-// How far the surface is from the origin in a direction, seen from outside: steps by the clearance.
+// Radius of the surface in a direction, from outside: steps by the clearance.
 double radius_of_surface(const SurfaceMesh& surface, const Vec3& direction, double from_m) {
     double r = from_m;
     for (int i = 0; i < 400 && r > 0.0; ++i) {
@@ -56,8 +56,8 @@ std::vector<Vec3> touch_path_m(const SurfaceMesh& surface, TouchWay way, double 
     return path;
 }
 
-// The foot of the hand goes along the surface; the hand is below it, along the smoothed normal of the last steps, so
-// that it does not leap at edges.
+// The foot point of the hand moves along the surface; the hand is below it, along the normal averaged over the last steps,
+// so that it does not jump at edges.
 std::vector<WanderPlace> wander(const SurfaceMesh& surface, const Wander& how, std::size_t samples) {
     SeededRandom random(how.seed);
     const auto any =
@@ -73,10 +73,10 @@ std::vector<WanderPlace> wander(const SurfaceMesh& surface, const Wander& how, s
         along = (along - along.dot(normal) * normal).normalized();
         const Vec3 before_m = foot.point_m;
         foot = surface.nearest(foot.point_m + step_m * along, 1e9, foot.triangle);
-        // At the border of an open surface, or in a corner: back.
+        // At the border of an open surface, or in a corner: turn back.
         if ((foot.point_m - before_m).norm() < 0.3 * step_m) along = -along + 0.5 * normal.cross(along);
         Vec3 wanted = surface.normal_at(foot);
-        if (wanted.dot(normal) < 0.0) wanted = -wanted;  // a sheet's other side
+        if (wanted.dot(normal) < 0.0) wanted = -wanted;  // other side of a sheet
         normal = (normal + step_m / how.even_m * wanted).normalized();
         const double since_lift_s = std::fmod(t, kTouchS);
         const double in = std::min(1.0, std::min(since_lift_s, kTouchS - since_lift_s) / kInS);

@@ -9,6 +9,7 @@
 #include "deploy/tact/files.hpp"
 #include "ipc/base/clock.hpp"
 #include "ipc/base/error.hpp"
+#include "tests/bench/loop_thread.hpp"
 #include "tests/bench/touch_paths.hpp"
 
 namespace tact::launch {
@@ -25,7 +26,7 @@ json bake_to_measure(const std::vector<std::string>& words, const std::filesyste
     Child child("tact-prep", find_program("tact-prep"), settings);
     if (fd >= 0) ::close(fd);
     const auto& ending = child.wait(std::chrono::minutes(10));
-    const std::string said = read_small(log);  // its progress, then the numbers
+    const std::string said = read_small(log);  // progress, then JSON
     json numbers = json::parse(said.substr(std::min(said.find('{'), said.size())), nullptr, false);
     if (!ending || !ending->clean() || !numbers.is_object())
         throw StartupError(
@@ -37,26 +38,28 @@ json bake_to_measure(const std::vector<std::string>& words, const std::filesyste
 
 std::vector<TouchStep> touch_along(const SurfaceMesh& surface, const std::vector<Vec3>& path_model_m,
                                    const SurfaceSettings& settings, int passes, double world_per_model,
-                                   const VertexForest* forest) {
+                                   const VertexForest* forest, bool paced) {
     SceneMeta meta{};
     meta.kind = SceneKind::surface;
     meta.world_per_model = world_per_model;
     std::vector<TouchStep> steps(path_model_m.size());
-    for (int pass = 0; pass < passes && !path_model_m.empty(); ++pass) {
+    const auto go = [&](int pass) {
         SurfaceModel model(meta, surface, settings, forest);
         ToolState tool;
         tool.T_world_tool.p_m = world_per_model * path_model_m.front();
         model.reset(tool);
-        for (int i = 0; i < ForceFade::kRampSteps; ++i) {
+        for (int i = 0; i < ForceFade::ramp_steps(1e-3); ++i) {
             (void)model.step(tool, {});
             if (model.has_slow_update()) model.slow_update(tool, {});
         }
         Vec3 before_m = model.contact().proxy_m;
+        LoopPace pace(paced && pass == 0 ? kTouchStepS : 0.0);
         for (std::size_t i = 0; i < path_model_m.size(); ++i) {
             tool.T_world_tool.p_m = world_per_model * path_model_m[i];
             if (i > 0)
                 tool.twist_world.linear_m_s =
                     world_per_model / kTouchStepS * (path_model_m[i] - path_model_m[i - 1]);
+            pace.wait();
             const Instant begin = Monotonic::now();
             const StepResult result = model.step(tool, {});
             const double us = to_us(Monotonic::now() - begin);
@@ -64,23 +67,32 @@ std::vector<TouchStep> touch_along(const SurfaceMesh& surface, const std::vector
             const bool settled = model.contact().state == ContactState::settled;
             const bool nearer = (now_m - path_model_m[i]).norm() <
                                 (before_m - path_model_m[i]).norm() - 1e-7 / world_per_model;
-            steps[i] = {result.wrench_world.force_n, std::min(us, steps[i].us), settled, !settled && !nearer};
+            steps[i] = {result.wrench_world.force_n, pass == 0 ? us : steps[i].us,
+                        std::min(us, steps[i].best_us), settled, !settled && !nearer};
             steps[i].adaptive = model.regime() == TouchRegime::adaptive;
             before_m = now_m;
             if (model.has_slow_update() && i % kSlowUpdateEvery == 0) model.slow_update(tool, {});
         }
+    };
+    for (int pass = 0; pass < passes && !path_model_m.empty(); ++pass) {
+        if (paced && pass == 0)
+            run_as_loop(kServoPriority, [&] { go(0); });
+        else
+            go(pass);
     }
     return steps;
 }
 
-double percentile_us(const std::vector<TouchStep>& steps, double share) {
+Percentiles times_us(const std::vector<TouchStep>& steps) {
     std::vector<double> us;
-    us.reserve(steps.size());
     for (const TouchStep& s : steps) us.push_back(s.us);
-    std::sort(us.begin(), us.end());
-    return us.empty() ? 0.0
-                      : us[std::min(us.size() - 1,
-                                    static_cast<std::size_t>(share * static_cast<double>(us.size())))];
+    return percentiles(us);
+}
+
+Percentiles best_times_us(const std::vector<TouchStep>& steps) {
+    std::vector<double> us;
+    for (const TouchStep& s : steps) us.push_back(s.best_us);
+    return percentiles(us);
 }
 
 std::uint64_t jammed_cycles(const std::vector<TouchStep>& steps) {

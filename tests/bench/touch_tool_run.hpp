@@ -1,7 +1,7 @@
-// As touch_run.hpp, with a tool that is a mesh.
+// As touch_run.hpp, for a mesh tool.
 //
-// Path   that of a point becomes one of the tool: its lowest place goes where the point went, its y axis leads
-//        outward, and it turns about that by half a radian a second.
+// Path   The path of a point becomes one of the tool: its lowest point follows that path, its y axis points
+//        outward, and it rotates about it by half a radian per second.
 #pragma once
 
 #include <string>
@@ -13,16 +13,16 @@
 
 namespace tact::launch {
 
-// One of tact-prep's own, with 1000 points.
+// Bakes one of tact-prep's own tools, with 1000 points.
 TouchTool bake_tool_to_measure(const std::string& name);
 
 std::vector<Pose> tool_path(const std::vector<WanderPlace>& path, const TouchTool& tool);
-// Of a surface that is seen whole from the origin.
+// surface: star-shaped about the origin.
 std::vector<Pose> tool_path(const std::vector<Vec3>& path_model_m, const TouchTool& tool);
 
-// The model is as large as in its file. forest: as touch_along.
+// The model is as large as in its file. forest, paced: as touch_along.
 std::vector<TouchStep> touch_tool_along(const SurfaceMesh& surface, const TouchTool& tool,
                                         const std::vector<Pose>& path, const SurfaceSettings& settings,
-                                        int passes, const VertexForest* forest = nullptr);
+                                        int passes, const VertexForest* forest = nullptr, bool paced = false);
 
 }  // namespace tact::launch

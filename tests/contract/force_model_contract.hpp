@@ -1,9 +1,9 @@
-// What every force model keeps, whatever it renders. One suite, run over each model by its unit test:
+// The contract of every force model. One suite, run for each model by its unit test:
 //
 //     INSTANTIATE_TEST_SUITE_P(Docking, ForceModelContract, testing::Values(ForceModelCase{"ring", make,
 //     touch}));
 //
-// make builds the model; touch is a tool pose that feels a force, a hand's width around it is explored.
+// make builds the model; touch is a tool pose with a nonzero force, and the tests explore the space around it.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -22,19 +22,19 @@ namespace tact {
 struct ForceModelCase {
     std::string name;
     std::function<std::unique_ptr<ForceModel>()> make;
-    // Where the tool is gripped, and where it is then led to feel something.
+    // The pose at the grip, and the pose to which the tool then moves to get a force.
     Pose grip, touch;
-    double force_n_min = 0.01;  // felt at touch, at full fidelity
-    double step_n_max = 0.1;    // largest change of force that is not felt
-    // Where the knob matters: the tool's pose in each step, from touch on. None: at rest at touch.
+    double force_n_min = 0.01;  // at touch, at full fidelity
+    double step_n_max = 0.1;    // largest imperceptible change of force
+    // Path on which the knob matters: the tool's pose in each step, from touch on. Empty: at rest at touch.
     std::function<Pose(int)> path = {};
     int path_steps = 50;
-    // Of the items that predict() expects, over those that steps report: where they depend on what is met on the way. There
-    // items may fall by a hundredth from level to level.
+    // Relative difference allowed between the items that predict() expects and those that steps report, for models whose
+    // items depend on the surroundings. Their items may fall by a hundredth from level to level.
     double items_tolerance = 0.0;
     [[nodiscard]] double items_slack() const { return items_tolerance > 0.0 ? 0.99 : 1.0; }
     bool predicts = true;  // predict() is implemented
-    // Why all levels give the same force; null: a lower level has a larger error.
+    // Reason why all levels give the same force in this case; null: a lower level has a larger error.
     const char* error_free = nullptr;
 };
 
@@ -42,7 +42,7 @@ inline void PrintTo(const ForceModelCase& c, std::ostream* out) { *out << c.name
 
 class ForceModelContract : public testing::TestWithParam<ForceModelCase> {
 protected:
-    static constexpr int kSettle = 2000;  // steps after which every ramp is over
+    static constexpr int kSettle = 2000;  // steps after which every ramp has ended
 
     void SetUp() override {
         model_ = GetParam().make();
@@ -115,7 +115,7 @@ TEST_P(ForceModelContract, knob_is_named_and_in_range) {
     EXPECT_TRUE(knob.haptic);
 }
 
-// The loop warms up before a hand is there.
+// The loop warms up before a hand is present.
 TEST_P(ForceModelContract, a_step_before_the_first_reset_moves_no_body) {
     model_ = GetParam().make();
     const ModelBodies before = model_->bodies();
@@ -127,7 +127,7 @@ TEST_P(ForceModelContract, a_step_before_the_first_reset_moves_no_body) {
     }
 }
 
-TEST_P(ForceModelContract, touch_is_felt) {
+TEST_P(ForceModelContract, touch_gives_a_force) {
     EXPECT_GE(settle(GetParam().touch).wrench_world.force_n.norm(), GetParam().force_n_min);
 }
 
@@ -149,7 +149,8 @@ TEST_P(ForceModelContract, items_rise_and_errors_fall_with_the_knob) {
     }
 }
 
-// A knob that is connected: it changes the work, the force, and the error that is reported, and that error is true.
+// Fails for a knob that is not connected: the knob changes work, force and reported error, and the error bounds the
+// difference.
 TEST_P(ForceModelContract, the_knob_changes_work_and_force_and_the_error_bounds_the_difference) {
     const KnobRun full = run(1.0F), coarse = run(0.0F);
     KnobRun before = coarse;
@@ -206,7 +207,7 @@ TEST_P(ForceModelContract, predicted_cost_and_items_rise_and_the_predicted_error
         EXPECT_NEAR(now.items_predicted, now.items, GetParam().items_tolerance * now.items)
             << "at " << fidelity;
     }
-    // What a full level says of the floor is what the floor then does.
+    // The predicted error of the floor bounds the difference.
     const KnobRun coarse = run(0.0F);
     double most_n = 0.0;
     for (std::size_t i = 0; i < full.step.size(); ++i)
@@ -222,7 +223,7 @@ TEST_P(ForceModelContract, a_step_without_time_reports_the_part_of_its_work_that
     EXPECT_LE(late.work_done, 1.0F);
 }
 
-TEST_P(ForceModelContract, turning_the_knob_in_contact_is_not_felt) {
+TEST_P(ForceModelContract, turning_the_knob_in_contact_causes_no_perceptible_force_step) {
     StepResult before = settle(GetParam().touch, 0.0F);
     // A governor's fastest sweep: slew_per_s at 1 kHz.
     const float step = std::max(1e-4F, std::min(0.004F, model_->knob().slew_per_s * 1e-3F));
@@ -233,7 +234,7 @@ TEST_P(ForceModelContract, turning_the_knob_in_contact_is_not_felt) {
     }
 }
 
-TEST_P(ForceModelContract, a_fidelity_outside_its_range_is_taken_as_the_nearest) {
+TEST_P(ForceModelContract, a_fidelity_outside_its_range_is_clamped) {
     (void)settle(GetParam().touch);
     const auto step = [&](float fidelity) {
         StepResult result;  // of a level that has settled
@@ -269,7 +270,7 @@ TEST_P(ForceModelContract, no_force_right_after_reset) {
     EXPECT_LT(model_->step(at(GetParam().touch), budget(1.0F)).wrench_world.force_n.norm(), 1e-3);
 }
 
-TEST_P(ForceModelContract, force_comes_back_after_reset_without_a_step) {
+TEST_P(ForceModelContract, force_returns_after_reset_without_a_step) {
     StepResult before = settle(GetParam().touch);
     model_->reset(at(GetParam().touch));
     before.wrench_world = Wrench{};
@@ -281,7 +282,35 @@ TEST_P(ForceModelContract, force_comes_back_after_reset_without_a_step) {
     EXPECT_GE(before.wrench_world.force_n.norm(), GetParam().force_n_min);
 }
 
-TEST_P(ForceModelContract, poses_that_are_not_poses_give_no_force_and_are_forgotten) {
+// From a tenth of the force to nine tenths of it, and back with the clutch: 0.61 of the 0.256 s of a fade.
+TEST_P(ForceModelContract, the_force_fades_in_and_out_over_the_same_time_at_any_rate) {
+    model_->reset(at(GetParam().touch));
+    double full_n = 0.0;
+    for (int i = 0; i < kSettle; ++i)
+        full_n = model_->step(at(GetParam().touch), budget(1.0F)).wrench_world.force_n.norm();
+    for (const double step_s : {1e-2, 1e-3, 5e-5}) {
+        const auto step_n = [&](std::uint32_t buttons) {
+            model_->drive({.step_s = step_s});
+            return model_->step(at(GetParam().touch, buttons), budget(1.0F)).wrench_world.force_n.norm();
+        };
+        const int most = static_cast<int>(3.0 / step_s);
+        const auto steps_until = [&](std::uint32_t buttons, const std::function<bool(double)>& reached) {
+            int steps = 0;
+            while (steps < most && !reached(step_n(buttons))) ++steps;
+            return steps;
+        };
+        model_->reset(at(GetParam().touch));
+        (void)steps_until(0, [&](double n) { return n > 0.1 * full_n; });
+        const double in_s = step_s * steps_until(0, [&](double n) { return n > 0.9 * full_n; });
+        EXPECT_NEAR(in_s, 0.1557, 2.0 * step_s + 2e-3) << "at " << 1.0 / step_s << " Hz";
+        (void)steps_until(0, [&](double n) { return n > 0.9999 * full_n; });
+        (void)steps_until(1, [&](double n) { return n < 0.9 * full_n; });
+        const double out_s = step_s * steps_until(1, [&](double n) { return n < 0.1 * full_n; });
+        EXPECT_NEAR(out_s, 0.1557, 2.0 * step_s + 2e-3) << "at " << 1.0 / step_s << " Hz";
+    }
+}
+
+TEST_P(ForceModelContract, invalid_poses_give_no_force_and_leave_no_trace) {
     (void)settle(GetParam().touch);
     const double nan = std::numeric_limits<double>::quiet_NaN(),
                  inf = std::numeric_limits<double>::infinity();
@@ -312,9 +341,9 @@ TEST_P(ForceModelContract, poses_that_are_not_poses_give_no_force_and_are_forgot
     EXPECT_EQ(model_->step(at(GetParam().touch), budget(1.0F)).status, StepStatus::ok);
 }
 
-TEST_P(ForceModelContract, no_order_makes_the_force_step_and_what_comes_into_the_hand_enters_at_zero) {
+TEST_P(ForceModelContract, orders_cause_no_force_step_and_a_new_body_fades_in_from_zero) {
     const ModelBodies bodies = (settle(GetParam().touch), model_->bodies());
-    if (bodies.count == 0) GTEST_SKIP() << "it has no bodies";
+    if (bodies.count == 0) GTEST_SKIP() << "the model has no bodies";
     using Kind = ModelOrder::Kind;
     ModelOrder place, let_go, take, fix, free, add;
     place.kind = Kind::place;
@@ -372,11 +401,11 @@ TEST_P(ForceModelContract, a_refused_order_changes_nothing) {
     EXPECT_FALSE(model_->stale());
 }
 
-TEST_P(ForceModelContract, a_rebuilt_model_goes_on_where_the_old_one_was) {
+TEST_P(ForceModelContract, a_rebuilt_model_continues_from_the_old_one) {
     StepResult before = settle(GetParam().touch);
     const auto rebuilt = model_->rebuild(model_->bodies());
-    if (rebuilt == nullptr) GTEST_SKIP() << "there is nothing to rebuild";
-    before = model_->step(at(GetParam().touch), budget(1.0F));  // it goes on meanwhile
+    if (rebuilt == nullptr) GTEST_SKIP() << "the model has nothing to rebuild";
+    before = model_->step(at(GetParam().touch), budget(1.0F));  // the old model continues meanwhile
     ASSERT_TRUE(rebuilt->adopt(*model_));
     const ModelBodies old = model_->bodies();
     double least_n = std::numeric_limits<double>::infinity();

@@ -1,10 +1,10 @@
-// What every haptic device driver has to keep, sim or real. A driver's test gives a factory and inherits:
+// The contract of every haptic device driver, emulated or real. A driver's test gives a factory and inherits:
 //
 //     INSTANTIATE_TEST_SUITE_P(Sim, HapticDeviceContract, testing::Values(DeviceCase{...}));
 //
-// The pace is the test's own: `elapse` lets a duration pass for the device (lockstep: it moves `now`; a
-// device with a clock of its own: it sleeps). On such a device, a claim that failed while the machine stood
-// still for longer than `steady` says nothing and is tried again.
+// The test controls time: `elapse` lets a duration pass for the device (lockstep: it advances `now`; a device with
+// a clock of its own: it sleeps). With such a device, a claim that failed while the machine paused for longer than
+// `steady` is inconclusive and is retried.
 #pragma once
 
 #include <gtest/gtest-spi.h>
@@ -28,7 +28,7 @@ struct DeviceCase {
 
 class HapticDeviceContract : public testing::TestWithParam<DeviceCase> {
 protected:
-    // Tries the claim on a fresh device.
+    // Checks the claim on a fresh device.
     void holds(const std::function<void()>& claim) {
         using testing::ScopedFakeTestPartResultReporter;
         const Instant end = Monotonic::now() + std::chrono::minutes(1);
@@ -49,7 +49,7 @@ protected:
             for (int i = 0; i < found.size(); ++i) failed = failed || found.GetTestPartResult(i).failed();
             if (failed && disturbed_) {
                 if (Monotonic::now() < end) continue;
-                GTEST_SKIP() << "the machine was not quiet for long enough within a minute";
+                GTEST_SKIP() << "the machine was too busy for a minute";
             }
             for (int i = 0; i < found.size(); ++i) {
                 const testing::TestPartResult& r = found.GetTestPartResult(i);
@@ -77,7 +77,7 @@ protected:
         disturbed_ = disturbed_ || now_ - sample.taken_at > GetParam().steady;
         return sample;
     }
-    // A number of cycles of one millisecond.
+    // Runs n cycles of one millisecond.
     DeviceSample cycles(int n, const Vec3& force_n, bool enable) {
         DeviceSample sample;
         for (int i = 0; i < n; ++i) {
@@ -87,7 +87,7 @@ protected:
         }
         return sample;
     }
-    // How far it goes within so many cycles at that force.
+    // Displacement within n cycles at that force.
     double way_m(int n, const Vec3& force_n, bool enable) {
         const Vec3 before = read().T_dev_tool.p_m;
         return (cycles(n, force_n, enable).T_dev_tool.p_m - before).norm();
@@ -101,7 +101,7 @@ protected:
     bool disturbed_ = false;
 };
 
-TEST_P(HapticDeviceContract, says_what_it_is) {
+TEST_P(HapticDeviceContract, describes_itself) {
     holds([&] {
         EXPECT_FALSE(info_.name.empty());
         EXPECT_GT(info_.force_n_max, 0.0);
@@ -128,14 +128,14 @@ TEST_P(HapticDeviceContract, samples_are_finite_rise_in_sequence_and_are_never_f
     });
 }
 
-TEST_P(HapticDeviceContract, without_enable_no_force_comes_whatever_the_wrench) {
+TEST_P(HapticDeviceContract, without_enable_every_wrench_gives_no_force) {
     holds([&] {
         EXPECT_LT(way_m(100, Vec3(3.0, 0.0, 0.0), false), 2.0 * info_.position_step_m);
         EXPECT_EQ(read().state, DeviceState::ready);
     });
 }
 
-TEST_P(HapticDeviceContract, enable_powers_it_and_a_force_moves_the_hand_its_way) {
+TEST_P(HapticDeviceContract, with_enable_a_force_moves_the_hand_in_its_direction) {
     holds([&] {
         cycles(5, Vec3::Zero(), true);
         EXPECT_EQ(read().state, DeviceState::powered);
@@ -151,7 +151,7 @@ TEST_P(HapticDeviceContract, silence_of_the_controller_trips_its_own_watchdog_un
         cycles(5, Vec3::Zero(), true);
         elapse(GetParam().silence);
         EXPECT_EQ(read().state, DeviceState::watchdog_tripped);
-        // Enable that was up all the time does not bring the force back.
+        // An enable that stayed high does not restore the force.
         EXPECT_LT(way_m(50, Vec3(2.0, 0.0, 0.0), true), 0.5e-3);
         EXPECT_EQ(read().state, DeviceState::watchdog_tripped);
         cycles(5, Vec3::Zero(), false);
@@ -160,7 +160,7 @@ TEST_P(HapticDeviceContract, silence_of_the_controller_trips_its_own_watchdog_un
     });
 }
 
-TEST_P(HapticDeviceContract, a_heartbeat_that_stands_still_is_silence) {
+TEST_P(HapticDeviceContract, a_constant_heartbeat_counts_as_silence) {
     holds([&] {
         cycles(5, Vec3::Zero(), true);
         DeviceCommand same;
@@ -174,7 +174,7 @@ TEST_P(HapticDeviceContract, a_heartbeat_that_stands_still_is_silence) {
     });
 }
 
-TEST_P(HapticDeviceContract, a_wrench_that_is_not_a_number_shows_no_force) {
+TEST_P(HapticDeviceContract, a_wrench_that_is_not_finite_gives_no_force) {
     holds([&] {
         cycles(5, Vec3::Zero(), true);
         const double nan = std::numeric_limits<double>::quiet_NaN();
@@ -189,7 +189,7 @@ TEST_P(HapticDeviceContract, relax_works_in_any_state_and_twice) {
         cycles(5, Vec3(1.0, 0.0, 0.0), true);
         device_->relax();
         device_->relax();
-        elapse(GetParam().silence / 2);  // had relax() done nothing, the watchdog would have tripped by now
+        elapse(GetParam().silence / 2);  // without relax() the watchdog would have tripped by now
         EXPECT_EQ(read().state, DeviceState::ready);
         const std::unique_ptr<HapticDevice> unopened = GetParam().make();
         unopened->relax();

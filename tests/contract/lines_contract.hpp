@@ -1,9 +1,9 @@
-// What all safety lines have to keep, emulated or real. A driver's test gives a rig and inherits:
+// The contract of all safety lines, emulated or real. A driver's test gives a rig and inherits:
 //
 //     INSTANTIATE_TEST_SUITE_P(Sim, LinesContract, testing::Values(LinesCase{...}));
 //
-// The pace is the rig's own: lockstep, or the machine's clock with a thread behind. Claims wait for
-// conditions and say nothing about how long anything takes.
+// The rig controls time: lockstep, or the machine's clock with a thread. Claims wait for
+// conditions and do not check durations.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -15,7 +15,7 @@
 
 namespace tact {
 
-// Lines with all inputs and outputs fitted, whose wiring can be made to fail.
+// Safety lines with all inputs and outputs fitted, whose wiring can be made to fail.
 class LinesRig {
 public:
     virtual ~LinesRig() = default;
@@ -28,7 +28,7 @@ public:
 struct LinesCase {
     const char* name;
     std::function<std::unique_ptr<LinesRig>()> make;
-    int tries = 20'000;  // of one millisecond, until what must come has come
+    int tries = 20'000;  // milliseconds to wait for a condition
 };
 
 class LinesContract : public testing::TestWithParam<LinesCase> {
@@ -39,14 +39,14 @@ protected:
         info_ = rig_->lines().open();
         now_ = Monotonic::now();
     }
-    // A servo's millisecond.
+    // One millisecond of the servo.
     LinesSample tick() {
         now_ = rig_->elapse(now_, std::chrono::milliseconds(1));
         ++command_.heartbeat;
         rig_->lines().write(command_, now_);
         const LinesSample before = newest_;
         if (rig_->lines().read(newest_, now_)) {
-            // Whatever befalls the lines, these hold of every look.
+            // Invariants of every sample, whatever the fault.
             const LinesSample& s = newest_;
             EXPECT_GE(s.sequence, before.sequence);
             EXPECT_GE(s.trips, before.trips);
@@ -57,7 +57,7 @@ protected:
                 EXPECT_EQ(s.outputs & kLineEnable, 0);
             }
             if (s.state == LinesState::permitted && before.state != LinesState::permitted) {
-                EXPECT_GT(command_.rearm, rearmed_) << "permitted though nobody re-armed";
+                EXPECT_GT(command_.rearm, rearmed_) << "permitted without a re-arm";
             }
             if (s.state == LinesState::permitted) rearmed_ = command_.rearm;
         }
@@ -74,7 +74,7 @@ protected:
     [[nodiscard]] bool reaches(LinesState state) {
         return until([&] { return newest_.state == state; });
     }
-    // By a person, with the amplifier wanted on.
+    // Re-arms as a person does, with the amplifier requested on.
     [[nodiscard]] bool permit() {
         if (!reaches(LinesState::waiting)) return false;
         ++command_.rearm;
@@ -82,7 +82,7 @@ protected:
         return reaches(LinesState::permitted) && until([&] { return (rig_->driven() & kLineEnable) != 0; }) &&
                until([&] { return (newest_.inputs & kLineAmplifier) != 0; });
     }
-    // A hundred milliseconds of looks and more.
+    // Samples for more than a hundred milliseconds.
     void dwell() {
         const std::uint64_t from = newest_.sequence;
         ASSERT_TRUE(until([&] { return newest_.sequence > from + 100; }));
@@ -110,14 +110,14 @@ inline constexpr FaultAndCause kLinesFaults[] = {
     {LinesFault::unplugged, LinesCause::lost},
 };
 
-TEST_P(LinesContract, says_what_is_fitted) {
+TEST_P(LinesContract, reports_fitted_inputs_and_outputs) {
     open();
     EXPECT_FALSE(info_.name.empty());
     EXPECT_EQ(info_.inputs, SimBoard::kInputs);
     EXPECT_EQ(info_.outputs, SimBoard::kOutputs);
 }
 
-TEST_P(LinesContract, before_it_is_opened_there_is_no_look_and_after_it_a_stop) {
+TEST_P(LinesContract, has_no_sample_before_open_and_is_stopped_after) {
     LinesSample s;
     EXPECT_FALSE(rig_->lines().read(s, Monotonic::now()));
     EXPECT_EQ(s.state, LinesState::stopped);
@@ -125,7 +125,7 @@ TEST_P(LinesContract, before_it_is_opened_there_is_no_look_and_after_it_a_stop) 
     EXPECT_EQ(rig_->driven(), 0);
 }
 
-TEST_P(LinesContract, closed_contacts_alone_permit_nothing) {
+TEST_P(LinesContract, closed_contacts_alone_do_not_permit) {
     open();
     command_.enable = true;
     ASSERT_TRUE(reaches(LinesState::waiting));
@@ -135,23 +135,23 @@ TEST_P(LinesContract, closed_contacts_alone_permit_nothing) {
     EXPECT_TRUE(permit());
 }
 
-TEST_P(LinesContract, whatever_stops_lowers_the_enable_line_and_only_a_person_raises_it_again) {
+TEST_P(LinesContract, every_stop_lowers_the_enable_line_until_a_person_re_arms) {
     open();
     for (const FaultAndCause& f : kLinesFaults) {
         SCOPED_TRACE(static_cast<int>(f.fault));
         ASSERT_TRUE(permit());
         const std::uint64_t trips = newest_.trips;
         rig_->inject(f.fault);
-        // Not by the state: where a stop fixes itself, a late reader finds the lines waiting already.
+        // Checks the count, not the state: where a stop clears itself, a late reader finds the lines waiting already.
         ASSERT_TRUE(until([&] { return newest_.trips > trips; }));
         EXPECT_TRUE(until([&] { return newest_.cause == f.cause; }));
-        // Re-armed while it is still wrong: used up.
+        // A re-arm during the fault is used up.
         ++command_.rearm;
         dwell();
-        // A read-back that says "off" is right again as soon as the enable line is low.
+        // A read-back of "off" is correct again as soon as the enable line is low.
         const bool heals = f.fault == LinesFault::amplifier_off;
         EXPECT_EQ(newest_.state, heals ? LinesState::waiting : LinesState::stopped);
-        // Both channels of a disagreement have to be seen open.
+        // A disagreement clears only after both channels were open.
         if (f.cause == LinesCause::channels_disagree) {
             rig_->inject(LinesFault::none);
             dwell();
@@ -194,12 +194,12 @@ TEST_P(LinesContract, drop_lowers_the_enable_line_until_a_person_re_arms) {
     EXPECT_TRUE(permit());
 }
 
-TEST_P(LinesContract, the_watchdog_line_moves_with_the_servo_and_stands_with_it) {
+TEST_P(LinesContract, the_watchdog_line_toggles_only_while_the_servo_runs) {
     open();
     const auto toggles = [&] { return rig_->lines().health().toggles; };
     const std::uint64_t before = toggles();
     EXPECT_TRUE(until([&] { return toggles() > before + 20; }));
-    // The servo stands: looks go on, toggles do not.
+    // The servo stops: samples continue, toggles do not.
     const auto look = [&] {
         now_ = rig_->elapse(now_, std::chrono::milliseconds(1));
         static_cast<void>(rig_->lines().read(newest_, now_));
@@ -214,7 +214,7 @@ TEST_P(LinesContract, the_watchdog_line_moves_with_the_servo_and_stands_with_it)
     EXPECT_EQ(toggles(), stood);
 }
 
-TEST_P(LinesContract, the_lamp_shows_what_it_is_told) {
+TEST_P(LinesContract, the_lamp_follows_its_command) {
     open();
     for (const Lamp lamp : {Lamp::lit, Lamp::dark, Lamp::blinking}) {
         command_.lamp = lamp;
@@ -226,7 +226,7 @@ TEST_P(LinesContract, the_lamp_shows_what_it_is_told) {
     }
 }
 
-TEST_P(LinesContract, an_adapter_that_comes_back_is_found_and_counted) {
+TEST_P(LinesContract, a_replugged_adapter_is_reopened_and_counted) {
     open();
     ASSERT_TRUE(permit());
     rig_->inject(LinesFault::unplugged);

@@ -1,9 +1,9 @@
-// What every head tracker has to keep, emulated or real. A tracker's test gives a rig and inherits:
+// The contract of every head tracker, emulated or real. A tracker's test gives a rig and inherits:
 //
 //     INSTANTIATE_TEST_SUITE_P(Sim, TrackerContract, testing::Values(TrackerCase{...}));
 //
-// The pace is the rig's own: lockstep, or the machine's clock with a thread behind. Claims wait for
-// conditions and say nothing about how long anything takes.
+// The rig controls time: lockstep, or the machine's clock with a thread. Claims wait for
+// conditions and do not check durations.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -15,7 +15,7 @@
 
 namespace tact {
 
-// A tracker with an emulated head on it whose bus can be made to fail.
+// A tracker with an emulated head, whose bus can be made to fail.
 class TrackerRig {
 public:
     virtual ~TrackerRig() = default;
@@ -27,9 +27,9 @@ public:
 
 struct TrackerCase {
     const char* name;
-    std::function<std::unique_ptr<TrackerRig>()> make;  // of two sensors
-    double error_m_max;  // of a pose against the head's; a busy machine's clocks agree badly
-    int tries = 20'000;  // of one millisecond, until what must come has come
+    std::function<std::unique_ptr<TrackerRig>()> make;  // with two sensors
+    double error_m_max;  // largest pose error against the head; a busy machine's clocks agree badly
+    int tries = 20'000;  // milliseconds to wait for a condition
 };
 
 class TrackerContract : public testing::TestWithParam<TrackerCase> {
@@ -45,7 +45,7 @@ protected:
         now_ = rig_->elapse(now_, std::chrono::milliseconds(1));
         const TrackerState state = rig_->tracker().read(sensor, newest_[sensor], now_);
         const TrackerSample& s = newest_[sensor];
-        // Whatever happens to the bus, these hold of every answer.
+        // Invariants of every answer, whatever happens to the bus.
         EXPECT_EQ(state, s.state);
         EXPECT_TRUE(s.T_tracker_sensor.finite());
         EXPECT_NEAR(s.T_tracker_sensor.q.norm(), 1.0, 1e-9);
@@ -69,7 +69,7 @@ protected:
             return s.state == TrackerState::fresh && s.sequence > sequence;
         });
     }
-    // No sample comes any more and the view is frozen: nothing new within 100 ms.
+    // True when samples have stopped and the pose is frozen: nothing new within 100 ms.
     [[nodiscard]] bool stands() {
         return until([&] {
             const TrackerSample before = read();
@@ -88,7 +88,7 @@ protected:
     std::array<TrackerSample, kTrackerSensorsMax + 1> newest_{};
 };
 
-TEST_P(TrackerContract, says_what_it_is) {
+TEST_P(TrackerContract, describes_itself) {
     open();
     EXPECT_FALSE(info_.name.empty());
     EXPECT_EQ(info_.sensors, 2U);
@@ -104,7 +104,7 @@ TEST_P(TrackerContract, is_lost_before_it_is_opened_and_fresh_after) {
     EXPECT_TRUE(fresh_since(0));
 }
 
-TEST_P(TrackerContract, samples_rise_in_sequence_and_time_and_are_where_the_head_is) {
+TEST_P(TrackerContract, samples_increase_in_sequence_and_time_and_match_the_head) {
     open();
     for (const unsigned sensor : {0U, 1U}) {
         TrackerSample before;
@@ -121,14 +121,14 @@ TEST_P(TrackerContract, samples_rise_in_sequence_and_time_and_are_where_the_head
     }
 }
 
-TEST_P(TrackerContract, a_sensor_that_is_not_there_is_lost) {
+TEST_P(TrackerContract, a_missing_sensor_is_lost) {
     open();
     ASSERT_TRUE(fresh_since(0));
     EXPECT_EQ(read(2).state, TrackerState::lost);
     EXPECT_EQ(read(kTrackerSensorsMax).state, TrackerState::lost);
 }
 
-TEST_P(TrackerContract, whatever_stops_it_the_last_good_pose_stands_and_it_comes_back_by_itself) {
+TEST_P(TrackerContract, after_any_fault_it_holds_the_last_good_pose_and_recovers_by_itself) {
     open();
     for (const TrackerFault fault :
          {TrackerFault::silent, TrackerFault::corrupt, TrackerFault::not_a_number, TrackerFault::out_of_range,
@@ -149,7 +149,7 @@ TEST_P(TrackerContract, is_lost_after_a_second_of_silence) {
     EXPECT_TRUE(until([&] { return read().state == TrackerState::lost; }));
 }
 
-TEST_P(TrackerContract, what_is_not_believed_is_counted) {
+TEST_P(TrackerContract, refused_frames_are_counted) {
     open();
     for (const TrackerFault fault :
          {TrackerFault::corrupt, TrackerFault::not_a_number, TrackerFault::out_of_range}) {
@@ -161,7 +161,7 @@ TEST_P(TrackerContract, what_is_not_believed_is_counted) {
     }
 }
 
-TEST_P(TrackerContract, in_a_flood_the_newest_still_comes) {
+TEST_P(TrackerContract, in_a_flood_the_newest_sample_still_arrives) {
     open();
     ASSERT_TRUE(fresh_since(0));
     rig_->inject(TrackerFault::flood);
@@ -171,7 +171,7 @@ TEST_P(TrackerContract, in_a_flood_the_newest_still_comes) {
     EXPECT_TRUE(fresh_since(newest_[0].sequence));
 }
 
-TEST_P(TrackerContract, the_link_is_flagged_counted_and_back) {
+TEST_P(TrackerContract, link_losses_are_flagged_counted_and_recovered) {
     open();
     const auto link = [&] { return rig_->tracker().health().link; };
     struct Case {

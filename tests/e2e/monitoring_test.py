@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
-"""A real Prometheus with the shipped rules: the first fault of a real controller fires TactFault, SIGKILL fires TactControllerDown.
+"""Runs a real Prometheus with the shipped rules: the first fault of a real controller fires TactFault, SIGKILL fires TactControllerDown.
 
 usage: monitoring_test.py BIN_DIR WRITE_SMALL_SCENE   (from the root of the project)
 
-Exit code 77 (skipped): there is no prometheus here. Takes about half a minute; nothing outside the loopback is used.
+Exit code 77 (skipped): Prometheus is not available. Takes about half a minute; uses only the loopback interface.
 """
 import ctypes
 import glob
@@ -26,7 +26,7 @@ BEGAN = time.monotonic()
 
 
 def find_prometheus():
-    """In PATH, else unpacked by deploy/shell/packages.sh: installing the package would start a server."""
+    """Finds Prometheus in PATH, or unpacks it with deploy/shell/packages.sh, because installing the package would start a server."""
     if (found := shutil.which("prometheus")):
         return found
     if (found := glob.glob("build/tools/prometheus/**/bin/prometheus", recursive=True)):
@@ -34,7 +34,7 @@ def find_prometheus():
     done = subprocess.run(["bash", "-c", ". deploy/shell/packages.sh; tact_unpack_tool prometheus prometheus"], capture_output=True, text=True, check=False)
     if done.returncode == 0:
         return os.path.join(done.stdout.strip(), "prometheus")
-    print("skipped: no prometheus in PATH, and it cannot be unpacked:", done.stderr.strip() or "TACT_NO_INSTALL=1")
+    print("skipped: prometheus is not in PATH and cannot be unpacked:", done.stderr.strip() or "TACT_NO_INSTALL=1")
     sys.exit(77)
 
 
@@ -49,7 +49,7 @@ def free_port():
 
 
 def get(url):
-    # Without the proxies of the environment.
+    # Ignores the proxies of the environment.
     with urllib.request.build_opener(urllib.request.ProxyHandler({})).open(url, timeout=5) as answer:
         return answer.read().decode()
 
@@ -92,12 +92,12 @@ class Station:
         return json.loads(get("http://127.0.0.1:%d/api/v1/%s" % (self.prometheus_port, path)))["data"]
 
     def samples(self, series):
-        """How many samples of it Prometheus has."""
+        """Number of samples of the series in Prometheus."""
         result = self.ask("query?query=" + urllib.request.quote("count_over_time(%s[5m])" % series))["result"]
         return max([int(r["value"][1]) for r in result], default=0)
 
     def alert(self, name):
-        """Its state and labels; None: neither pending nor firing."""
+        """State and labels of the alert; None: neither pending nor firing."""
         return next(((a["state"], a["labels"]) for a in self.ask("alerts")["alerts"] if a["labels"]["alertname"] == name), None)
 
     def wait(self, what, true):
@@ -110,7 +110,7 @@ class Station:
             except (urllib.error.URLError, ConnectionError, TimeoutError):
                 pass
             if time.monotonic() > end:
-                self.fail(what + ": not so in time")
+                self.fail(what + ": timed out")
             time.sleep(0.2)
 
     def fail(self, what):
@@ -134,22 +134,22 @@ class Station:
 
 
 def story(s, program):
-    # The least favourable order: nobody has scraped anything before the controller runs.
+    # The least favourable order: nothing was scraped before the controller runs.
     controller = s.controller()
     s.exporter()
-    s.wait("the exporter sees the controller", lambda: 'tact_up{session="default"} 1\n' in s.page())
+    s.wait("the exporter reports the controller", lambda: 'tact_up{session="default"} 1\n' in s.page())
     s.prometheus(program)
     s.wait("Prometheus has scraped twice", lambda: s.samples("tact_up") >= 2)
     if s.alert("TactFault") or s.alert("TactControllerDown"):
-        s.fail("an alert before anything happened")
+        s.fail("an alert fired before the first fault")
 
     controller.send_signal(signal.SIGUSR1)
     s.wait("the exporter counts the fault", lambda: 'cause="emergency_stop"} 1\n' in s.page())
     state, labels = s.wait("TactFault fires", lambda: (a := s.alert("TactFault")) and a[0] == "firing" and a)
     if labels["cause"] != "emergency_stop" or labels["severity"] != "critical" or labels["session"] != "default":
-        s.fail("TactFault has the labels %s" % labels)
+        s.fail("TactFault has unexpected labels: %s" % labels)
     if s.alert("TactControllerDown"):
-        s.fail("TactControllerDown while the controller runs")
+        s.fail("TactControllerDown fired while the controller runs")
 
     controller.kill()
     s.wait("TactControllerDown is pending", lambda: s.alert("TactControllerDown"))
@@ -158,16 +158,16 @@ def story(s, program):
     second = s.controller()
     s.wait("a new controller ends the alert", lambda: not s.alert("TactControllerDown"))
     if 'cause="emergency_stop"} 1\n' not in s.page():
-        s.fail("the count of faults did not go on with the new controller")
+        s.fail("the new controller did not continue the fault count")
     second.send_signal(signal.SIGTERM)
     if second.wait(PATIENCE_S) != 0:
-        s.fail("the controller's exit code")
-    s.wait("the exporter says that it ended in order", lambda: 'tact_controller_ended_in_order{session="default"} 1\n' in s.page())
-    # Longer than the rule takes to become pending.
-    s.wait("Prometheus has seen that five times",
+        s.fail("the controller's exit code is not 0")
+    s.wait("the exporter reports the orderly end", lambda: 'tact_controller_ended_in_order{session="default"} 1\n' in s.page())
+    # Longer than the time for which the rule stays inactive.
+    s.wait("Prometheus has five samples of the orderly end",
            lambda: s.ask("query?query=" + urllib.request.quote("sum_over_time(tact_controller_ended_in_order[5m]) >= 5"))["result"])
     if s.alert("TactControllerDown"):
-        s.fail("TactControllerDown after an orderly end")
+        s.fail("TactControllerDown fired after an orderly end")
 
 
 def main():

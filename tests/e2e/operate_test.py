@@ -1,10 +1,10 @@
 #!/usr/bin/python3
-"""What an operator does: keys, buttons of the window and the emergency stop in a real run, seen in what the controller says, in the force
-that it records and in where the body ends.
+"""Operates a real run as a person does, with keys, window buttons and the emergency stop, and checks the controller's reports, the recorded
+force and the final pose of the body.
 
 usage: operate_test.py BIN_DIR
 
-Exit code 77: no window can be opened or no key pressed here.
+Exit code 77: Xvfb or xdotool is missing.
 """
 import csv
 import json
@@ -21,19 +21,19 @@ import time
 
 PATIENCE_S = 60.0
 
-# The colour of a button that can be pressed, with the mouse on it or not; no letter and no light is as large.
+# Colour of an enabled button, with and without the mouse on it; no letter or lamp is as large.
 BUTTONS = {
     "Arm": lambda r, g, b: g - r > 20 and g < 160,
     "Disarm": lambda r, g, b: r - g < 50 and g - b > 15 and r - b > 25 and r < 160,
     "Reset": lambda r, g, b: r - g > 25 and r - b > 25 and abs(g - b) < 20 and r < 160,
 }
-BUTTONS_WITHIN = (310, 360)  # pixels of the window, the controller's card
+BUTTONS_WITHIN = (310, 360)  # pixels of the window, around the controller's card
 SOLID = (12, 14)
-RAMPED_OUT_S = 0.1  # twice what safety.ramp_out_ms gives
+RAMPED_OUT_S = 0.1  # twice safety.ramp_out_ms
 
 
 class Operator:
-    """A screen of its own, and one run at a time on it."""
+    """A private X screen with at most one run on it."""
 
     def __init__(self, bin_dir, folder):
         self.bin, self.folder = bin_dir, folder
@@ -71,7 +71,7 @@ class Operator:
             if now is not None and true(now):
                 return now
             time.sleep(0.1)
-        sys.exit("FAILED %s: not so after %.0f s; the log:\n%s" % (what, PATIENCE_S, self.said()[-3000:]))
+        sys.exit("FAILED %s: timed out after %.0f s; the log:\n%s" % (what, PATIENCE_S, self.said()[-3000:]))
 
     def said(self):
         with open(self.log.name, errors="replace") as f:
@@ -80,7 +80,7 @@ class Operator:
     def key(self, key):
         subprocess.run(["xdotool", "key", key], env=self.env, check=True)
 
-    # The screen's pixels as (red, green, blue), by place: Xvfb keeps them in a file, in the format of xwd.
+    # The screen's pixels as a function (x, y) -> (red, green, blue), from the file in xwd format that Xvfb writes.
     def picture(self):
         with open(os.path.join(self.folder, "Xvfb_screen0"), "rb") as f:
             data = f.read()
@@ -92,7 +92,7 @@ class Operator:
             return data[at + 2], data[at + 1], data[at]
         return pixel
 
-    # Where the window shows the button, ready to be pressed.
+    # Finds the enabled button in the window; None: not visible.
     def button(self, name):
         pixel, like = self.picture(), BUTTONS[name]
         wide, high = SOLID
@@ -102,7 +102,7 @@ class Operator:
                     return x + wide // 2, y + high // 2
         return None
 
-    # Until the controller has done what it is for: where the window is slow, what it shows may have moved below the mouse.
+    # Clicks the button until the condition holds: in a slow window the button may have moved since the last frame.
     def press(self, name, what, true):
         end = time.monotonic() + PATIENCE_S
         while time.monotonic() < end:
@@ -115,19 +115,19 @@ class Operator:
                 if time.monotonic() > again:
                     break
                 time.sleep(0.1)
-        sys.exit("FAILED %s: not so after %.0f s; the window shows %s %s to press; the log:\n%s" %
-                 (what, PATIENCE_S, "a" if at else "no", name, self.said()[-3000:]))
+        sys.exit("FAILED %s: timed out after %.0f s; the window shows %s enabled button %s; the log:\n%s" %
+                 (what, PATIENCE_S, "an" if at else "no", name, self.said()[-3000:]))
 
-    # The controller's process.
+    # The process id of the controller.
     def controller(self):
         with open("/proc/%d/task/%d/children" % (self.run.pid, self.run.pid)) as f:
             for pid in map(int, f.read().split()):
                 with open("/proc/%d/comm" % pid) as name:
                     if name.read().strip() == "tact-rt":
                         return pid
-        sys.exit("FAILED the run has no controller")
+        sys.exit("FAILED: the run has no controller")
 
-    # Keys that place a body, each after the controller has done what the one before asked for.
+    # Presses keys that place a body, each after the controller has executed the last one.
     def place(self, *keys):
         for done, key in enumerate(keys, 1):
             self.key(key)
@@ -163,7 +163,7 @@ def arming(operator):
     return expect("Space disarms and Ctrl+Enter arms the controller", True)
 
 
-# Newtons to the device in each recorded cycle, with its time and the state of the controller.
+# Per recorded cycle: time, state of the controller, norm of the force sent to the device in newtons.
 def forces(operator, recording):
     table = os.path.join(operator.folder, "cycles.csv")
     subprocess.run([operator.program("tact"), "record", "--csv", recording, "-o", table], env=operator.env, check=True, stdout=subprocess.DEVNULL)
@@ -177,7 +177,7 @@ def buttons(operator):
         f.write('[lines]\ndriver = "sim"\n')
     off, on = lambda s: s["state"] == "ready", lambda s: s["state"] == "active"
     operator.start("--config", config, "--record", recording, "--start-offset-a", "6", "--seed", "3", hand="wander")
-    # A run that is armed within the time for which contacts have to stand is refused, and left to a person.
+    # A run that arms while the contacts settle is refused; then a person must arm.
     operator.wait("the run is armed", lambda s: "command arm: " in operator.said())
     operator.key("space")
     operator.wait("Space disarms", off)
@@ -188,18 +188,18 @@ def buttons(operator):
     operator.wait("the force has ramped in", lambda s: s["servo"]["cycles"] > cycles + 1500)
 
     os.kill(operator.controller(), signal.SIGUSR1)
-    stopped = operator.wait("the emergency stop stops", lambda s: s["state"] == "fault")
-    bad += expect("the emergency stop is what the controller says: %s, lines %s" % (stopped["reason"], stopped["lines"]["state"]),
+    stopped = operator.wait("the emergency stop trips", lambda s: s["state"] == "fault")
+    bad += expect("the controller reports the emergency stop: %s, lines %s" % (stopped["reason"], stopped["lines"]["state"]),
                   stopped["reason"] == stopped["lines"]["reason"] == "the emergency stop is pressed" and stopped["lines"]["state"] == "stop")
-    refused = operator.press("Reset", "while it is pressed nothing resets it", lambda s: "command reset fault: refused" in operator.said())
-    bad += expect("Reset while the stop is pressed leaves the fault", refused["state"] == "fault")
+    refused = operator.press("Reset", "a reset is refused while the stop is pressed", lambda s: "command reset fault: refused" in operator.said())
+    bad += expect("Reset keeps the fault while the stop is pressed", refused["state"] == "fault")
     os.kill(operator.controller(), signal.SIGUSR2)
-    released = operator.wait("the stop is let go", lambda s: s["lines"]["state"] == "waiting for re-arming")
-    bad += expect("the stop let go leaves the fault", released["state"] == "fault")
+    released = operator.wait("the stop is released", lambda s: s["lines"]["state"] == "waiting for re-arming")
+    bad += expect("releasing the stop keeps the fault", released["state"] == "fault")
     operator.press("Reset", "the button resets", off)
     operator.press("Arm", "the button arms after a stop", on)
     disarmed = operator.press("Disarm", "the button disarms after a stop", off)["servo"]["cycles"]
-    operator.wait("some time without a force passes", lambda s: s["servo"]["cycles"] > disarmed + 500)
+    operator.wait("some time passes without force", lambda s: s["servo"]["cycles"] > disarmed + 500)
     bad += expect("after Reset the button Arm arms again", True)
     operator.end()
 
@@ -213,14 +213,13 @@ def buttons(operator):
         since, before = (since, before) if state == before else (t, state)
         if state == "ready" and t - since > RAMPED_OUT_S:
             none.append(n)
-    return bad + expect("in the second before the stop the hand feels up to %.2f N" % least_force_n, least_force_n > 0.02) + \
-        expect("from the cycle that sees the stop on there is no force: 0 N in each of %d" % len(at_stop), max(at_stop) == 0.0) + \
-        expect("disarmed there is none: 0 N in each of %d cycles" % len(none), len(none) > 100 and max(none) == 0.0)
+    return bad + expect("the force reaches %.2f N in the second before the stop" % least_force_n, least_force_n > 0.02) + \
+        expect("the force is 0 N in all %d cycles from the stop on" % len(at_stop), max(at_stop) == 0.0) + \
+        expect("the force is 0 N in all %d disarmed cycles" % len(none), len(none) > 100 and max(none) == 0.0)
 
 
 def gestures(operator):
-    # Without force, so that the body stays where it is put and the hand makes no gesture of its own; R looks for the best
-    # place from there.
+    # Almost without force, so that the body keeps its pose and the hand makes no gesture; R finds the best pose near it.
     places, moved_a = [], []
     for keys in (("r",), ("r", "ctrl+z"), ("r", "ctrl+z", "ctrl+y")):
         operator.start("--force-scale", "0.001", "--start-offset-a", "6", "--seed", "3")
@@ -230,9 +229,9 @@ def gestures(operator):
         places.append(operator.end()["fit"]["offset_a"])
         moved_a.append(float(re.search(r"refined body 1: moved ([0-9.]+) A", operator.said()).group(1)))
     refined, undone, redone = places
-    return expect("R refines: moved %.2f A, %.2f A from its place" % (moved_a[0], refined), moved_a[0] > 1.0 and refined < 0.5) + \
-        expect("Ctrl+Z takes %.2f A back: %.2f A" % (moved_a[1], undone), moved_a[1] > 1.0 and undone > 0.5 * moved_a[1]) + \
-        expect("Ctrl+Y does it again: %.2f A" % redone, abs(redone - refined) < 0.1)
+    return expect("R refines: moved %.2f A, ends %.2f A from the pose in the file" % (moved_a[0], refined), moved_a[0] > 1.0 and refined < 0.5) + \
+        expect("Ctrl+Z undoes %.2f A: ends %.2f A away" % (moved_a[1], undone), moved_a[1] > 1.0 and undone > 0.5 * moved_a[1]) + \
+        expect("Ctrl+Y redoes it: ends %.2f A away" % redone, abs(redone - refined) < 0.1)
 
 
 def main():

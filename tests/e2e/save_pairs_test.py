@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 """Saves six copies of each published structure in its map, opens them again in a fresh scene, and compares.
 
-save_pairs_test.py BIN [--runs] [PAIR...]: BIN holds tact-prep; PAIR is a part of a map's name, all pairs without.
-With --runs, whole runs of tact place the pair's own structures, save them, and run again with what was saved. Exit code 77: there is no data
+save_pairs_test.py BIN [--runs] [PAIR...]: BIN: folder of tact-prep; PAIR: part of a map's name; default: all pairs.
+With --runs, whole runs of tact place the pair's own structures, save them, and run again with the saved files. Exit code 77: no data
 (TACT_SHARED/data/em, or ../shared beside the repository).
 """
 import csv, gzip, json, math, os, random, subprocess, sys, tempfile
@@ -86,7 +86,7 @@ def check(em, map_name, models, resolution_a, scratch):
         for r in range(3):
             assert abs(sum(matrix[r][c] * at0[c] for c in range(3)) + matrix[r][3] - at[r]) < 0.001
     assert worst <= 0.001, worst
-    # A fresh scene of what was saved has the bodies, unturned, where they were put, with the same fit.
+    # A fresh scene of the saved files has the bodies, unrotated, at their saved positions, with the same fit.
     fresh = bake(os.path.join(em, map_name), [os.path.join(folder, r["file"]) for r in rows], resolution_a,
                  os.path.join(scratch, "second.tact"))
     drift = max(abs(1e10 * c - p) for b, f in zip(bodies, fresh["bodies"])
@@ -105,7 +105,7 @@ def check(em, map_name, models, resolution_a, scratch):
 
 
 def run(out, arguments):
-    """One run without a window; a longer one where the machine was too busy to see the controller in a second."""
+    """One run without a window; retried with more time if the machine was too busy to read the controller's state."""
     for seconds in (1, 10, 60):
         done = subprocess.run([os.path.join(sys.argv[1], "tact"), "dock", *map(str, arguments), "--no-gui", "--quiet",
                                "--seconds", str(seconds), "--json", out], capture_output=True, text=True)
@@ -113,7 +113,7 @@ def run(out, arguments):
             return json.load(open(out))
         if "never said where" not in done.stderr and done.returncode != 0:
             sys.exit("tact dock: exit code %d\n%s" % (done.returncode, done.stderr))
-    sys.exit("the controller was never seen")
+    sys.exit("the controller's state was never read")
 
 
 def check_runs(em, map_name, models, resolution_a, scratch):
@@ -134,7 +134,7 @@ def check_runs(em, map_name, models, resolution_a, scratch):
     saved, again = first["fit"], second["fit"]["at_file_place"]
     apart = max(abs(saved[k] - again[k]) for k in ("cc_zero", "cc_mean", "fraction_inside"))
     assert apart < 0.002, apart
-    print("%-26s %d bodies; a run left the first %.2f A, %.2f deg from its file's place; cc about mean %.5f, in a fresh run %.5f"
+    print("%-26s %d bodies; a run ends with the first %.2f A, %.2f deg from the pose in its file; cc about mean %.5f, in a fresh run %.5f"
           % (map_name, len(rows), saved["offset_a"], saved["angle_deg"], saved["cc_mean"], again["cc_mean"]), flush=True)
 
 

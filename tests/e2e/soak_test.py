@@ -1,12 +1,12 @@
 #!/usr/bin/python3
-"""A long run: memory, what is kept in the graphics driver and frame time stay flat, and its recording opens.
+"""A long run: memory, objects in the graphics driver and frame time stay constant, and its recording opens.
 
 usage: soak_test.py BIN_DIR SCENE|synthetic [--seconds S] [--rate HZ] [--times] [--json FILE] [-- options of tact run]
 
-Two hours at 1 kHz are 7.2 million cycles: --seconds 1200 --rate 6000 runs as many through the rings, the governor, the recorder and the window.
-Every second the window and the controller are asked (tact status) and looked at (/proc). After a tenth of the run, and at least three
-samples, a straight line is laid through each figure; what it rises by until the end must be less than its limit.
---times judges the frame time too, for a machine with nothing else on it. Exit code 77: nothing can be drawn here.
+Two hours at 1 kHz are 7.2 million cycles; --seconds 1200 --rate 6000 has the same effect on the rings, the governor, the recorder and the window.
+The test samples window and controller every second (tact status, /proc). After a tenth of the run, and at least three samples, it fits a
+straight line to each series; the rise of the line until the end must be less than the limit.
+--times checks the frame time too, for a machine without other load. Exit code 77: Xvfb or h5py is missing.
 """
 import argparse
 import json
@@ -18,10 +18,10 @@ import sys
 import tempfile
 import time
 
-# How much a figure may rise by from a tenth of the run on: bytes or objects, and the same as a share of where it began.
+# Maximum rise after a tenth of the run: in bytes or objects, and as a fraction of the initial value.
 LIMITS = {"gui resident": (8 << 20, 0.02), "gui heap": (8 << 20, 0.02), "rt resident": (4 << 20, 0.02), "gl objects": (0, 0.0)}
 RECORDER_MOST = 160 << 20  # the controller's rings as mapped, and HDF5's chunks of all columns: 114 MiB after 7.7 million cycles
-TIME_RISES = 0.10         # of frame time, by the line
+TIME_RISES = 0.10         # maximum relative rise of the frame time
 COLUMNS = {  # of ipc/record/RECORDING.md
     "cycles": ["step", "cycle", "now_ns", "lateness_ns", "cost_ns", "model_ns", "level", "run_state", "flags", "clock_ns"],
     "hand0": ["pose_world", "wrench_world", "wrench_model", "pose_dev", "twist_dev", "buttons", "model_error_n", "items"],
@@ -51,7 +51,7 @@ def children_of(pid):
             if int(rest[1]) == pid:
                 found[name] = int(entry)
         except OSError:
-            pass  # it ended
+            pass  # the process ended
     return found
 
 
@@ -64,7 +64,7 @@ def resident(pid):
 
 
 def line(points):
-    """Least squares: value at the first point, and what it rises by until the last."""
+    """Least-squares line: value at the first point, and rise until the last."""
     n = len(points)
     mx, my = sum(x for x, _ in points) / n, sum(y for _, y in points) / n
     xx = sum((x - mx) ** 2 for x, _ in points)
@@ -123,7 +123,7 @@ class Soak:
         words = [os.path.join(o.programs, "tact"), "run", o.scene, "--headless", "--quiet", "--session", "soak", "--seconds", o.seconds,
                  "--rate", o.rate, "--record", self.recording, *o.more]
         began = time.monotonic()
-        with open(self.log, "w") as log:  # a pipe that nobody reads would stop the controller's log once it is full
+        with open(self.log, "w") as log:  # a full pipe would make the controller drop log lines
             run = subprocess.Popen(list(map(str, words)), env=self.env, stdout=subprocess.DEVNULL, stderr=log)
         names = {"tact-gui", "tact-rt", "tact-record"}
         try:
@@ -138,7 +138,7 @@ class Soak:
             raise
         with open(self.log) as log:
             said = log.read()[-4000:]
-        self.claim("the run ended as asked" + ("" if run.returncode == 0 else ": %d\n%s" % (run.returncode, said)), run.returncode == 0)
+        self.claim("the run ended normally" + ("" if run.returncode == 0 else ": %d\n%s" % (run.returncode, said)), run.returncode == 0)
 
     def judge(self):
         summary = {}
@@ -161,7 +161,7 @@ class Soak:
                 print("     " + text)
         for name in (*LIMITS, "recorder resident"):
             if len(self.series.get(name, [])) < 5:
-                self.claim("%s was asked five times" % name, False)
+                self.claim("%s has at least five samples" % name, False)
         servo, frames = self.said["servo"], self.said["gui"]["frames"]
         summary["cycles"], summary["events"], summary["frames"] = servo["cycles"], servo["events"], frames["count"]
         summary["late"], summary["frame_ms"], summary["overruns"] = frames["late"], frames["frame_ms"], servo["overruns"]
@@ -178,7 +178,7 @@ class Soak:
             missing = [a for a in ATTRIBUTES if a not in f.attrs]
             for group, columns in COLUMNS.items():
                 missing += [group] if group not in f else ["%s/%s" % (group, c) for c in columns if c not in f[group]]
-            self.claim("h5py opens its recording, with the layout of RECORDING.md" + (": not " + ", ".join(missing) if missing else ""),
+            self.claim("h5py opens its recording, with the layout of RECORDING.md" + (": missing " + ", ".join(missing) if missing else ""),
                        not missing)
             if missing:
                 return
@@ -189,7 +189,7 @@ class Soak:
             changes = f["levels/level"].shape[0]
             summary["recording"] = {"cycles": cycles, "bytes": os.path.getsize(self.recording), "lost": lost, "level_changes": changes,
                                     "events": f["events/code"].shape[0]}
-            self.claim("it holds %d cycles in %.2f GB, rising, columns of one length; %d lost, %d level changes, %d events" %
+            self.claim("the recording holds %d cycles in %.2f GB, steps increase, columns have equal length; %d lost, %d level changes, %d events" %
                        (cycles, os.path.getsize(self.recording) / 1e9, lost, changes, f["events/code"].shape[0]),
                        rising and len(lengths) == 1 and cycles >= 0.9 * summary["cycles"] and int(f.attrs["end"]) == 1)
 
@@ -206,16 +206,16 @@ def main():
     p.add_argument("--rate", type=float, default=6000.0)
     p.add_argument("--times", action="store_true")
     p.add_argument("--json")
-    p.add_argument("--folder", help="for the recording: two hours of data take some GB")
+    p.add_argument("--folder", help="Folder for the recording; two hours of data take some GB")
     o = p.parse_args(words)
     o.more = more
     if shutil.which("Xvfb") is None:
-        print("Xvfb is not installed: nothing can be drawn here")
+        print("skipped: Xvfb is not installed")
         return 77
     try:
         import h5py  # noqa: F401
     except ImportError:
-        print("h5py is not installed")
+        print("skipped: h5py is not installed")
         return 77
     soak = Soak(o)
     try:
@@ -227,7 +227,7 @@ def main():
                 with open(o.json, "w") as f:
                     json.dump({"seconds": o.seconds, "rate_hz": o.rate, "figures": summary, "series": soak.series}, f)
         else:
-            soak.claim("the controller said something", False)
+            soak.claim("the controller reported its status", False)
     finally:
         shutil.rmtree(soak.dir, ignore_errors=True)
     return 1 if soak.bad else 0

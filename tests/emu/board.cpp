@@ -1,5 +1,5 @@
 // The wrench at the tip from the joints' torques: tau = J^T w, so w = (J J^T + d^2)^-1 J tau, with a small d
-// that keeps it finite where the arm is singular.
+// that keeps it finite at singularities.
 #include "tests/emu/board.hpp"
 
 #include <algorithm>
@@ -16,9 +16,9 @@ using phantom::AmplifierState;
 
 constexpr double kSingular = 1e-3;          // metres, and radians for the wrist
 constexpr std::uint32_t kStepUs = 1'000;    // longest step of the physics
-constexpr std::uint32_t kPauseUs = 50'000;  // of a longer pause only so much is moved
-// The ritual, in seconds after the first word; before it the arm waits in its calibration pose. One that comes
-// later begins with the way back to that pose.
+constexpr std::uint32_t kPauseUs = 50'000;  // longest pause that is simulated
+// The ritual, in seconds after the first command; before it the arm waits in its calibration pose. A later ritual
+// begins with the way back to that pose.
 constexpr double kBackS = 1.0;
 constexpr double kPressS = 0.3, kReleaseS = 0.5, kLeaveS = 1.2, kFreeS = 2.2;
 
@@ -28,7 +28,7 @@ std::array<char, 16> text(const std::string& s) {
         throw StartupError("emulated board \"" + s + "\"", "a name has 1 to 16 characters", "choose another");
     for (std::size_t i = 0; i < s.size(); ++i) {
         if (s[i] < ' ' || s[i] > '~')
-            throw StartupError("emulated board", "its name is not printable", "use plain letters");
+            throw StartupError("emulated board", "the name is not printable", "use plain letters");
         out[i] = s[i];
     }
     return out;
@@ -72,8 +72,9 @@ EmulatedBoard::EmulatedBoard(const BoardSettings& settings)
     info_.model = text(settings.model);
     info_.current_ma_max = max_ma_;
     if (settings.rate_hz < 100 || settings.rate_hz > 8000)
-        throw StartupError("emulated board", "a rate of " + std::to_string(settings.rate_hz) + " Hz",
-                           "give 100 to 8000");
+        throw StartupError("emulated board",
+                           "the rate " + std::to_string(settings.rate_hz) + " Hz is outside 100 to 8000",
+                           "choose a rate inside the range");
 }
 
 bool EmulatedBoard::hand_free() const noexcept { return ritual_s() >= kFreeS; }
@@ -132,7 +133,7 @@ void EmulatedBoard::move(std::uint32_t now_us) noexcept {
         moved_us_ = due_us_ = now_us;
     }
     std::uint32_t left = now_us - moved_us_;
-    if (left > 0x7FFF'FFFFU) return;  // a clock that went back
+    if (left > 0x7FFF'FFFFU) return;  // the clock went backwards
     if (spoken_ || ritual_us_ < 0) ritual_us_ += left;
     moved_us_ = now_us;
     left = std::min(left, kPauseUs);
@@ -167,7 +168,7 @@ void EmulatedBoard::tick(std::uint32_t now_us) noexcept {
     if (late < 0) return;
     const std::uint32_t period = 1'000'000U / settings_.rate_hz;
     due_us_ += period;
-    if (late > static_cast<std::int32_t>(period)) due_us_ = now_us + period;  // never a burst
+    if (late > static_cast<std::int32_t>(period)) due_us_ = now_us + period;  // no bursts
     if (spoken_ && !faults_.frozen) send_state(now_us);
 }
 
@@ -237,7 +238,7 @@ void EmulatedBoard::put(std::span<const std::byte> bytes) noexcept {
 }
 
 bool EmulatedBoard::next_packet(std::array<std::byte, 64>& packet, std::size_t& size) noexcept {
-    if (answer_.size > 0) {  // it never waits behind states that nobody fetches
+    if (answer_.size > 0) {  // an answer does not wait behind unfetched states
         packet = answer_.bytes;
         size = std::exchange(answer_.size, 0);
         return true;

@@ -39,7 +39,7 @@ int open_socket(const std::string& interface) {
     if (interface.empty() || interface.size() >= sizeof r.ifr_name || ioctl(fd, SIOCGIFINDEX, &r) != 0)
         refuse(CanStep::interface);
     const int on = 1;
-    // It only sends: nothing is to queue up.
+    // Send only: received frames must not queue up.
     if (setsockopt(fd, SOL_CAN_RAW, CAN_RAW_FD_FRAMES, &on, sizeof on) != 0 ||
         setsockopt(fd, SOL_CAN_RAW, CAN_RAW_FILTER, nullptr, 0) != 0)
         refuse(CanStep::option);
@@ -110,12 +110,13 @@ void CanHead::reopen() noexcept {
     try {
         fd_ = open_socket(interface_);
         say("link", "found again");
-    } catch (const std::exception&) {  // not there yet
+    } catch (const std::exception&) {  // interface missing
     }
 }
 
 void CanHead::set_link(bool up) {
-    const int any = socket(PF_CAN, SOCK_RAW | SOCK_CLOEXEC, CAN_RAW);  // fd_ is the thread's
+    const int any =
+        socket(PF_CAN, SOCK_RAW | SOCK_CLOEXEC, CAN_RAW);  // another socket, because the thread owns fd_
     ifreq r = request(interface_);
     bool done = ioctl(any, SIOCGIFFLAGS, &r) == 0;
     const int flags = up ? r.ifr_flags | IFF_UP : r.ifr_flags & ~IFF_UP;

@@ -1,10 +1,10 @@
-// An emulated head tracker on a CAN interface: SimHeadBus's frames through a raw socket.
+// An emulated head tracker on a CAN interface: sends SimHeadBus's frames through a raw socket.
 //
-// Flood    at most what a bus of 1 Mbit/s carries: kFloodBatch frames every kFloodEvery
-// Link     down and up are the interface's own, as `ip link set` does; frames that it does not take are
-//          counted; an interface that vanished is looked for twice a second
+// Flood    at most the load of a bus of 1 Mbit/s: kFloodBatch frames every kFloodEvery
+// Link     down and up act on the interface, as `ip link set` does; frames that the interface refuses are counted;
+//          a vanished interface is searched for twice per second
 // Thread   one of its own; the public functions on another
-// Fails by StartupError naming the interface and the fix
+// Fails by StartupError with the interface and the fix
 #pragma once
 
 #include <atomic>
@@ -29,7 +29,8 @@ public:
     CanHead& operator=(const CanHead&) = delete;
 
     void start();
-    bool apply(const Order& order);  // true: it was for a tracker; StartupError: the link cannot be set
+    bool apply(
+        const Order& order);  // true: the order was for a tracker; StartupError: the link cannot be set
     void say_status();
 
 private:
@@ -43,7 +44,7 @@ private:
     Report& report_;
     ServoClock clock_{Duration{0}};
     SimHeadBus bus_;
-    int fd_ = -1;  // of the thread once it runs
+    int fd_ = -1;  // owned by the thread once it runs
     Instant retry_at_{};
     std::atomic<bool> leave_{false}, flood_{false};
     std::atomic<std::uint64_t> sent_{0}, not_taken_{0};

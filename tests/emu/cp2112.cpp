@@ -99,7 +99,7 @@ void EmulatedLines::plug() {
     unplug();
     fd_ = open("/dev/uhid", O_RDWR | O_CLOEXEC | O_NONBLOCK);
     if (fd_ < 0) {
-        throw StartupError("plugging an emulated CP2112 in through /dev/uhid", std::strerror(errno),
+        throw StartupError("plugging in an emulated CP2112 through /dev/uhid", std::strerror(errno),
                            "run as root on a kernel with the module uhid, such as that of tests/hil");
     }
     {
@@ -123,7 +123,7 @@ void EmulatedLines::plug() {
         const std::string why = std::strerror(errno);
         ::close(fd_);
         fd_ = -1;
-        throw StartupError("plugging an emulated CP2112 in through /dev/uhid", why,
+        throw StartupError("plugging in an emulated CP2112 through /dev/uhid", why,
                            "load the module hid-cp2112");
     }
     leave_fd_ = eventfd(0, EFD_CLOEXEC);

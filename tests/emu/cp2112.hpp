@@ -1,9 +1,9 @@
-// A CP2112 USB adapter out of nothing: eight GPIO lines whose real kernel driver (hid-cp2112) makes a gpiochip.
+// An emulated CP2112 USB adapter: eight GPIO lines for which the real kernel driver (hid-cp2112) makes a gpiochip.
 //
-// Cp2112         what the chip answers, without a kernel; report numbers and layouts: Silicon Labs AN495, sections
+// Cp2112         the chip's answers, without a kernel; report numbers and layouts: Silicon Labs AN495, sections
 //                5.2 to 5.6, as the kernel's drivers/hid/hid-cp2112.c uses them
-// EmulatedLines  the chip behind /dev/uhid, with a thread that answers; levels by script, from any thread
-// Fails by       StartupError at plug(): no /dev/uhid, no rights
+// EmulatedLines  the chip behind /dev/uhid, with a thread that answers; levels set by script, from any thread
+// Fails by       StartupError in plug(): no /dev/uhid, no rights
 #pragma once
 
 #include <array>
@@ -21,22 +21,22 @@ class Cp2112 {
 public:
     static constexpr unsigned kLines = 8;
 
-    // Bytes of a feature report, its number first; what is unknown is a number and a zero.
+    // Bytes of a feature report, report number first; an unknown report is its number and a zero.
     [[nodiscard]] std::vector<std::uint8_t> get_report(std::uint8_t number) const;
-    // A feature report as it was sent, its number first. What is too short changes nothing.
+    // Applies a feature report, report number first. A report that is too short changes nothing.
     void set_report(std::span<const std::uint8_t> bytes);
 
-    void set(unsigned line, bool level);                // from outside; seen while the line is an input
-    void follow(unsigned input, unsigned output);       // wired together
+    void set(unsigned line, bool level);                // external level; visible while the line is an input
+    void follow(unsigned input, unsigned output);       // connects the input to the output
     [[nodiscard]] bool level(unsigned line) const;      // at the pin
-    [[nodiscard]] bool is_output(unsigned line) const;  // as the host made it
+    [[nodiscard]] bool is_output(unsigned line) const;  // as configured by the host
     [[nodiscard]] std::uint64_t edges(unsigned line) const { return edges_.at(line); }  // of outputs
 
 private:
     [[nodiscard]] std::uint8_t pins() const;
 
-    std::uint8_t outputs_ = 0;  // 1: output
-    std::uint8_t latch_ = 0;    // what the host wrote
+    std::uint8_t outputs_ = 0;  // bit 1: output
+    std::uint8_t latch_ = 0;    // written by the host
     std::uint8_t outside_ = 0;
     std::array<int, kLines> follows_{-1, -1, -1, -1, -1, -1, -1, -1};
     std::array<std::uint64_t, kLines> edges_{};
@@ -49,12 +49,12 @@ public:
     EmulatedLines(const EmulatedLines&) = delete;
     EmulatedLines& operator=(const EmulatedLines&) = delete;
 
-    void plug();    // the chip begins with all lines as inputs; throws StartupError
-    void unplug();  // twice is as good as once
+    void plug();    // all lines start as inputs; throws StartupError
+    void unplug();  // may be called twice
 
     void set(unsigned line, bool level);
     void follow(unsigned input, unsigned output);
-    // Called on the serving thread when the host has changed an output. Before plug().
+    // Sets a callback on the serving thread for outputs changed by the host. Call it before plug().
     void when_driven(std::function<void(unsigned line, bool level)> tell) { tell_ = std::move(tell); }
     [[nodiscard]] bool level(unsigned line);
     [[nodiscard]] std::uint64_t edges(unsigned line);

@@ -23,7 +23,7 @@ constexpr const char* kControllers = "/sys/class/udc";
 constexpr const char* kMounts = "/run/tact-emu";
 constexpr const char* kModules = "modprobe libcomposite usb_f_fs, and modprobe dummy_hcd num=2 (as root)";
 
-// Of a file of the kernel's: its error, 0 for none.
+// Writes a file of the kernel; returns its error, 0 for none.
 int put(const std::string& path, const std::string& text) noexcept {
     const int fd = ::open(path.c_str(), O_WRONLY | O_CLOEXEC);
     if (fd < 0) return errno;
@@ -57,7 +57,7 @@ int need_open(const std::string& path, int flags) {
     return fd;
 }
 
-// Emulated controllers alone: a real one would plug this into whatever is at its socket.
+// Emulated controllers only: a real one would connect this device to whatever is plugged in there.
 std::vector<std::string> controllers() {
     std::vector<std::string> found;
     std::error_code none;
@@ -76,7 +76,7 @@ Gadget::Gadget(const std::string& serial, const std::string& product, std::uint1
       folder_(std::string(kGadgets) + "/tact-emu-" + serial),
       mount_point_(std::string(kMounts) + "/" + serial) {
     if (::access(kGadgets, F_OK) != 0)
-        throw StartupError("emulated arm on USB", "this kernel has no USB gadgets now",
+        throw StartupError("emulated arm on USB", "this kernel has no USB gadget support loaded",
                            std::string(kModules) + "; mount -t configfs none /sys/kernel/config");
     if (controllers().empty())
         throw StartupError("emulated arm on USB", "there is no emulated USB controller",
@@ -110,7 +110,7 @@ void Gadget::build(const std::string& product, std::uint16_t rate_hz) {
     control_ = need_open(mount_point_ + "/ep0", O_RDWR);
     need_write(control_, ffs_descriptors(rate_hz), "descriptors");
     need_write(control_, ffs_strings(), "strings");
-    // O_NONBLOCK: nothing waits for the host to appear. Transfers block all the same.
+    // O_NONBLOCK: open does not wait for the host. Transfers block nevertheless.
     to_host_ = need_open(mount_point_ + "/ep1", O_RDWR | O_NONBLOCK);
     from_host_ = need_open(mount_point_ + "/ep2", O_RDWR | O_NONBLOCK);
 }
@@ -125,7 +125,8 @@ void Gadget::plug() {
         plugged_ = true;
         return;
     }
-    refuse("plugging " + serial_, error, "every dummy_udc is taken: modprobe -r dummy_hcd, then with num=4");
+    refuse("plugging " + serial_, error,
+           "every dummy_udc is in use: modprobe -r dummy_hcd, then load it with num=4");
 }
 
 void Gadget::unplug() noexcept {
@@ -134,7 +135,7 @@ void Gadget::unplug() noexcept {
     plugged_ = false;
 }
 
-// Every step may find nothing to do.
+// Any step may find nothing to remove.
 void Gadget::remove() noexcept {
     plugged_ = false;
     static_cast<void>(put(folder_ + "/UDC", "\n"));
@@ -148,7 +149,7 @@ void Gadget::remove() noexcept {
     ::rmdir((folder_ + "/functions/ffs." + serial_).c_str());
     ::rmdir(folder_.c_str());
     ::rmdir(mount_point_.c_str());
-    ::rmdir(kMounts);  // stays while another arm is there
+    ::rmdir(kMounts);  // fails while another arm is mounted
 }
 
 }  // namespace tact::emu

@@ -1,11 +1,11 @@
-// A USB device out of this program: a configfs gadget with one FunctionFS function, on a controller of
+// A USB device implemented by this program: a configfs gadget with one FunctionFS function, on a controller of
 // dummy_hcd.
 //
-// Life     the constructor makes it, plug() and unplug() move it in and out of the bus, the destructor
-//          removes every trace; what a killed emulator of the same serial left is removed first
-// Reads    of the endpoints block in the kernel; unplug() wakes them with ESHUTDOWN, and until it is plugged
-//          they say EAGAIN
-// Fails by StartupError with the fix: no rights, modules that are missing, no free controller
+// Life     the constructor creates it, plug() and unplug() connect it to the bus, the destructor removes every
+//          trace; leftovers of a killed emulator with the same serial are removed first
+// Reads    of the endpoints block in the kernel; unplug() wakes them with ESHUTDOWN, and until it is plugged they
+//          return EAGAIN
+// Fails by StartupError with the fix: no rights, missing modules, no free controller
 // Thread   plug() and unplug() on one
 #pragma once
 

@@ -12,7 +12,7 @@ LinesPart::LinesPart(Report& report) : report_(report) {
     close_contacts();
     lines_.follow(kAmplifier, kEnable);
     lines_.when_driven([this](unsigned line, bool high) {
-        if (line == kWatchdog) return;  // a thousand a second
+        if (line == kWatchdog) return;  // a thousand changes per second
         report_.say({Monotonic::now(), "lines", std::to_string(line),
                      line == kEnable ? "enable"
                      : line == kLamp ? "lamp"

@@ -1,7 +1,7 @@
-// Safety lines as a part of tact-emu: an emulated CP2112, wired as a lab would wire it, that applies orders.
+// Safety lines as a part of tact-emu: an emulated CP2112, wired as in a lab, that executes orders.
 //
-// Wiring   0, 1 the emergency stop's contacts, closed is high; 2 dead-man, pressed is high; 3 whether the amplifier is
-//          on, wired to 4; 4 enable; 5 watchdog; 6 lamp
+// Wiring   0, 1 the emergency stop's contacts, closed is high; 2 dead-man, pressed is high; 3 read-back of the
+//          amplifier, wired to 4; 4 enable; 5 watchdog; 6 lamp
 // Thread   apply() and say_status() on one thread
 #pragma once
 
@@ -15,7 +15,8 @@ class LinesPart {
 public:
     explicit LinesPart(Report& report);
     bool apply(
-        const Order& order);  // true: it was for the lines; throws StartupError where it cannot be plugged in
+        const Order&
+            order);  // true: the order was for the lines; throws StartupError if the adapter cannot be plugged in
     void say_status();
 
 private:

@@ -1,7 +1,7 @@
 // tact-emu: devices behind the kernel's own interfaces, for tests without hardware.
 //
-// Exit  0  it ended in order: by a signal, an order, or its time was over
-//       1  it could not start; one message says what, why and the fix
+// Exit  0  it ended normally: by a signal, an order, or after its time
+//       1  it could not start; one message gives problem, cause and fix
 //       2  wrong usage
 #include <poll.h>
 #include <signal.h>
@@ -43,26 +43,27 @@ struct Options {
 };
 
 void describe(CLI::App& app, Options& o) {
-    app.add_option("--arm", o.arms, "SERIAL[:MODEL]: an arm on USB (dummy_hcd); may be given again");
+    app.add_option("--arm", o.arms, "Arm on USB (dummy_hcd), as SERIAL[:MODEL]; repeat for more arms");
     app.add_option("--tracker", o.tracker,
-                   "INTERFACE[:classic|fd[:RATE_HZ[:SENSORS]]]: a head tracker on CAN");
-    app.add_flag("--lines", o.lines, "safety lines on a CP2112 adapter (uhid, hid-cp2112)");
-    app.add_option("--faults", o.faults, "file of what goes wrong and when; the orders are below");
-    app.add_flag("--orders", o.orders, "take the same orders from standard input, one a line");
-    app.add_option("--seconds", o.seconds, "end after so long; 0: run until a signal or \"leave\"")
+                   "Head tracker on CAN, as INTERFACE[:classic|fd[:RATE_HZ[:SENSORS]]]");
+    app.add_flag("--lines", o.lines, "Safety lines on a CP2112 adapter (uhid, hid-cp2112)");
+    app.add_option("--faults", o.faults, "File with faults and their times; the orders are listed below");
+    app.add_flag("--orders", o.orders, "Read the same orders from standard input, one per line");
+    app.add_option("--seconds", o.seconds, "Length of the run (s); 0: until a signal or the order \"leave\"")
         ->check(CLI::Range(0.0, 1e7));
-    app.add_option("--rate-hz", o.rate_hz, "of the arms' states")->check(CLI::Range(100, 8000));
-    app.add_option("--watchdog-ms", o.watchdog_ms, "of the arms; a patient one for emulated processors")
+    app.add_option("--rate-hz", o.rate_hz, "Rate of the arms' states (Hz)")->check(CLI::Range(100, 8000));
+    app.add_option("--watchdog-ms", o.watchdog_ms,
+                   "Watchdog of the arms (ms); larger for emulated processors")
         ->check(CLI::Range(1, 60'000));
-    app.add_option("--hand", o.hand, "on the arms: passive, wander or stroke");
-    app.add_option("--seed", o.seed, "of hands and head");
-    app.add_flag("--no-ritual", o.no_ritual, "nobody takes the arms to their calibration pose");
-    app.add_option("--slow", o.slow, "the calibration takes so many times as long")
+    app.add_option("--hand", o.hand, "Motion of the hands on the arms: passive, wander or stroke");
+    app.add_option("--seed", o.seed, "Random seed for the motion of hands and head");
+    app.add_flag("--no-ritual", o.no_ritual, "Leave out the calibration ritual of the arms");
+    app.add_option("--slow", o.slow, "Factor on the duration of the calibration ritual")
         ->check(CLI::Range(0.6, 100.0));
-    app.add_flag("--unplugged", o.unplugged, "the arms wait for the order \"plug\"");
-    app.add_flag("--json", o.json, "what happens, as one JSON object a line");
-    app.add_flag("--check", o.check, "read and check everything, then exit");
-    std::string orders = "Orders, each with \"at SECONDS s\" before it if it is for later:\n";
+    app.add_flag("--unplugged", o.unplugged, "Start with the arms unplugged, until the order \"plug\"");
+    app.add_flag("--json", o.json, "Print reports as JSON, one object per line");
+    app.add_flag("--check", o.check, "Read and check all options and files, then exit");
+    std::string orders = "Orders, each optionally after \"at SECONDS s\":\n";
     for (const ActionRow& row : actions()) {
         std::string usage = row.words;
         for (const NumberRange& n : row.numbers) usage += std::string(" ") + n.name;
@@ -73,10 +74,10 @@ void describe(CLI::App& app, Options& o) {
     app.footer(orders);
 }
 
-// Orders from a pipe or a terminal, a line at a time.
+// Orders from a pipe or a terminal, one line at a time.
 class Input {
 public:
-    // False: it ended.
+    // False: the input ended.
     bool take(std::vector<std::string>& lines) {
         std::array<char, 1024> bytes{};
         const ssize_t n = ::read(STDIN_FILENO, bytes.data(), bytes.size());
@@ -84,7 +85,7 @@ public:
         for (const char c : std::span(bytes).first(static_cast<std::size_t>(n))) {
             if (c == '\n') {
                 lines.push_back(std::exchange(line_, {}));
-            } else if (line_.size() <= kLineMax) {  // one more than is good, so that it is refused
+            } else if (line_.size() <= kLineMax) {  // one more than allowed, so that the line is refused
                 line_ += c;
             }
         }
@@ -178,7 +179,7 @@ private:
         }
     }
 
-    // From now on, among those that are not yet due.
+    // Adds an order at its place among the pending ones.
     void later(Order order) {
         order.at = *order.at + (Monotonic::now() - start_);
         const auto place =
@@ -211,7 +212,7 @@ private:
         if (tracker_) done |= tracker_->apply(order);
         if (lines_) done |= lines_->apply(order);
         if (!done && !(part == Part::arm && arms_.empty() && order.action == Action::plug))
-            refused(std::string(row_of(order.action).words) + ": there is no such part " + order.arm);
+            refused(std::string(row_of(order.action).words) + ": unknown part " + order.arm);
     }
 
     Report& report_;
@@ -228,12 +229,13 @@ private:
 
 void check(const Options& o) {
     if (o.arms.empty() && o.tracker.empty() && !o.lines)
-        throw StartupError("tact-emu", "no part is asked for",
+        throw StartupError("tact-emu", "no part is requested",
                            "give --arm SERIAL, --tracker INTERFACE or --lines");
     std::set<std::string> serials;
     for (const std::string& text : o.arms) {
         if (!serials.insert(parse_arm(text).serial).second)
-            throw StartupError("--arm " + text, "there is another arm of this serial", "give each its own");
+            throw StartupError("--arm " + text, "another arm has this serial",
+                               "give each arm its own serial");
     }
     if (!o.tracker.empty()) static_cast<void>(checked(parse_tracker(o.tracker).can));
 }
@@ -242,10 +244,10 @@ int run(const Options& o) {
     check(o);
     std::vector<Order> script = o.faults.empty() ? std::vector<Order>{} : read_script(o.faults);
     if (o.check) {
-        std::printf("tact-emu: parts and %zu orders: all good\n", script.size());
+        std::printf("tact-emu: parts and %zu orders: no problems\n", script.size());
         return 0;
     }
-    // Before the first thread, which inherits the mask. A reader that is gone is no reason to end.
+    // Before the first thread, which inherits the mask. A closed reader does not end the emulator.
     signal(SIGPIPE, SIG_IGN);
     sigset_t stop;
     sigemptyset(&stop);

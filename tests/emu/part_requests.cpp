@@ -29,9 +29,10 @@ unsigned number_of(const std::string& text, const std::string& word, unsigned lo
     unsigned value = 0;
     const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
     if (error != std::errc{} || end != word.data() + word.size() || value < low || value > high)
-        throw StartupError("--tracker " + text,
-                           "\"" + word + "\" is not " + std::to_string(low) + " to " + std::to_string(high),
-                           kTrackerForm);
+        throw StartupError(
+            "--tracker " + text,
+            "\"" + word + "\" is not a number from " + std::to_string(low) + " to " + std::to_string(high),
+            kTrackerForm);
     return value;
 }
 
@@ -43,7 +44,7 @@ ArmRequest parse_arm(const std::string& text) {
         throw StartupError("--arm " + text, "a serial is 1 to 16 letters, digits, '-' and '_'",
                            "write SERIAL[:MODEL], as in LEFT:premium-1.5");
     ArmRequest request{fields[0], arm_parameter_set(fields.size() > 1 ? fields[1] : "premium-1.5")};
-    static_cast<void>(arm_parameters(request.metrics));  // a model whose figures nobody knows is refused here
+    static_cast<void>(arm_parameters(request.metrics));  // refuses a model with unknown parameters
     return request;
 }
 
@@ -54,10 +55,11 @@ TrackerRequest parse_tracker(const std::string& text) {
     request.can.fix.format = CanFormat::classic;
     request.can.fix.sensors = 1;
     if (fields.size() > 4 || request.interface.empty() || request.interface.size() > 15)
-        throw StartupError("--tracker " + text, "this names no interface", kTrackerForm);
+        throw StartupError("--tracker " + text, "the interface is missing", kTrackerForm);
     if (fields.size() > 1) {
         if (fields[1] != "classic" && fields[1] != "fd")
-            throw StartupError("--tracker " + text, "there is no format \"" + fields[1] + "\"", kTrackerForm);
+            throw StartupError("--tracker " + text, "the format \"" + fields[1] + "\" is unknown",
+                               kTrackerForm);
         if (fields[1] == "fd") request.can.fix.format = CanFormat::fd;
     }
     if (fields.size() > 2) request.can.rate_hz = number_of(text, fields[2], 10, 2000);

@@ -1,7 +1,7 @@
-// What the command line asks of tact-emu's parts, as text: "--arm LEFT:premium-1.5", "--tracker
+// Parses the parts requested on the command line of tact-emu: "--arm LEFT:premium-1.5", "--tracker
 // vcan0:fd:240:4".
 //
-// Fails by StartupError with the form that is wanted
+// Fails by StartupError with the expected form
 // Thread   any; pure
 #pragma once
 

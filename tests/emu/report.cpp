@@ -7,7 +7,7 @@ namespace tact::emu {
 
 namespace {
 
-// JSON without its special characters: what is not plain ASCII becomes '?'.
+// For JSON without escapes: replaces special and non-ASCII characters by '?'.
 std::string plain(const std::string& text) {
     std::string out;
     for (const char c : text) out += c >= ' ' && c <= '~' && c != '"' && c != '\\' ? c : '?';

@@ -1,8 +1,7 @@
-// What happened to the emulated parts: a line each, on standard output, with the time it happened at.
+// Reports events of the emulated parts: one line each on standard output, with a time stamp.
 //
-// Time     CLOCK_MONOTONIC, as in the controller's topics, so that the two can be laid beside each other
-// Form     for people, or one JSON object a line (--json): t_ns, part, name, what, detail, and the numbers
-//          there are
+// Time     CLOCK_MONOTONIC, as in the controller's topics, so that both can be compared
+// Form     text, or one JSON object per line (--json): t_ns, part, name, what, detail, and optional numbers
 // Thread   any
 #pragma once
 
@@ -23,7 +22,7 @@ struct ReportNumber {
 struct ReportLine {
     Instant at{};
     const char* part = "";  // "arm", "tracker", "emulator"
-    std::string name;       // which of them
+    std::string name;       // of the part
     const char* what = "";  // "amplifier", "currents", "usb", ...
     std::string detail;     // "on", "zero", "unplugged", ...
 };
@@ -34,7 +33,7 @@ struct ReportLine {
 class Report {
 public:
     explicit Report(bool json) : json_(json) {}
-    // Nobody who reads ends nothing: a closed pipe is no reason to leave an arm without its watchdog.
+    // A closed pipe ends nothing: the emulated arm must keep its watchdog.
     void say(const ReportLine& line, std::initializer_list<ReportNumber> numbers = {}) noexcept;
 
 private:

@@ -27,53 +27,59 @@ constexpr std::array kSensorPlace{NumberRange{"X_MM", -5000, 5000}, NumberRange{
 constexpr std::span<const NumberRange> kNone{};
 
 constexpr std::array kActions{
-    ActionRow{"plug", Action::plug, Part::arm, kNone, "", "into the bus"},
-    ActionRow{"unplug", Action::unplug, Part::arm, kNone, "", "from the bus"},
+    ActionRow{"plug", Action::plug, Part::arm, kNone, "", "connects the arm to the bus"},
+    ActionRow{"unplug", Action::unplug, Part::arm, kNone, "", "disconnects the arm from the bus"},
     ActionRow{"stall", Action::stall, Part::arm, kNone, "", "halts its IN endpoint until the host clears it"},
-    ActionRow{"silence", Action::silence, Part::arm, kMilliseconds, "ms", "neither sends nor hears"},
-    ActionRow{"corrupt", Action::corrupt, Part::arm, kCount, "", "a bit of the next N states is wrong"},
-    ActionRow{"repeat", Action::repeat, Part::arm, kCount, "", "the next N states come twice"},
-    ActionRow{"reorder", Action::reorder, Part::arm, kCount, "", "N states come after the one behind them"},
-    ActionRow{"drop", Action::drop, Part::arm, kCount, "", "the next N states do not come"},
-    ActionRow{"brown-out", Action::brown_out, Part::arm, kNone, "", "the supply is low, until well"},
+    ActionRow{"silence", Action::silence, Part::arm, kMilliseconds, "ms", "neither sends nor receives"},
+    ActionRow{"corrupt", Action::corrupt, Part::arm, kCount, "", "flips a bit in the next N states"},
+    ActionRow{"repeat", Action::repeat, Part::arm, kCount, "", "sends the next N states twice"},
+    ActionRow{"reorder", Action::reorder, Part::arm, kCount, "",
+              "swaps each of the next N states with its successor"},
+    ActionRow{"drop", Action::drop, Part::arm, kCount, "", "drops the next N states"},
+    ActionRow{"brown-out", Action::brown_out, Part::arm, kNone, "", "supply voltage low, until well"},
     ActionRow{"hot", Action::hot, Part::arm, kNone, "", "over-temperature, until well"},
-    ActionRow{"over-current", Action::over_current, Part::arm, kNone, "", "until well"},
-    ActionRow{"safety open", Action::safety_open, Part::arm, kNone, "", "the chain at the board, until well"},
-    ActionRow{"count lost", Action::count_lost, Part::arm, kNone, "", "an encoder skipped, until well"},
-    ActionRow{"encoder stuck", Action::encoder_stuck, Part::arm, kJoint, "", "keeps its count, until well"},
-    ActionRow{"encoder jump", Action::encoder_jump, Part::arm, kJump, "", "so much is added, until well"},
-    ActionRow{"drive dead", Action::drive_dead, Part::arm, kJoint, "", "a motor without current, until well"},
-    ActionRow{"deaf", Action::deaf, Part::arm, kNone, "", "takes no command and goes on sending, until well"},
-    ActionRow{"restart", Action::restart, Part::arm, kNone, "", "power off and on: another boot"},
-    ActionRow{"press", Action::press, Part::arm, kButtons, "", "buttons that are held down now, as bits"},
-    ActionRow{"calibrate", Action::calibrate, Part::arm, kNone, "", "back to its pose, button, and on"},
+    ActionRow{"over-current", Action::over_current, Part::arm, kNone, "", "over-current, until well"},
+    ActionRow{"safety open", Action::safety_open, Part::arm, kNone, "",
+              "opens the safety chain at the board, until well"},
+    ActionRow{"count lost", Action::count_lost, Part::arm, kNone, "", "an encoder lost counts, until well"},
+    ActionRow{"encoder stuck", Action::encoder_stuck, Part::arm, kJoint, "",
+              "constant count of an encoder, until well"},
+    ActionRow{"encoder jump", Action::encoder_jump, Part::arm, kJump, "",
+              "adds counts to an encoder, until well"},
+    ActionRow{"drive dead", Action::drive_dead, Part::arm, kJoint, "", "no current in a motor, until well"},
+    ActionRow{"deaf", Action::deaf, Part::arm, kNone, "", "receives no commands but still sends, until well"},
+    ActionRow{"restart", Action::restart, Part::arm, kNone, "", "power cycle"},
+    ActionRow{"press", Action::press, Part::arm, kButtons, "", "buttons held from now on, as bits"},
+    ActionRow{"calibrate", Action::calibrate, Part::arm, kNone, "", "repeats the calibration ritual"},
     ActionRow{"hand hold", Action::hand_hold, Part::arm, kHandPlace, "",
-              "goes there in the arm's frame, and rests"},
-    ActionRow{"hand free", Action::hand_free, Part::arm, kNone, "", "does as it did before"},
-    ActionRow{"well", Action::well, Part::arm, kNone, "", "every fault that lasts is gone"},
+              "moves the hand to a position in the arm's frame, where it rests"},
+    ActionRow{"hand free", Action::hand_free, Part::arm, kNone, "", "the hand continues as before"},
+    ActionRow{"well", Action::well, Part::arm, kNone, "", "ends all persistent faults"},
     ActionRow{"tracker silent", Action::tracker_silent, Part::tracker, kNone, "", "no frames"},
-    ActionRow{"tracker corrupt", Action::tracker_corrupt, Part::tracker, kNone, "", "a bit is wrong"},
-    ActionRow{"tracker nan", Action::tracker_nan, Part::tracker, kNone, "", "its pose is not a number"},
+    ActionRow{"tracker corrupt", Action::tracker_corrupt, Part::tracker, kNone, "",
+              "flips a bit in each frame"},
+    ActionRow{"tracker nan", Action::tracker_nan, Part::tracker, kNone, "", "poses are not a number"},
     ActionRow{"tracker out-of-range", Action::tracker_out_of_range, Part::tracker, kNone, "",
-              "it jumps away"},
+              "the pose jumps out of reach"},
     ActionRow{"tracker flood", Action::tracker_flood, Part::tracker, kNone, "",
-              "as many frames as a bus carries"},
+              "as many frames as a bus can carry"},
     ActionRow{"tracker hold", Action::tracker_hold, Part::tracker, kSensorPlace, "",
-              "a hand holds sensor 0 there, in the tracker's frame"},
-    ActionRow{"tracker free", Action::tracker_free, Part::tracker, kNone, "", "it is on the head again"},
+              "a hand holds sensor 0 at a position in the tracker's frame"},
+    ActionRow{"tracker free", Action::tracker_free, Part::tracker, kNone, "",
+              "sensor 0 is on the head again"},
     ActionRow{"tracker well", Action::tracker_well, Part::tracker, kNone, "",
-              "ends all of these and bus-off"},
-    ActionRow{"can bus-off", Action::bus_off, Part::tracker, kNone, "", "error frame, then nothing"},
-    ActionRow{"can down", Action::link_down, Part::tracker, kNone, "", "the interface"},
-    ActionRow{"can up", Action::link_up, Part::tracker, kNone, "", "the interface"},
-    ActionRow{"lines plug", Action::lines_plug, Part::lines, kNone, "", "their adapter"},
-    ActionRow{"lines unplug", Action::lines_unplug, Part::lines, kNone, "", "their adapter"},
-    ActionRow{"lines stop", Action::lines_stop, Part::lines, kNone, "", "the emergency stop is pressed"},
+              "ends all tracker faults and bus-off"},
+    ActionRow{"can bus-off", Action::bus_off, Part::tracker, kNone, "", "sends an error frame, then nothing"},
+    ActionRow{"can down", Action::link_down, Part::tracker, kNone, "", "sets the interface down"},
+    ActionRow{"can up", Action::link_up, Part::tracker, kNone, "", "sets the interface up"},
+    ActionRow{"lines plug", Action::lines_plug, Part::lines, kNone, "", "plugs in the adapter"},
+    ActionRow{"lines unplug", Action::lines_unplug, Part::lines, kNone, "", "unplugs the adapter"},
+    ActionRow{"lines stop", Action::lines_stop, Part::lines, kNone, "", "presses the emergency stop"},
     ActionRow{"lines contact", Action::lines_contact, Part::lines, kContact, "",
-              "one of its contacts opens alone"},
-    ActionRow{"lines pedal", Action::lines_pedal, Part::lines, kNone, "", "the dead-man is released"},
-    ActionRow{"lines well", Action::lines_well, Part::lines, kNone, "", "all contacts are closed"},
-    ActionRow{"status", Action::status, Part::all, kNone, "", "counters of every part"},
+              "opens one contact of the emergency stop"},
+    ActionRow{"lines pedal", Action::lines_pedal, Part::lines, kNone, "", "releases the dead-man pedal"},
+    ActionRow{"lines well", Action::lines_well, Part::lines, kNone, "", "closes all contacts"},
+    ActionRow{"status", Action::status, Part::all, kNone, "", "reports the counters of every part"},
     ActionRow{"leave", Action::leave, Part::all, kNone, "", "ends the program"},
 };
 
@@ -91,7 +97,7 @@ std::vector<std::string_view> words_of(std::string_view line) {
     return words;
 }
 
-// For messages: what a terminal can bear.
+// For messages: only printable characters.
 std::string shown(std::string_view text) {
     std::string out;
     for (const char c : text.substr(0, 60)) out += c >= ' ' && c <= '~' ? c : '?';
@@ -113,14 +119,14 @@ std::string usage(const ActionRow& row) {
     return text;
 }
 
-// The words left after those that were used.
+// The words not yet consumed.
 class Words {
 public:
     explicit Words(std::vector<std::string_view> all) : all_(std::move(all)) {}
     [[nodiscard]] bool empty() const { return next_ == all_.size(); }
     [[nodiscard]] std::string_view front() const { return empty() ? std::string_view{} : all_[next_]; }
     void pop() { ++next_; }
-    // Takes all the words of `text`, or none.
+    // Consumes all the words of `text`, or none.
     bool take(std::string_view text) {
         const auto wanted = words_of(text);
         if (wanted.size() > all_.size() - next_) return false;
@@ -140,9 +146,9 @@ std::optional<Duration> take_time(Words& words, const std::string& where) {
     std::string_view word = words.front();
     if (!word.empty() && word.back() == 's') word.remove_suffix(1);
     const auto seconds = number_of<double>(word);
-    // Written so that a value that is not a number is refused too.
+    // This form also rejects NaN.
     if (!seconds || !(*seconds >= 0.0 && *seconds <= kSecondsMax))
-        throw StartupError(where, "after \"at\" comes a time and not \"" + shown(words.front()) + "\"",
+        throw StartupError(where, "\"at\" needs a time, but \"" + shown(words.front()) + "\" follows",
                            "write for example: at 3.2 s unplug");
     words.pop();
     static_cast<void>(words.take("s"));
@@ -157,7 +163,7 @@ Order read_rest(const ActionRow& row, Words& words, const std::string& where) {
         const auto value = number_of<int>(words.front());
         if (!value || *value < range.low || *value > range.high)
             throw StartupError(where,
-                               std::string(range.name) + " is \"" + shown(words.front()) + "\" and not " +
+                               std::string(range.name) + " is \"" + shown(words.front()) + "\" instead of " +
                                    std::to_string(range.low) + " to " + std::to_string(range.high),
                                "write: " + usage(row));
         order.numbers.at(i) = *value;
@@ -166,7 +172,7 @@ Order read_rest(const ActionRow& row, Words& words, const std::string& where) {
     if (*row.unit != 0) static_cast<void>(words.take(row.unit));
     if (row.part == Part::arm && !words.empty()) {
         if (!is_serial(words.front()))
-            throw StartupError(where, "no arm is called \"" + shown(words.front()) + "\"",
+            throw StartupError(where, "\"" + shown(words.front()) + "\" cannot be the serial of an arm",
                                "give an arm's serial, or none");
         order.arm = words.front();
         words.pop();
@@ -196,7 +202,7 @@ std::optional<Order> parse_order(std::string_view line, const std::string& where
     line = line.substr(0, line.find('#'));
     if (line.size() > kLineMax)
         throw StartupError(where, "the line is longer than " + std::to_string(kLineMax) + " characters",
-                           "one order a line");
+                           "write one order per line");
     Words words(words_of(line));
     if (words.empty()) return std::nullopt;
     const auto at = take_time(words, where);
@@ -208,7 +214,7 @@ std::optional<Order> parse_order(std::string_view line, const std::string& where
     }
     std::string known;
     for (const ActionRow& row : kActions) known += (known.empty() ? "" : "; ") + usage(row);
-    throw StartupError(where, "there is no order \"" + shown(line) + "\"", "orders: " + known);
+    throw StartupError(where, "unknown order \"" + shown(line) + "\"", "orders: " + known);
 }
 
 std::vector<Order> parse_script(std::string_view text, const std::string& where) {
@@ -239,7 +245,7 @@ std::vector<Order> read_script(const std::string& path) {
     text.resize(static_cast<std::size_t>(file.gcount()));
     if (file.bad() || text.size() > kScriptBytesMax)
         throw StartupError("fault file " + path,
-                           "it is no text of at most " + std::to_string(kScriptBytesMax) + " bytes",
+                           "it is not a text of at most " + std::to_string(kScriptBytesMax) + " bytes",
                            "give a fault file (tact-emu --help lists the orders)");
     return parse_script(text, path);
 }

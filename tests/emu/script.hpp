@@ -1,9 +1,9 @@
-// What is to go wrong, and when: the lines of a fault file, or of standard input.
+// Parses faults and their times: the lines of a fault file, or of standard input.
 //
-// Line     [at SECONDS [s]] ACTION [NUMBERS] [ARM]; # begins a comment; kActions has every action
+// Line     [at SECONDS [s]] ACTION [NUMBERS] [ARM]; # begins a comment; kActions lists every action
 // Arm      by its serial; without one: every arm
 // Hostile  a line of any bytes: bounded, every number checked against its row
-// Fails by StartupError with the file, the line and what could stand there
+// Fails by StartupError with the file, the line and the valid forms
 // Thread   any
 #pragma once
 
@@ -76,14 +76,14 @@ struct ActionRow {
     Action action;
     Part part;
     std::span<const NumberRange> numbers;
-    const char* unit;  // may follow the numbers
+    const char* unit;  // optional after the numbers
     const char* what;
 };
 [[nodiscard]] std::span<const ActionRow> actions();
 [[nodiscard]] const ActionRow& row_of(Action action);
 
 struct Order {
-    std::optional<Duration> at;  // after the start; none: at once
+    std::optional<Duration> at;  // after the start; none: immediately
     Action action = Action::status;
     std::array<int, 3> numbers{};
     std::string arm;  // empty: every arm
@@ -93,13 +93,13 @@ struct Order {
 inline constexpr std::size_t kOrdersMax = 10'000, kLineMax = 200;
 inline constexpr std::size_t kScriptBytesMax = kOrdersMax * 100;
 
-// none: an empty line or a comment. `where` begins the message of the error.
+// none: an empty line or a comment. `where` starts the error message.
 [[nodiscard]] std::optional<Order> parse_order(std::string_view line, const std::string& where);
-// In order of their times; those without one come first.
+// Returns orders sorted by time; those without a time come first.
 [[nodiscard]] std::vector<Order> parse_script(std::string_view text, const std::string& where);
 [[nodiscard]] std::vector<Order> read_script(const std::string& path);
 
-// A serial is the name of folders and of a USB string: 1 to 16 letters, digits, '-' and '_'.
+// A serial becomes the name of folders and of a USB string: 1 to 16 letters, digits, '-' and '_'.
 [[nodiscard]] bool is_serial(std::string_view text) noexcept;
 
 }  // namespace tact::emu

@@ -16,9 +16,10 @@ namespace tact::emu {
 
 namespace {
 
-constexpr Duration kNotYet = std::chrono::milliseconds(2);  // after a transfer that met the unplug
-constexpr Duration kNews = std::chrono::milliseconds(100);  // a thread looks so often whether to leave
-constexpr Duration kLate = std::chrono::milliseconds(50);   // so far behind, the clock's beat begins anew
+constexpr Duration kNotYet = std::chrono::milliseconds(2);  // after a transfer that ended with ESHUTDOWN
+constexpr Duration kNews = std::chrono::milliseconds(100);  // how often a thread checks whether to end
+constexpr Duration kLate =
+    std::chrono::milliseconds(50);  // with more delay, the clock restarts at the current time
 
 std::uint32_t board_us(Instant now) noexcept { return static_cast<std::uint32_t>(to_ns(now) / 1000); }
 
@@ -53,7 +54,7 @@ UsbArm::UsbArm(const BoardSettings& settings, Report& report)
 
 UsbArm::~UsbArm() {
     leave_.store(true);
-    gadget_.unplug();  // wakes what is in a transfer
+    gadget_.unplug();  // ends blocked transfers
     fresh_.notify_all();
     plugged_in_.notify_all();
     for (std::thread* t : {&clock_, &to_host_, &from_host_, &control_})
@@ -88,7 +89,7 @@ void UsbArm::say_status() {
                  {"flowing", seen_.flowing ? 1U : 0U}});
 }
 
-// What changed at the board, said once each, with the instant of the step that changed it.
+// Reports each change of the board once, with the time of the step that caused it.
 void UsbArm::look(Instant now) noexcept {
     if (board_.hand_free() != seen_.hand_free)
         say("hand", (seen_.hand_free = board_.hand_free()) ? "free" : "calibrates", now);
@@ -128,7 +129,7 @@ void UsbArm::configured_is(bool on) noexcept {
     if (configured_ == on) return;
     configured_ = on;
     std::array<std::byte, kPacketBytesMax> packet{};
-    for (std::size_t size = 0; on && board_.next_packet(packet, size);) {  // of before it was plugged
+    for (std::size_t size = 0; on && board_.next_packet(packet, size);) {  // from before it was plugged in
     }
     plugged_in_.notify_all();
     say("usb", on ? "configured" : "gone", Monotonic::now());
@@ -139,7 +140,7 @@ void UsbArm::live_to_host() noexcept {
     while (!leave_.load(std::memory_order_relaxed)) {
         if (!is_configured()) continue;
         if (stall_.exchange(false)) {
-            // FunctionFS halts an endpoint that is used the wrong way round; not while a packet lies in its
+            // FunctionFS halts an endpoint that is used in the wrong direction, but not while a packet lies in its
             // FIFO.
             const ssize_t n = ::read(gadget_.to_host_fd(), packet.data(), packet.size());
             const bool later = n < 0 && errno == EAGAIN;
@@ -195,7 +196,7 @@ void UsbArm::live_control() noexcept {
         }
         if (event.type == FUNCTIONFS_ENABLE) configured_is(true);
         if (event.type == FUNCTIONFS_DISABLE || event.type == FUNCTIONFS_UNBIND) configured_is(false);
-        if (event.type == FUNCTIONFS_SETUP) {  // no request is known: the wrong direction refuses it
+        if (event.type == FUNCTIONFS_SETUP) {  // no request is supported: the wrong direction refuses it
             std::byte none{};
             const bool in = (event.u.setup.bRequestType & USB_DIR_IN) != 0;
             const ssize_t refused =

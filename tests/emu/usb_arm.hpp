@@ -1,8 +1,8 @@
 // An emulated arm on the USB bus: EmulatedBoard behind a Gadget.
 //
-// Threads  four, each waiting in the kernel: the board's clock, states to the host, commands from it, and the
+// Threads  four, each waiting in the kernel: the board's clock, states to the host, commands from the host, and the
 //          control endpoint. None spins.
-// Says     to the report, with the instant: plugged, configured, version spoken, amplifier, currents
+// Reports  with a time stamp: plugged, configured, version sent, amplifier, currents
 // Thread   the public functions on one
 #pragma once
 
@@ -26,8 +26,8 @@ public:
     UsbArm(const UsbArm&) = delete;
     UsbArm& operator=(const UsbArm&) = delete;
 
-    void start();  // the threads; not yet plugged
-    // True: done. False: no action of an arm.
+    void start();  // starts the threads; not yet plugged
+    // True: done. False: not an action of an arm.
     bool apply(const Order& order);
     void say_status();
     [[nodiscard]] const std::string& serial() const noexcept { return serial_; }
@@ -41,21 +41,21 @@ private:
     void live_to_host() noexcept;
     void live_from_host() noexcept;
     void live_control() noexcept;
-    [[nodiscard]] bool is_configured() noexcept;  // after waiting for it a while
+    [[nodiscard]] bool is_configured() noexcept;  // waits a while for it
     void configured_is(bool on) noexcept;
-    void look(Instant now) noexcept;  // holds mutex_
+    void look(Instant now) noexcept;  // needs mutex_
     void say(const char* what, std::string detail, Instant at) noexcept;
-    void fault_of(const Order& order);  // holds mutex_
+    void fault_of(const Order& order);  // needs mutex_
 
     std::string serial_;
     Report& report_;
     EmulatedBoard board_;
     Gadget gadget_;
     Duration tick_;
-    std::mutex mutex_;  // of board_ and the fields up to the next blank line
+    std::mutex mutex_;  // protects board_ and the fields up to the next blank line
     std::condition_variable fresh_, plugged_in_;
     Seen seen_;
-    Instant thaw_at_{};  // of silence; 0: none
+    Instant thaw_at_{};  // end of silence; 0: none
     bool configured_ = false;
 
     std::atomic<bool> leave_{false}, stall_{false};

@@ -19,13 +19,13 @@ void put(std::vector<std::byte>& out, std::uint64_t value, unsigned bytes) {
 void put_speed(std::vector<std::byte>& out, std::uint8_t interval) {
     put(out, USB_DT_INTERFACE_SIZE, 1);
     put(out, USB_DT_INTERFACE, 1);
-    put(out, 0, 1);  // its number
+    put(out, 0, 1);  // interface number
     put(out, 0, 1);  // alternate setting
     put(out, 2, 1);  // endpoints
     put(out, kInterfaceClass, 1);
     put(out, kInterfaceSubclass, 1);
     put(out, kInterfaceProtocol, 1);
-    put(out, 1, 1);  // its string
+    put(out, 1, 1);  // string index
     for (const std::uint8_t address : {kEndpointIn, kEndpointOut}) {
         put(out, USB_DT_ENDPOINT_SIZE, 1);
         put(out, USB_DT_ENDPOINT, 1);
@@ -64,8 +64,8 @@ std::vector<std::byte> ffs_descriptors(std::uint16_t rate_hz) {
 
 std::vector<std::byte> ffs_strings() {
     std::vector<std::byte> body;
-    put(body, 1, 4);  // strings a language
-    put(body, 1, 4);  // languages
+    put(body, 1, 4);  // number of strings per language
+    put(body, 1, 4);  // number of languages
     put(body, kEnglish, 2);
     for (const char c : kInterfaceName) put(body, static_cast<std::uint8_t>(c), 1);
     put(body, 0, 1);

@@ -1,8 +1,7 @@
-// What an arm's board says of itself to USB, as FunctionFS takes it: the interface of
-// hal/phantom/PROTOCOL.md.
+// The USB descriptors of an arm's board for FunctionFS: the interface of hal/phantom/PROTOCOL.md.
 //
 // Bytes    for a FunctionFS ep0, little endian: descriptors of full and high speed (version 2), then strings.
-//          The protocol refuses full speed; the kernel wants it described all the same.
+//          The protocol refuses full speed, but the kernel requires its description.
 // Thread   any; pure
 #pragma once
 
@@ -20,7 +19,7 @@ inline constexpr std::uint8_t kInterfaceClass = probe::kPhantomInterface >> 16U,
 inline constexpr std::uint8_t kEndpointIn = 0x81, kEndpointOut = 0x02;
 inline constexpr std::uint16_t kPacketBytesMax = 64;
 
-// Period of the endpoints by the rate of the states: bInterval at high speed, in 2^(n-1) of 125 us.
+// Period of the endpoints for a rate of the states: bInterval at high speed, in 2^(n-1) of 125 us.
 [[nodiscard]] std::uint8_t interval_of(std::uint16_t rate_hz) noexcept;
 
 [[nodiscard]] std::vector<std::byte> ffs_descriptors(std::uint16_t rate_hz);

@@ -1,7 +1,7 @@
-// What a window takes from the region "tact.bone" of a controller that may be anything. The bytes are the region as it is
-// found, header and all, and what is written into it between two looks.
+// The window's reader of the region "tact.bone", with an arbitrary controller. The input bytes are the region as found,
+// including the header, and writes into it between two reads.
 //
-// First byte   0: mapped as it is. Else its header and its counts are put right first, so that the rest is reached
+// First byte   0: map the bytes unchanged. Otherwise fix the header and its counts first, so that the later code is reached
 #include <fcntl.h>
 #include <sys/mman.h>
 #include <unistd.h>
@@ -34,7 +34,7 @@ BoneRegionHead right_head() {
     return head;
 }
 
-// The whole region of a controller that means well.
+// A complete valid region.
 Input right_region() {
     OwnedBoneRegion region(right_head());
     std::fill(region.densities().begin(), region.densities().end(), std::uint8_t{200});
@@ -44,7 +44,7 @@ Input right_region() {
     return bytes;
 }
 
-// What a stranger hands over: bytes in memory of a sealed size, and the writer's own map of it.
+// A region from an untrusted process: sealed memory, and the writer's own mapping of it.
 class Stranger {
 public:
     explicit Stranger(std::span<const std::byte> bytes) : bytes_(std::max<std::size_t>(bytes.size(), 1)) {
@@ -83,7 +83,7 @@ bool run(std::span<const std::byte> input) {
     if (input.size() < 2 || input.size() > kBytesMost) return false;
     static const Input right = right_region();
     const bool fixed = input[0] != std::byte{0};
-    // Half of the rest is there at first, half comes between the looks, in pieces of 64 bytes at any place.
+    // Half of the remaining input is the initial content; the other half is written between reads, in pieces of 64 bytes anywhere.
     const std::span<const std::byte> rest = input.subspan(1);
     const std::size_t first = fixed ? rest.size() / 2 : std::min(rest.size(), right.size());
     Input found = fixed ? right : Input(rest.begin(), rest.begin() + static_cast<std::ptrdiff_t>(first));
@@ -128,7 +128,8 @@ bool run(std::span<const std::byte> input) {
         const auto piece = later.first(std::min<std::size_t>(later.size(), 64));
         std::uint32_t at = 0;
         std::memcpy(&at, piece.data(), std::min(sizeof at, piece.size()));
-        stranger.write(at % found.size(), piece);  // the head as well, which was copied when it was judged
+        stranger.write(at % found.size(),
+                       piece);  // also the header, which the reader copied when it checked it
         later = later.subspan(piece.size());
     }
     require(lost == levels(baked) - levels(follower.volume().density));

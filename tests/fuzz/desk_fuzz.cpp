@@ -1,4 +1,4 @@
-// A window state file of any bytes: refused in words, or settings within their bounds that are written and read again as the same.
+// A window state file of arbitrary bytes: refused with a message, or settings within their bounds that survive write and read.
 #include "gui/window/window_state.hpp"
 #include "ipc/base/error.hpp"
 #include "tests/fuzz/fuzz.hpp"

@@ -1,4 +1,4 @@
-// A fault file of tact-emu, of any bytes.
+// A fault file of tact-emu with arbitrary bytes.
 #include "ipc/base/error.hpp"
 #include "tests/emu/script.hpp"
 #include "tests/fuzz/fuzz.hpp"

@@ -1,5 +1,5 @@
-// Structure files and places of bodies from anywhere, as saving reads them. The first byte picks which; what
-// is accepted is written with every atom where the motion takes it, and can be read again.
+// Structure files and body poses from anywhere, as saving reads them. The first byte selects the format. An accepted
+// structure is written with every atom transformed by the motion, and can be read again.
 #include <cmath>
 #include <string>
 

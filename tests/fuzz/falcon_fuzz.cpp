@@ -1,6 +1,6 @@
-// What a Falcon, or anything with its numbers, sends over a whole connection: bytes of any content, size and
-// time, and failures of the bus. Whatever comes, no torque goes out beyond the motors' limits, none before the
-// marks are found or without enable, and no pose is anything but finite.
+// A whole connection with a Falcon, or any device with its identifiers: bytes of any content, size and time, and failures
+// of the bus. No torque may exceed the motors' limits or be sent before homing or without enable, and every pose is
+// finite.
 #include "hal/falcon/falcon.hpp"
 #include "ipc/base/error.hpp"
 #include "tests/fuzz/fuzz.hpp"
@@ -16,7 +16,7 @@ class FuzzBus final : public FuzzUsbBus {
 public:
     bool send(std::span<const std::byte> packet) noexcept override {
         falcon::Request r;
-        require(decode(packet, r) == falcon::PacketFault::none);  // it runs, so it is never loaded
+        require(decode(packet, r) == falcon::PacketFault::none);  // the firmware runs, so it is never loaded
         const bool zero = r.torque == falcon::Torque3{};
         for (const std::int16_t t : r.torque) require(t >= -falcon::kTorqueMax && t <= falcon::kTorqueMax);
         require(zero || (may_push && r.leds == falcon::led::kGreen));
@@ -29,7 +29,7 @@ public:
     bool opened = false, asked = false, may_push = false;
 };
 
-// A good reply with everything from the input.
+// A valid reply with all fields from the input.
 Reply shaped(std::span<const std::byte> bytes) {
     const auto at = [&](std::size_t i) { return i < bytes.size() ? static_cast<unsigned>(bytes[i]) : 0U; };
     Reply r;
@@ -55,7 +55,7 @@ bool run(std::span<const std::byte> input) {
     bus.opened = true;
     DeviceSample sample;
     std::uint64_t heartbeat = 0, taken = 0;
-    // Of a record: what it is, how many bytes follow, what time passes.
+    // Of a record: its kind, the number of bytes that follow, the time that passes.
     while (input.size() >= 3 && heartbeat < 2000) {
         const auto what = static_cast<unsigned>(input[0]);
         const auto length = std::min<std::size_t>(static_cast<std::size_t>(input[1]), input.size() - 3);
@@ -84,7 +84,7 @@ bool run(std::span<const std::byte> input) {
         require(sample.taken_at <= now && sample.delay >= Duration{0});
         if (status == IoStatus::ok) ++taken;
         const bool enable = (what & 64U) != 0;
-        // The watchdog's time after enable went low is none, and after the last order 10 ms.
+        // After enable goes low no torque is allowed, and 10 ms after the last order none either.
         bus.may_push = enable || bus.may_push;
         static_cast<void>(
             device.write({.wrench_dev = {Vec3::Constant(static_cast<double>(length)), Vec3::Zero()},
@@ -106,7 +106,8 @@ std::vector<Input> seeds() {
         to.insert(to.end(), bytes.begin(), bytes.end());
     };
     std::vector<Input> all(4);
-    for (unsigned i = 0; i < 80; ++i) record(all[0], i < 30 ? 4 : 4 + 64, 10, {});  // homed, then on
+    for (unsigned i = 0; i < 80; ++i)
+        record(all[0], i < 30 ? 4 : 4 + 64, 10, {});  // first homed, then enabled
     all[1] = all[0];
     const std::array<std::byte, 6> shape{std::byte{3}, std::byte{130}, std::byte{120}, std::byte{128},
                                          std::byte{99}};

@@ -1,4 +1,4 @@
-// A CSV of a potential field out of any bytes: refused with a fix, or a whole regular grid of finite values that can be baked.
+// A CSV of a potential field with arbitrary bytes: refused with a fix, or a complete regular grid of finite values that can be baked.
 #include <cmath>
 
 #include "prep/field/bake_field.hpp"

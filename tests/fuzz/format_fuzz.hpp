@@ -1,6 +1,6 @@
-// For targets of file readers: the first byte picks the format, the rest is the file.
+// For targets of file readers: the first byte selects the format, the rest is the file.
 //
-// Refusals  of a reader are StartupErrors that say a fix; anything else that it throws is a finding
+// Refusals  of a reader are StartupErrors with a fix; any other exception is a finding
 #pragma once
 
 #include <cstring>
@@ -20,7 +20,7 @@ inline Input seed(unsigned format, std::string_view text) {
     return s;
 }
 
-// use(format, text) with format below `formats`.
+// Calls use(format, text) with format below `formats`.
 template <class Use>
 bool run_formats(std::span<const std::byte> input, unsigned formats, const Use& use) {
     if (input.empty()) return false;

@@ -1,5 +1,5 @@
 # tact_fuzz(scene_fuzz SOURCES fuzz/scene_fuzz.cpp USES scene): an entry point of fuzz/fuzz.hpp becomes
-#   scene_fuzz           replays its seeds and thousands of seeded mutations of them; in every suite (label replay)
+#   scene_fuzz           replays its seeds and thousands of random mutations of them; in every suite (label replay)
 #   scene_fuzz_libfuzzer with TACT_FUZZ (clang): guided by coverage for TACT_FUZZ_SECONDS (environment; 10), from
 #                        the same seeds
 add_custom_target(fuzz_all)

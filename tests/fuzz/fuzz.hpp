@@ -1,6 +1,6 @@
-// What a fuzz target gives: what it does with any bytes, and a few good inputs to start from.
+// Interface of a fuzz target: its function on arbitrary bytes, and a few valid inputs as seeds.
 //
-// run() must come back whatever the bytes are: no crash, no sanitizer report, no endless work, no exception.
+// run() must return for any bytes: no crash, no sanitizer report, no endless loop, no exception.
 #pragma once
 
 #include <concepts>
@@ -15,16 +15,15 @@ namespace tact::fuzz {
 using Input = std::vector<std::byte>;
 
 bool run(std::span<const std::byte> input);  // true: the input was accepted
-[[nodiscard]] std::vector<Input>
-seeds();  // made in code, every one accepted; replay checks that they still are
+[[nodiscard]] std::vector<Input> seeds();    // made in code, all accepted; replay checks this
 
-// A target that has its own require(bool) calls that one.
+// A target with its own require(bool) calls this one.
 template <std::same_as<bool> Claim>
 void require(Claim claim) {
     if (!claim) std::abort();
 }
 
-// A seed from a plain struct or a string.
+// Makes a seed from a plain struct or a string.
 template <class T>
 Input bytes_of(const T& value) {
     const auto bytes = std::as_bytes(std::span(&value, 1));

@@ -1,4 +1,4 @@
-// A USB bus made of memory whose time passes only while a driver waits: what a device sends is for the target to say.
+// An emulated USB bus whose time advances only while a driver waits; the target defines the device's data.
 #pragma once
 
 #include <algorithm>
@@ -25,7 +25,7 @@ public:
     bool control(const usb::VendorRequest& /*request*/) noexcept override { return true; }
     Instant now() noexcept override { return time; }
 
-    // Of no more than 64 events, like the bus of this machine.
+    // At most 64 events, like the emulated bus of the tests.
     void push(usb::BusEventKind kind, std::span<const std::byte> bytes = {}) {
         usb::BusEvent e;
         e.kind = kind;

@@ -1,7 +1,7 @@
-# Fuzz targets of gui: the files of its parsers alone, so that they are fuzzed where no window is built.
+# Fuzz targets of gui: only the sources of its parsers, so that they are fuzzed in builds without a window.
 find_package(nlohmann_json REQUIRED)
 find_package(tomlplusplus REQUIRED)
-# toml++ as it is installed: in its headers alone the undefined behaviour sanitizer stops at white space beyond Latin-1.
+# The installed toml++ library: with its headers alone the undefined-behaviour sanitizer stops at white space beyond Latin-1.
 tact_fuzz(desk_fuzz SOURCES fuzz/desk_fuzz.cpp ${CMAKE_SOURCE_DIR}/gui/window/window_state.cpp
         ${CMAKE_SOURCE_DIR}/gui/base/toml_keys.cpp
     USES base SYSTEM tomlplusplus::tomlplusplus)

@@ -1,5 +1,5 @@
-// What the window and the launcher leave for each other, of any bytes: the same ones are found as what is asked and as what was
-// refused. It is gone then, whatever it was.
+// The scene-switch files between window and launcher with arbitrary bytes: requests and refusals survive write and read.
+// Reading a file removes it, whatever its content.
 #include <algorithm>
 #include <cstring>
 #include <filesystem>
@@ -14,7 +14,7 @@ namespace {
 
 bool control(char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7F; }
 
-// In memory: the files are synced.
+// In memory, because the files are synced.
 struct Folder {
     std::filesystem::path path;
     Folder() {

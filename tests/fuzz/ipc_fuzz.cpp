@@ -1,4 +1,4 @@
-// What another process says first: a region's header and the two messages of a link. The first byte picks.
+// The first messages of another process: a region's header and the two messages of a link. The first byte selects.
 #include <algorithm>
 #include <cstdlib>
 #include <cstring>
@@ -13,7 +13,7 @@ namespace {
 constexpr RegionIdentity kIdentity{"tact.fuzz", 0x1234, 4096};
 
 Input seed(std::byte kind, const Input& rest) {
-    Input out(rest.size() + 1);  // sized once: g++ 14 at -O3 sees a wrong delete behind a push_back
+    Input out(rest.size() + 1);  // sized once: g++ 14 at -O3 reports a wrong delete after a push_back
     out[0] = kind;
     std::copy(rest.begin(), rest.end(), out.begin() + 1);
     return out;
@@ -46,7 +46,7 @@ bool run(std::span<const std::byte> input) {
             Judged j{};
             std::memcpy(&j, rest.data(), std::min(rest.size(), sizeof j));
             const std::string refusal = refuse_region_header(j.header, j.ready, j.file_bytes, kIdentity);
-            require(refusal.size() < 400);  // what is shown of a stranger's text is bounded
+            require(refusal.size() < 400);  // untrusted text in messages has bounded length
             for (const char c : refusal) require(c >= ' ' && c <= '~');
             if (!refusal.empty()) return false;
             require(j.header.layout_hash == kIdentity.layout_hash && j.header.generation != 0);

@@ -1,5 +1,4 @@
-// Maps from anywhere. The first byte picks the format; what is accepted is a grid whose parts fit together
-// and whose numbers are finite.
+// Maps from anywhere. The first byte selects the format. An accepted map has a consistent grid and finite values.
 #include <cmath>
 #include <string>
 

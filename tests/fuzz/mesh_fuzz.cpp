@@ -1,4 +1,4 @@
-// Meshes from anywhere. The first byte picks the format; what is accepted has its indices in range and finite
+// Meshes from anywhere. The first byte selects the format. An accepted mesh has its indices in range and finite
 // numbers, and can be simplified.
 #include <cmath>
 #include <string>

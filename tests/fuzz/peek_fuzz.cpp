@@ -1,7 +1,6 @@
-// A look at what a scene is, into a file of any bytes. Whoever reads all of a file finds no scene that a look did not find, and
-// no other one.
+// Reading only the kind of a scene from a file of arbitrary bytes: it must agree with a complete read of the file.
 //
-// First byte   odd: lengths and checksums of the header, the table and META are put right first, so that the rest is reached
+// First byte   odd: fix lengths and checksums of the header, the table and META first, so that the later code is reached
 #include <fcntl.h>
 #include <sys/mman.h>
 #include <unistd.h>
@@ -86,8 +85,8 @@ std::vector<Input> seeds() {
     surface.body_count = 0;
     SceneWriter alone;
     write_meta(alone, surface, "");
-    alone.add({'S', 'U', 'R', 'F'}, 1, 0, Input(3));  // of others only their number counts
-    alone.add(SceneMeta::kTag, 2, 1, Input(3));       // nobody's, in a format that grows
+    alone.add({'S', 'U', 'R', 'F'}, 1, 0, Input(3));  // of the other sections only the count matters
+    alone.add(SceneMeta::kTag, 2, 1, Input(3));       // an unknown section of a newer format
     std::vector<Input> all;
     for (const Input& scene : {sample::scene().to_bytes(), alone.to_bytes()})
         for (const std::byte first : {std::byte{0}, std::byte{1}}) {

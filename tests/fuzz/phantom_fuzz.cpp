@@ -1,6 +1,5 @@
-// What an arm's board, or anything that says it is one, sends; and what a board gets. The first byte picks: 0
-// is bytes as they come; otherwise the rest gets a head and a right checksum, so that what lies behind is
-// reached.
+// Packets from an arm's board, or any device with its identifiers, and packets to a board. The first byte selects: 0 uses
+// the bytes unchanged; otherwise the rest gets a header and a valid checksum, so that the later code is reached.
 #include <algorithm>
 
 #include "hal/phantom/amplifier.hpp"
@@ -22,7 +21,7 @@ std::uint32_t crc_of(std::span<const std::byte> bytes) {
     return ~c;
 }
 
-// What is accepted is what its own encoding is, to the bit.
+// An accepted packet encodes to the same bytes again.
 template <class Packet>
 bool faithful(std::span<const std::byte> bytes) {
     Packet packet{};

@@ -1,6 +1,6 @@
-// What an arm's board, or anything that says it is one, does to the driver over a whole connection: any bytes,
-// any size, states of any content with a right checksum, failures of the bus, in any order. Whatever comes, no
-// current flows beyond the limits, none without enable, and no pose is anything but finite.
+// A whole connection of the driver with an arm's board, or any device with its identifiers: any bytes, any size, states of
+// any content with a valid checksum, failures of the bus, in any order. No current may exceed the limits or flow
+// without enable, and every pose is finite.
 #include "hal/phantom/phantom_usb.hpp"
 #include "tests/fuzz/fuzz.hpp"
 #include "tests/fuzz/fuzz_usb_bus.hpp"
@@ -51,7 +51,7 @@ public:
     std::uint32_t sequence = 0, seen = 0;
 };
 
-// A good state with everything from the input that a checksum does not forbid.
+// A valid state with all other fields from the input.
 State shaped(FuzzBus& bus, std::span<const std::byte> bytes) {
     State s = bus.next();
     const auto at = [&](std::size_t i) { return i < bytes.size() ? static_cast<unsigned>(bytes[i]) : 0U; };
@@ -81,7 +81,7 @@ bool run(std::span<const std::byte> input) {
     DeviceSample sample;
     std::uint64_t heartbeat = 0;
     std::uint64_t taken = 0;
-    // Of a record: what it is, how many bytes follow, what time passes.
+    // Of a record: its kind, the number of bytes that follow, the time that passes.
     while (input.size() >= 3 && heartbeat < 2000) {
         const auto what = static_cast<unsigned>(input[0]);
         const auto length = std::min<std::size_t>(static_cast<std::size_t>(input[1]), input.size() - 3);
@@ -99,7 +99,7 @@ bool run(std::span<const std::byte> input) {
             case 3:
                 bus.push(BusEventKind::packet, encode(shaped(bus, bytes)));
                 break;
-            default:  // a quiet stretch of good states, so that the calibration gets done
+            default:  // a series of valid states, so that the calibration completes
                 for (unsigned i = 0; i < 8; ++i) bus.push(BusEventKind::packet, encode(bus.next()));
         }
         device.pump().round(Duration{0});
@@ -129,7 +129,8 @@ std::vector<Input> seeds() {
         to.insert(to.end(), bytes.begin(), bytes.end());
     };
     std::vector<Input> all(3);
-    for (unsigned i = 0; i < 80; ++i) record(all[0], i < 70 ? 4 : 4 + 64, 10, {});  // calibrated, then on
+    for (unsigned i = 0; i < 80; ++i)
+        record(all[0], i < 70 ? 4 : 4 + 64, 10, {});  // first calibrated, then enabled
     all[1] = all[0];
     const std::array<std::byte, 18> shape{std::byte{3}, std::byte{130}, std::byte{120}, std::byte{128}};
     for (unsigned i = 0; i < 20; ++i) record(all[1], 2 + 64, 10, shape);

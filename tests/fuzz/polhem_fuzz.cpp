@@ -1,5 +1,5 @@
-// Reports from whatever says that it is a Haptikfabriken board, and what the bus made of them gives the
-// driver. Pieces of the input are reports: a byte of size, then so many bytes; size 255: 11 ms of silence.
+// The driver with reports from any device with the identifiers of a Haptikfabriken board. The input is a series of
+// reports: a byte of size, then that many bytes; size 255: 11 ms of silence.
 #include <algorithm>
 #include <array>
 #include <memory>
@@ -60,7 +60,7 @@ bool run(std::span<const std::byte> input) {
     for (std::size_t n = 0; !gone && n <= input.size(); ++n) {
         c.enable = n > 0;
         c.current_ma.fill(n % 2 == 0 ? 30000 : -500);
-        // Now and then the servo stands still.
+        // The servo pauses from time to time.
         if (n % 16 < 12) {
             ++c.sequence;
             ++c.heartbeat;

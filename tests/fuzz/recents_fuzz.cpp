@@ -1,4 +1,4 @@
-// A list of scenes used before, of any bytes: refused in words, or absolute paths that are written and read again as the same.
+// A list of recent scenes with arbitrary bytes: refused with a message, or absolute paths that survive write and read.
 #include <cstring>
 
 #include "gui/window/recent_scenes.hpp"
@@ -22,7 +22,7 @@ bool run(std::span<const std::byte> input) {
         for (const char c : s.path) require(static_cast<unsigned char>(c) >= 0x20 && c != 0x7F);
     }
     require(read_recents_text(recents_text(scenes), "written") == scenes);
-    // With one more it is still a list, that one in front.
+    // With one more scene it is still a list, with that scene first.
     const auto more = with_recent(scenes, {"/new.tact", 1});
     require(more.size() <= kRecentsMost && more.front().path == "/new.tact");
     require(read_recents_text(recents_text(more), "written") == more);

@@ -1,5 +1,5 @@
-// Runs a fuzz target without a fuzzer: over files that are named (a crash that was found), or over its seeds,
-// every truncation of them and seeded mutations. --seeds DIR writes the seeds for the fuzzer to start from.
+// Runs a fuzz target without a fuzzer: on given files (a crash that was found), or on its seeds, every truncation of
+// them and random mutations. --seeds DIR writes the seeds for the fuzzer to start from.
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
@@ -34,8 +34,8 @@ void write_seeds(const std::filesystem::path& folder, const std::vector<Input>& 
     }
 }
 
-// Flips, overwrites with telling numbers, cuts, repeats and crosses pieces: what breaks readers of binary
-// files.
+// Flips bits, overwrites with special numbers, cuts, repeats and splices pieces: typical problems of binary
+// readers.
 Input mutated(Input input, const std::vector<Input>& seeds, std::mt19937_64& random) {
     const auto below = [&random](std::size_t n) {
         return n == 0 ? 0 : static_cast<std::size_t>(random() % n);
@@ -92,8 +92,7 @@ int main(int argc, char** argv) {
     std::size_t runs = 0;
     for (const Input& seed : seeds) {
         if (!tact::fuzz::run(seed)) {
-            std::printf("seed %zu is refused: it has to be fixed\n",
-                        static_cast<std::size_t>(&seed - seeds.data()));
+            std::printf("seed %zu is refused; fix it\n", static_cast<std::size_t>(&seed - seeds.data()));
             return 1;
         }
         const std::size_t stride = std::max<std::size_t>(1, seed.size() / 256);

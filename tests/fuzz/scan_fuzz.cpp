@@ -1,5 +1,5 @@
-// What we parse of scans ourselves. The first byte picks: headers of NRRD, MetaImage and NIfTI with the voxels behind
-// them, names of a stack of pictures, a list of label names. What is accepted is read and resampled.
+// Our own parsers for scans. The first byte selects: headers of NRRD, MetaImage and NIfTI with their voxels, names of an
+// image stack, a list of label names. Accepted scans are read and resampled.
 #include <cmath>
 
 #include "prep/drilling/import_bone.hpp"

@@ -1,6 +1,6 @@
-// Baked scenes. The first byte picks: 0 is a whole file as it comes; otherwise one section, put into a file
-// whose checksums are right, so that its reader is reached. What is accepted is then used as the programs use
-// it.
+// Baked scenes. The first byte selects: 0 uses the input as a whole file; otherwise the input is one section of a file with
+// valid checksums, so that its reader is reached. Accepted scenes are used as the programs use
+// them.
 #include <cstdlib>
 #include <cstring>
 
@@ -43,7 +43,7 @@ std::size_t accepted(Read&& read) {
     return 0;
 }
 
-// The surface that every forest is read for.
+// The surface for which every forest is read.
 struct Terrain {
     TriangleMesh mesh = [] {
         TriangleMesh made;
@@ -79,7 +79,7 @@ void write_bone(SceneWriter& out) {
     write_distance_field(out, 0, {1, {3, 2, 2}, 4e-3, Vec3::Zero(), 1e-4, 4e-3, quanta});
 }
 
-// One good section per tag.
+// One valid section per tag.
 const std::vector<Input>& good_sections() {
     static const std::vector<Input> sections = [] {
         SceneWriter scene = sample::scene();
@@ -174,7 +174,7 @@ void use_forest(const SceneFile& file) {
     }
 }
 
-// Over the octahedron, so that whatever is accepted can be stepped.
+// Steps every accepted tool over the octahedron.
 void use_tool(const SceneFile& file) {
     const TouchTool tool = read_touch_tool(file);
     require(tool.normal.size() == tool.points() && tool.cover_m.size() == tool.points());
@@ -207,7 +207,7 @@ void use_bone(const SceneFile& file) {
     (void)bone.at(n[0] - 1, n[1] - 1, n[2] - 1);
 }
 
-// Over the bone of write_bone().
+// Uses labels with the bone of write_bone().
 void use_labels(const SceneFile& file) {
     const BoneBricks bricks{{10, 3, 2}, 1e-3, Vec3::Zero()};
     const BoneLabelsView labels = read_bone_labels(file, bricks);
@@ -226,7 +226,7 @@ bool run(std::span<const std::byte> input) {
     if (input.empty()) return false;
     const auto kind = static_cast<std::size_t>(input[0]) % (1 + std::size(kTags));
     const auto rest = input.subspan(1);
-    Input made(rest.begin(), rest.end());  // at an address as a mapped file has it
+    Input made(rest.begin(), rest.end());  // at an address like that of a mapped file
     if (kind > 0) {
         SceneWriter out;
         for (std::size_t i = 0; i < std::size(kTags); ++i)

@@ -1,4 +1,4 @@
-// A stage file of any bytes: refused in words, or a stage that is written and read again as the same.
+// A stage file of arbitrary bytes: refused with a message, or a stage that survives write and read.
 #include "gui/stereo/stage_file.hpp"
 #include "ipc/base/error.hpp"
 #include "tests/fuzz/fuzz.hpp"
@@ -17,8 +17,8 @@ bool run(std::span<const std::byte> input) {
     require(s.eyes.apart_m >= 0.0 && s.eyes.apart_m <= 0.2 && s.latency_s >= 0.0 && s.latency_s <= 0.2);
     require(s.T_screen_world.finite() && std::abs(s.T_screen_world.q.norm() - 1.0) < 1e-9);
     require(s.monitors.size() <= 2 && s.width_px >= 320 && s.height_px <= 16384);
-    // What was accepted can be written, and is then a fixed point. Rounding to the nanometre may tip a screen that is just
-    // possible: that is refused in words.
+    // An accepted stage can be written, and is then a fixed point. Rounding to a nanometre may make a screen that is barely
+    // valid invalid; that is refused with a message.
     try {
         const StageSettings again = read_stage_text(stage_text(s), "written");
         require(again.mode == s.mode && again.in_workspace == s.in_workspace && again.monitors == s.monitors);

@@ -1,5 +1,5 @@
-// Structures from anywhere. The first byte picks the format; what is accepted is a structure whose parts fit
-// together and whose numbers are finite.
+// Structures from anywhere. The first byte selects the format. An accepted structure is consistent and has finite
+// numbers.
 #include <cmath>
 #include <string>
 

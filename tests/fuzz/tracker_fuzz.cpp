@@ -1,5 +1,5 @@
-// Frames of the tracker's bus. The first byte: format, sensors, and whether checksums are fixed, so that
-// what lies behind them is met as well; then frames of 4 bytes (identifier, kind, length) and their payload.
+// Frames of the tracker's bus. The first byte: format, sensors, and whether checksums are fixed, so that the later code
+// is reached; then frames of 4 bytes (identifier, kind, length) and their payload.
 #include <cmath>
 
 #include "hal/tracker/can_crc.hpp"
@@ -60,7 +60,7 @@ bool run(std::span<const std::byte> input) {
         require(fix.T_tracker_sensor.p_m.norm() <= settings.reach_m);
         require(fix.quality >= 0.0 && fix.quality <= 1.0 && fix.distortion >= 0.0 && fix.distortion <= 1.0);
     }
-    // A frame is refused once at most, but for halves: a SYNC closes those of all sensors.
+    // A frame is refused at most once, except that a SYNC discards the half frames of all sensors.
     require(fixes + assembler.refused().total() <= (1 + kTrackerSensorsMax) * frames);
     return fixes > 0;
 }

@@ -1,6 +1,6 @@
-// Gives the second emulated processor its turn: QEMU runs one after the other, by counted instructions, and before
-// version 8.1 the first one keeps its turn for as long as it has something to do, unless it says PAUSE. The kernel waits
-// without one until the second processor is up, so that it never comes up.
+// Makes QEMU schedule the second emulated processor: with instruction counting QEMU runs the processors in turn, and before
+// version 8.1 the first one keeps running as long as it has work, unless it executes PAUSE. The kernel waits without PAUSE
+// for the second processor, so it would never start.
 //
 // usage: hil_give_way PERIOD_US. As root, on core 0; never ends.
 #include <immintrin.h>
@@ -21,7 +21,7 @@ int main(int argc, char** argv) {
     CPU_ZERO(&cores);
     CPU_SET(0, &cores);
     sched_param param{};
-    param.sched_priority = 98;  // above whatever computes
+    param.sched_priority = 98;  // above all computing threads
     if (sched_setaffinity(0, sizeof cores, &cores) != 0 || sched_setscheduler(0, SCHED_FIFO, &param) != 0 ||
         mlockall(MCL_CURRENT | MCL_FUTURE) != 0) {
         std::perror("hil_give_way");

@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
-"""Inside the machine: runs the checks one after the other. guest.py BIN SECONDS CHECK...
+"""Runs the checks in the machine, one after the other. guest.py BIN SECONDS CHECK...
 
-Per check: /out/NAME.log with what it said, and a line in /out/results.tsv: passed, failed or skipped, name, seconds,
-last words. A check is any program; exit code 0 passed, 77 skipped, else failed, as is one that needs over SECONDS.
+Per check: /out/NAME.log with its output, and a line in /out/results.tsv: passed, failed or skipped, name, seconds,
+last output line. A check is any program; exit code 0 passed, 77 skipped, otherwise failed, also after SECONDS.
 """
 import os
 import re
@@ -10,7 +10,7 @@ import subprocess
 import sys
 import time
 
-# Of the kernel's own log: what it says only when something broke. Late wake-ups of an emulated processor are not.
+# Messages of the kernel that indicate a real defect. Late wake-ups of an emulated processor do not.
 BROKEN = re.compile(r"BUG: (?!.*lockup)|Oops|general protection|scheduling while atomic|refcount_t:|kernel NULL pointer")
 ODD = re.compile(r"WARNING:|\bstall|lockup|throttling")
 
@@ -26,7 +26,7 @@ def run_check(path, bin_dir, limit_s):
                                   ).returncode
         except subprocess.TimeoutExpired:
             code = -1
-            out.write(f"not done after {limit_s} s\n")
+            out.write(f"timed out after {limit_s} s\n")
         except OSError as e:
             code = -1
             out.write(f"cannot be run: {e}\n")
@@ -42,7 +42,7 @@ def kernel_log():
     lines = text.splitlines()
     bad = [line for line in lines if BROKEN.search(line)]
     odd = [line for line in lines if ODD.search(line)]
-    words = (bad + odd + ["the kernel complained of nothing"])[0]
+    words = (bad + odd + ["no kernel error"])[0]
     return ("failed" if bad else "passed"), "kernel_log", 0.0, words
 
 

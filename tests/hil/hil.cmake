@@ -1,4 +1,4 @@
-# Programs that only tests/hil runs, in its machine.
+# Programs that run only in the virtual machine of tests/hil.
 tact_program(hil_lines_story SOURCES hil/lines_story.cpp scenario/rig.cpp USES base shm topics scene launch emu_lines)
 target_compile_definitions(hil_lines_story PRIVATE TACT_RT_PROGRAM="$<TARGET_FILE:tact-rt>")
 add_dependencies(hil_lines_story tact-rt)

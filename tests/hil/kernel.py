@@ -1,6 +1,6 @@
-"""Debian's PREEMPT_RT kernel and the few modules that the machine needs, from its package into the build folder.
+"""Extracts Debian's PREEMPT_RT kernel and the modules that the machine needs from its package into the build folder.
 
-Nothing is installed: the package is downloaded, unpacked beside the build, and thrown away; what is kept is small.
+Nothing is installed: the package is downloaded, unpacked beside the build, and removed; the extracted files are small.
 """
 import glob
 import lzma
@@ -10,23 +10,23 @@ import shutil
 import subprocess
 import tempfile
 
-# What the machine loads, in this order; what they depend on comes by itself.
+# Modules in load order; their dependencies are added automatically.
 MODULES = ("virtio_pci 9pnet_virtio 9p overlay virtio_rng "  # the host's files
-           "dummy_hcd libcomposite usb_f_fs configfs "       # a USB device out of a program
+           "dummy_hcd libcomposite usb_f_fs configfs "       # an emulated USB device
            "can can-dev can-raw vcan "                       # a CAN interface
            "uhid hid-cp2112 "                                # a USB adapter with eight GPIO lines
            "msr").split()                                    # counter of system management interrupts
-META = "linux-image-rt-amd64"  # stands for the newest real-time kernel of the installed Debian
-SLOW_S = 150                   # longest of any single command here
+META = "linux-image-rt-amd64"  # depends on the newest real-time kernel of the installed Debian
+SLOW_S = 150                   # longest duration of a command here
 PATIENCE = ("-o", "Acquire::http::Timeout=20", "-o", "Acquire::Retries=1")
 
 
 class NotToBeHad(Exception):
-    """Why this machine cannot run the real-time kernel, in one line."""
+    """The reason why the real-time kernel is not available, in one line."""
 
 
 def _said(*command, cwd=None):
-    """(it worked, what it printed) of a command that must not hang."""
+    """Runs a command with a time limit; returns (success, output)."""
     env = dict(os.environ, LC_ALL="C", PATH=os.environ.get("PATH", "") + ":/usr/sbin:/sbin")
     try:
         done = subprocess.run(command, cwd=cwd, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
@@ -39,7 +39,7 @@ def _said(*command, cwd=None):
 
 
 def _package():
-    """The package of the kernel itself: TACT_HIL_KERNEL or what META depends on; None where apt knows none."""
+    """The package of the kernel: TACT_HIL_KERNEL or the dependency of META; None if apt has none."""
     name = os.environ.get("TACT_HIL_KERNEL", META)
     if re.fullmatch(r"linux-image-\d+\.\d+\.\d\S*", name):
         return name
@@ -55,19 +55,19 @@ def _update_lists():
 
 
 def _download(package, folder):
-    """(path of the package or None, what apt-get said)"""
+    """Returns (path of the package or None, output of apt-get)."""
     good, text = _said("apt-get", "download", "-q", *PATIENCE, package, cwd=folder)
     debs = glob.glob(os.path.join(folder, "*.deb"))
     return (debs[0] if good and debs else None), text
 
 
 def _unpack(deb, folder, kept):
-    """vmlinuz, the modules and their list in load order, out of the package into the folder `kept`."""
+    """Extracts vmlinuz, the modules and their list in load order from the package into the folder `kept`."""
     tree = os.path.join(folder, "tree")
     good, text = _said("dpkg", "-x", deb, tree)
     if not good:
         raise NotToBeHad(f"the kernel package cannot be unpacked: {text.strip()}")
-    if not os.path.isdir(os.path.join(tree, "lib")):  # Debian 13 ships /usr/lib alone
+    if not os.path.isdir(os.path.join(tree, "lib")):  # Debian 13 ships only /usr/lib
         os.symlink("usr/lib", os.path.join(tree, "lib"))
     version = os.listdir(os.path.join(tree, "lib/modules"))[0]
     _said("depmod", "-b", tree, version)
@@ -101,11 +101,11 @@ def _is_whole(kept):
 
 
 def get(cache):
-    """Folder with vmlinuz, modules.list and modules/; made at the first call, then kept. Raises NotToBeHad."""
+    """Returns the folder with vmlinuz, modules.list and modules/; created by the first call. Raises NotToBeHad."""
     os.makedirs(cache, exist_ok=True)
-    why = f"apt knows no {os.environ.get('TACT_HIL_KERNEL', META)}"
+    why = f"apt has no package {os.environ.get('TACT_HIL_KERNEL', META)}"
     for attempt in range(2):
-        if attempt == 1:  # the lists may be absent, or older than the archive
+        if attempt == 1:  # the package lists may be absent or outdated
             _update_lists()
         package = _package()
         if package is None:

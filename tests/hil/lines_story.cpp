@@ -1,10 +1,10 @@
-// tact-rt as it is shipped, with safety lines on a CP2112 adapter by the kernel's own driver and libgpiod: every stop leads
-// to zero force, latched with its cause, released by nothing but a person; a servo that stands loses its enable line.
+// tact-rt as shipped, with safety lines on a CP2112 adapter through the kernel's own driver and libgpiod: every stop leads
+// to zero force, latched with its cause, cleared only by a person; a stopped servo loses its enable line.
 //
 // usage: hil_lines_story [FIFO_PRIORITY CORE [counted]]. As root, on a kernel with uhid and hid-cp2112. "counted": the
-//        machine's clock counts its instructions, so that no host can make anything in it late; then the servo's silence
-//        may be 5 ms, as deployed, and the enable line of a starved servo has to be low within 10 ms.
-// Exit  0 all is as it has to be, 1 something is not (the last line says what), 77 the kernel has no uhid
+//        machine's clock counts instructions, so that no host delays it; then the supervisor's limit is 5 ms, as
+//        deployed, and the enable line of a starved servo must be low within 10 ms.
+// Exit  0 passed, 1 failed (the last line gives the reason), 77 the kernel has no uhid
 #include <sched.h>
 #include <signal.h>
 #include <sys/mman.h>
@@ -23,13 +23,13 @@
 namespace tact::scenario {
 namespace {
 
-// The wiring of this story.
+// The wiring in this check.
 enum Pin : unsigned { kStopA, kStopB, kPedal, kAmplifier, kEnable, kWatchdog, kLamp };
 
-// Patient: a busy host's processor stands still now and then.
+// Large limits: a busy host pauses its processor from time to time.
 constexpr const char* kPatient = R"([servo]
 period_us = 1000.0
-model_us_max = 100000.0
+model_us_max = 900.0
 [safety]
 sample_age_us_max = 1e6
 supervisor_us_max = 5e6
@@ -37,11 +37,11 @@ supervisor_us_max = 5e6
 constexpr const char* kCounted = R"([servo]
 period_us = 2000.0
 spin_us = 0.0
-model_us_max = 100000.0
+model_us_max = 900.0
 [safety]
 sample_age_us_max = 1e6
 )";
-constexpr double kEnableLowMs = 10.0;  // after a hog began
+constexpr double kEnableLowMs = 10.0;  // after the busy thread started
 constexpr const char* kLines = R"([lines]
 look_us = 2000.0
 driver = "gpio"
@@ -60,7 +60,7 @@ age_us_max = 5e6
 
 void claim(bool good, const std::string& what) {
     if (good) return;
-    std::printf("not so: %s\n", what.c_str());
+    std::printf("FAILED: %s\n", what.c_str());
     std::exit(1);
 }
 
@@ -78,16 +78,16 @@ public:
 
     void start() {
         controller_.emplace(rig_, more_, config_);
-        claim(watch_.attach(), "a controller comes up; it said: " + controller_->said());
+        claim(watch_.attach(), "a controller starts; its log: " + controller_->said());
         to_force("at the start");
     }
 
-    // One way to stop.
+    // One kind of stop.
     struct Stop {
         const char* name;
         std::vector<Pin> opens;
         RunReason reason;
-        bool both_after;  // closed again it is believed only after both contacts were open
+        bool both_after;  // closed contacts are accepted only after both were open
     };
     void stops(const Stop& stop) {
         const Instant opened = Monotonic::now();
@@ -95,22 +95,22 @@ public:
         faults(stop.name, stop.reason, opened);
         claim(until([&] { return !adapter_.level(kEnable); }), name(stop.name) + "the enable line goes low");
         claim(until([&] { return !adapter_.level(kAmplifier); }), name(stop.name) + "the amplifier is off");
-        // As soon as the contacts differ for long enough, one alone is a fault of the wiring.
+        // Once the contacts have differed for long enough, a single open contact is a wiring fault.
         if (stop.both_after) {
             claim(until([&] {
                       return watch_.health().lines_reason == static_cast<int>(RunReason::stop_channels);
                   }),
-                  name(stop.name) + "the channels are seen to disagree");
+                  name(stop.name) + "the channels are reported to disagree");
             close_contacts();
-            claim(watch_.cycles_pass(200), "the loop goes on");
+            claim(watch_.cycles_pass(200), "the loop continues");
             claim(command(visual_, watch_, CommandKind::reset_fault) == CommandResult::refused_state,
-                  name(stop.name) + "one contact closed again is not believed");
+                  name(stop.name) + "a single contact that closes again is not accepted");
             adapter_.set(kStopA, false);
             adapter_.set(kStopB, false);
             claim(until([&] {
                       return watch_.health().lines_reason == static_cast<int>(RunReason::emergency_stop);
                   }),
-                  name(stop.name) + "both contacts are seen open");
+                  name(stop.name) + "both contacts are reported open");
         }
         close_contacts();
         claim(until([&] { return watch_.health().lines == static_cast<int>(LinesShown::waiting); }),
@@ -124,20 +124,20 @@ public:
         adapter_.unplug();
         faults("adapter unplugged", RunReason::lines_lost, pulled);
         claim(command(visual_, watch_, CommandKind::reset_fault) == CommandResult::refused_state,
-              "without its adapter nothing is reset");
+              "a reset without the adapter is refused");
         adapter_.plug();
         claim(until([&] { return watch_.health().lines == static_cast<int>(LinesShown::waiting); }),
-              "the adapter is found again");
-        claim(!adapter_.level(kEnable), "the enable line is low after the adapter came back");
+              "the adapter is found again after the replug");
+        claim(!adapter_.level(kEnable), "the enable line is low after the replug");
         stays_off("adapter unplugged");
         recovers("adapter unplugged");
     }
 
-    // Above and below everything is as ever; only the servo gets no time.
+    // All other threads run normally; only the servo gets no processor time.
     void hogged() {
         void* shared =
             mmap(nullptr, sizeof(std::int64_t), PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
-        claim(shared != MAP_FAILED, "memory is to be had");
+        claim(shared != MAP_FAILED, "shared memory is available");
         auto* begun_ns = new (shared) std::atomic<std::int64_t>(0);
         const pid_t hog = fork();
         if (hog == 0) {
@@ -149,8 +149,8 @@ public:
             if (sched_setaffinity(0, sizeof set, &set) != 0 || sched_setscheduler(0, SCHED_FIFO, &param) != 0)
                 _exit(1);
             begun_ns->store(to_ns(Monotonic::now()));
-            // QEMU with a counted clock gives the other processor its turn at a PAUSE; without one the whole
-            // machine but this loop would stand still, which no hog does to a real one.
+            // QEMU with a counted clock switches to the other processor at a PAUSE; without it this loop would stop the whole
+            // machine, which a busy thread on real hardware does not.
             for (;;) {
                 for (int i = 0; i < 5000; ++i) asm volatile("");
                 __builtin_ia32_pause();
@@ -164,20 +164,20 @@ public:
         const bool ran = waitpid(hog, &status, WNOHANG) == 0;
         kill(hog, SIGKILL);
         if (ran) waitpid(hog, &status, 0);
-        claim(ran, "the hog ran on the servo's core at its priority");
-        claim(low, "a servo that gets no time loses its enable line");
+        claim(ran, "the busy thread runs on the servo's core at its priority");
+        claim(low, "a starved servo loses its enable line");
         std::printf(
-            "hog at the servo's priority: enable low after %.1f ms (the servo's silence may be %s ms here), "
+            "busy thread at the servo's priority: enable low after %.1f ms (supervisor limit %s ms), "
             "%llu edges of the watchdog line, cycle %llu\n",
             ms, counted_ ? "5" : "5000", static_cast<unsigned long long>(edges),
             static_cast<unsigned long long>(cycle));
-        claim(until([&] { return watch_.state() == RunState::fault; }), "the drop is a fault");
-        std::printf("  and then: %s\n", run_reason_text(static_cast<RunReason>(watch_.health().reason)));
+        claim(until([&] { return watch_.state() == RunState::fault; }), "the dropped enable line is a fault");
+        std::printf("  reason: %s\n", run_reason_text(static_cast<RunReason>(watch_.health().reason)));
         claim(watch_.health().reason == static_cast<int>(RunReason::supervisor),
               "the supervisor is the cause");
         claim(!counted_ || ms <= kEnableLowMs, "a starved servo's enable line is low within 10 ms");
-        stays_off("hog");
-        recovers("hog");
+        stays_off("busy thread");
+        recovers("busy thread");
     }
 
     void killed() {
@@ -185,7 +185,8 @@ public:
         claim(controller_->child().wait(std::chrono::minutes(1)).has_value(), "a killed controller ends");
         const std::uint64_t edges = adapter_.edges(kWatchdog);
         ::usleep(200'000);
-        claim(adapter_.edges(kWatchdog) == edges, "the watchdog line stands when the controller is dead");
+        claim(adapter_.edges(kWatchdog) == edges,
+              "the watchdog line stops toggling when the controller is dead");
         controller_.reset();
     }
 
@@ -197,12 +198,12 @@ public:
             const auto said = run_to_end(rig_, rt_program(),
                                          {rig_.scene().string(), "--check", "--config", config.string()});
             claim(said && said->ending.number != 0 && said->text.find(wanted) != std::string::npos,
-                  "tact-rt --check names " + wanted + "; it said: " + (said ? said->text : ""));
+                  "tact-rt --check reports " + wanted + "; its output: " + (said ? said->text : ""));
         };
-        says("chip = \"cp2112_gpio\"", "chip = \"other\"", "there are only gpiochip");
-        says("lamp = \"6\"", "lamp = \"11\"", "taking line \"11\"");
-        says("lamp = \"6\"", "lamp = \"5\"", "two meanings");
-        says("lamp = \"6\"", "lamp = \"STATE\"", "there is no such line");
+        says("chip = \"cp2112_gpio\"", "chip = \"other\"", "the chips present are gpiochip");
+        says("lamp = \"6\"", "lamp = \"11\"", "requesting line \"11\"");
+        says("lamp = \"6\"", "lamp = \"5\"", "assigned to two keys");
+        says("lamp = \"6\"", "lamp = \"STATE\"", "the chip has no such line");
     }
 
 private:
@@ -212,29 +213,29 @@ private:
     }
     void to_force(const std::string& when) {
         claim(bring_to_force(visual_, watch_),
-              when + ": a force comes; the controller said: " + controller_->said());
+              when + ": a force is on; the controller's log: " + controller_->said());
         claim(until([&] { return adapter_.level(kEnable) && adapter_.level(kAmplifier); }),
-              when + ": enable line and amplifier are on; the controller said: " + controller_->said());
+              when + ": enable line and amplifier are on; the controller's log: " + controller_->said());
         claim(until([&] { return adapter_.level(kLamp); }), when + ": the lamp is lit");
         const std::uint64_t edges = adapter_.edges(kWatchdog);
         claim(until([&] { return adapter_.edges(kWatchdog) > edges + 10; }),
-              when + ": the watchdog line moves");
+              when + ": the watchdog line toggles");
     }
     void faults(const std::string& what, RunReason reason, Instant since) {
         claim(until([&] {
                   visual_.frame();
                   return watch_.state() == RunState::fault;
               }),
-              name(what) + "it is a fault");
+              name(what) + "the stop is a fault");
         const HealthTopic h = watch_.health();
-        claim(h.reason == static_cast<int>(reason),
-              name(what) + "its cause is another: " + run_reason_text(static_cast<RunReason>(h.reason)));
+        claim(h.reason == static_cast<int>(reason), name(what) + "its cause is as expected, not: " +
+                                                        run_reason_text(static_cast<RunReason>(h.reason)));
         claim(watch_.force_n() == 0.0, name(what) + "the force is zero");
         say_how_fast(what, since);
     }
-    // From the trace: the first cycle in fault, and whether the force was zero in that very one.
+    // From the trace: the first cycle in fault, and whether the force was zero in that very cycle.
     void say_how_fast(const std::string& what, Instant since) {
-        claim(watch_.cycles_pass(2), "the loop goes on");
+        claim(watch_.cycles_pass(2), "the loop continues");
         RingCursor at = watch_.region().trace.tail();
         at.next = at.next > 8000 ? at.next - 8000 : 1;
         TraceTopic t{};
@@ -248,30 +249,30 @@ private:
             if ((t.status & 0xFFU) != static_cast<unsigned>(RunState::fault)) continue;
             const bool zero =
                 t.force_world_n[0] == 0.0F && t.force_world_n[1] == 0.0F && t.force_world_n[2] == 0.0F;
-            claim(zero, name(what) + "force in a cycle with a fault");
+            claim(zero, name(what) + "zero force in each cycle with a fault");
             if (first == 0) {
                 first = t.cycle;
                 age_ms = static_cast<double>(t.taken_at_ns - to_ns(since)) * 1e-6;
             }
         }
-        claim(first != 0, name(what) + "the trace has the fault");
+        claim(first != 0, name(what) + "the trace contains the fault");
         std::printf(
-            "%-20s zero force in the cycle that saw it (0 later), %llu cycles and %.1f ms after the event\n",
+            "%-20s zero force in the cycle that detected it, %llu cycles and %.1f ms after the event\n",
             what.c_str(), static_cast<unsigned long long>(first - before), age_ms);
     }
-    // Released contacts alone: nothing comes back, nor by arming.
+    // With closed contacts alone everything stays off, even after an arm command.
     void stays_off(const std::string& what) {
-        claim(watch_.cycles_pass(100), "the loop goes on");
+        claim(watch_.cycles_pass(100), "the loop continues");
         claim(command(visual_, watch_, CommandKind::arm) == CommandResult::refused_state,
-              name(what) + "arming out of a fault is refused");
+              name(what) + "arming in state fault is refused");
         claim(watch_.state() == RunState::fault && watch_.force_n() == 0.0 && !adapter_.level(kEnable),
-              name(what) + "without a person all stays off");
+              name(what) + "without a person everything stays off");
     }
     void recovers(const std::string& what) {
         claim(command(visual_, watch_, CommandKind::reset_fault) == CommandResult::done,
               name(what) + "a person resets");
         claim(watch_.state() == RunState::ready && !adapter_.level(kEnable),
-              name(what) + "reset is to ready");
+              name(what) + "a reset leads to ready");
         to_force(what + ", armed again");
     }
 
@@ -290,7 +291,7 @@ int tell(const std::string& priority, const std::string& core, bool counted) {
     Story story(priority, core, counted);
     // The chip appears a moment after the adapter.
     claim(until([] { return access("/dev/gpiochip0", F_OK) == 0 || access("/dev/gpiochip1", F_OK) == 0; }),
-          "a gpiochip comes");
+          "a gpiochip appears");
     story.refusals();
     story.start();
     const Story::Stop stops[] = {
@@ -305,9 +306,10 @@ int tell(const std::string& priority, const std::string& core, bool counted) {
     if (priority != "0") story.hogged();
     story.killed();
     std::printf(
-        "emergency stop, broken wires, dead-man, unplugged twice%s: zero force in the cycle that saw it, "
+        "emergency stop, broken wires, dead-man, unplugged twice%s: zero force in the cycle that detected "
+        "it, "
         "latched, "
-        "re-armed by a person alone\n",
+        "re-armed only by a person\n",
         priority == "0" ? "" : ", servo starved");
     return 0;
 }

@@ -1,4 +1,4 @@
-"""What several checks share: tact-emu as a child, an arm's board as a client meets it, and tact-rt as a child."""
+"""Shared parts of checks: tact-emu as a child, a client of an arm's board, and tact-rt as a child."""
 import ctypes
 import errno
 import fcntl
@@ -13,18 +13,18 @@ import time
 import zlib
 
 PATIENCE_S = 100
-CLAIM, BULK, CLEAR_HALT = 0x8004550F, 0xC0185502, 0x80045515  # USBDEVFS_*; BULK does interrupt endpoints too
+CLAIM, BULK, CLEAR_HALT = 0x8004550F, 0xC0185502, 0x80045515  # USBDEVFS_*; BULK also does interrupt endpoints
 ACCEL = os.environ.get("TACT_HIL_ACCEL", "kvm")
-# Emulated, whatever is computed costs the host's time: no spinning, and 250 Hz where the rate is not what is looked at.
+# Emulated, computation costs host time: no spinning, and 250 Hz unless the check is about the rate.
 EMULATED = "[servo]\nspin_us = 0.0\nperiod_us = 4000.0\n"
-# A busy host makes KVM's guests late, and its watchdogs trip: there neither is a fault.
+# A busy host makes KVM's guests late and trips watchdogs; under KVM neither is an error.
 TIMING_LATCHES = "real" if ACCEL == "tcg" else "never"
-DEVICE_PRIORITY = 70  # of what stands for hardware: no program keeps it waiting
-STATE, COMMAND, QUERY, INFO = 1, 2, 3, 4                      # kinds of hal/phantom/PROTOCOL.md
+DEVICE_PRIORITY = 70  # of emulated hardware, above all programs
+STATE, COMMAND, QUERY, INFO = 1, 2, 3, 4                      # packet kinds of hal/phantom/PROTOCOL.md
 
 
 def soon(condition, patience_s, look_s=0.05):
-    """The first true value of condition(), or the last one of so many seconds."""
+    """Returns the first true value of condition(), or its value after patience_s."""
     end = time.monotonic() + patience_s
     while not (value := condition()) and time.monotonic() < end:
         time.sleep(look_s)
@@ -32,9 +32,9 @@ def soon(condition, patience_s, look_s=0.05):
 
 
 def wait_for(condition, what):
-    """The first true value of condition()."""
+    """Returns the first true value of condition(); fails after PATIENCE_S."""
     value = soon(condition, PATIENCE_S)
-    assert value, f"{what}: not within {PATIENCE_S} s"
+    assert value, f"{what}: timed out after {PATIENCE_S} s"
     return value
 
 
@@ -43,11 +43,11 @@ def real_time(priority):
 
 
 class Child:
-    """A program whose lines are gathered, and that ends with this object."""
+    """A child process whose output lines are collected; ends with this object."""
 
     def __init__(self, *command, lines_of="stdout", quiet=False, leave_out=(), priority=0):
-        self.quiet, self.leave_out = quiet, leave_out  # not printed; lines with these words are not kept either
-        self.lines, self.seen, self.gone_by = queue.Queue(), [], []  # to come; of the emulator; all
+        self.quiet, self.leave_out = quiet, leave_out  # not printed; lines with these words are dropped
+        self.lines, self.seen, self.gone_by = queue.Queue(), [], []  # unread; parsed lines of the emulator; all
         pipes = {"stdout": None, "stderr": None, lines_of: subprocess.PIPE}
         self.process = subprocess.Popen(command, stdin=subprocess.PIPE, text=True, bufsize=1, **pipes,
                                         preexec_fn=(lambda: real_time(priority)) if priority else None)
@@ -71,11 +71,11 @@ class Child:
         self.end()
 
     def said(self):
-        """All its lines so far."""
+        """All output lines so far."""
         return list(self.gone_by)
 
     def end(self):
-        """Its exit code after SIGTERM."""
+        """Ends the process with SIGTERM and returns its exit code."""
         if self.process.poll() is None:
             self.process.send_signal(signal.SIGTERM)
         try:
@@ -92,8 +92,8 @@ class Child:
         try:
             line = self.lines.get(timeout=PATIENCE_S)
         except queue.Empty:
-            raise AssertionError(f"{what}: nothing more said within {PATIENCE_S} s") from None
-        assert line is not None, f"{what}: it ended with {self.process.wait(timeout=PATIENCE_S)}"
+            raise AssertionError(f"{what}: no output within {PATIENCE_S} s") from None
+        assert line is not None, f"{what}: the process ended with {self.process.wait(timeout=PATIENCE_S)}"
         return line
 
 
@@ -108,7 +108,7 @@ class Emulator(Child):
         self.send(text)
 
     def until(self, what, detail=None, name=None):
-        """The next line that says so; the ones before it are kept in self.seen."""
+        """Returns the next matching line; earlier lines are kept in self.seen."""
         while True:
             line = json.loads(self.next_line(f"tact-emu: {what} {detail}"))
             self.seen.append(line)
@@ -116,7 +116,7 @@ class Emulator(Child):
                 return line
 
     def newest(self, what, name):
-        """(how many lines came before it, itself) of the newest line about that; (-1, nothing) if there is none."""
+        """Returns (index, line) of the newest matching line; (-1, empty line) if there is none."""
         lines = self.said()
         for i in range(len(lines) - 1, -1, -1):
             if f'"{what}"' in lines[i]:
@@ -139,7 +139,7 @@ def of_sysfs(folder, name):
 
 
 def find_board(serial):
-    """Device node of the configured board of that serial, or None."""
+    """Device node of the configured board with this serial, or None."""
     for d in os.listdir("/sys/bus/usb/devices"):
         if of_sysfs(d, "serial") != serial or of_sysfs(d, "bConfigurationValue") != "1":
             continue
@@ -154,7 +154,7 @@ def sealed(head):
 
 
 class Board:
-    """A client of one emulated board, through usbfs as libusb does it."""
+    """A client of one emulated board, through usbfs like libusb."""
 
     def __init__(self, serial):
         self.node = wait_for(lambda: find_board(serial), f"board {serial}")
@@ -180,7 +180,7 @@ class Board:
         return buffer.raw[:moved]
 
     def query(self):
-        """Info: the versions, boot, rate, watchdog, serial and model."""
+        """Returns the Info packet: versions, boot, rate, watchdog, serial and model."""
         self.transfer(2, sealed(struct.pack("<HBBBB6x", 0x4154, 0, QUERY, 1, 1)))
         for _ in range(100):
             packet = self.transfer(0x81, b"")
@@ -193,7 +193,7 @@ class Board:
                 "serial": serial.rstrip(b"\0").decode(), "model": model.rstrip(b"\0").decode()}
 
     def state(self):
-        """The next state, good or not."""
+        """Returns the next state, valid or not."""
         packet = self.transfer(0x81, b"")
         magic, _, kind, sequence, time_us, seen = struct.unpack_from("<HBBIII", packet)
         counts = struct.unpack_from("<6i", packet, 16)
@@ -213,7 +213,7 @@ class Board:
 
 
 def said(call):
-    """The name of the error that call() meets, or ''."""
+    """Returns the name of the OSError of call(), or ''."""
     try:
         call()
         return ""
@@ -227,16 +227,16 @@ def text_of(path):
 
 
 class Person(Child):
-    """Somebody at the screen: send("arm"), send("reset"), send("disarm")."""
+    """A person at the screen: send("arm"), send("reset"), send("disarm")."""
 
     def __init__(self, bin_dir):
         super().__init__(f"{bin_dir}/../tests/stand_in_person")
-        while "attached" not in self.next_line("somebody at the screen"):
+        while "attached" not in self.next_line("a person at the screen"):
             pass
 
 
 class Controller(Child):
-    """tact-rt as shipped, on hil.toml and what `config` says besides; what it says goes to the log."""
+    """tact-rt as shipped, with hil.toml and the additional text `config`; prints its log."""
 
     def __init__(self, bin_dir, config, *words):
         path = "/run/check.toml"
@@ -248,51 +248,51 @@ class Controller(Child):
         self.tact = f"{bin_dir}/tact"
 
     def status(self):
-        """What tact status says of it; an empty one before it is up."""
+        """Returns the JSON of tact status; {} before the controller is up."""
         assert self.process.poll() is None, f"tact-rt ended with {self.process.returncode}"
         done = subprocess.run([self.tact, "status", "--json"], capture_output=True, text=True, timeout=PATIENCE_S)
         return json.loads(done.stdout) if done.returncode == 0 else {}
 
     def wait_for(self, condition, what):
-        """The first status that fulfils the condition."""
+        """Returns the first status that fulfils the condition."""
         end = time.monotonic() + PATIENCE_S
         while not condition(now := self.status()):
-            assert time.monotonic() < end, f"{what}: not within {PATIENCE_S} s: {now}"
+            assert time.monotonic() < end, f"{what}: timed out after {PATIENCE_S} s: {now}"
             time.sleep(0.1)
         return now
 
     def until(self, words):
-        """The next line of its log with these words."""
+        """Returns the next line of its log that contains `words`."""
         while words not in (line := self.next_line(f"tact-rt: {words}")):
             pass
         return line
 
     def state(self):
-        """The newest state that its log tells of; that it got ready is not said."""
+        """The newest state in its log; the initial state ready is not logged."""
         changes = [line.rsplit(" to ", 1)[1].strip() for line in self.said() if "state changed:" in line]
         return changes[-1] if changes else "ready"
 
     def servo(self):
-        """/proc of the servo thread."""
+        """The /proc folder of the servo thread."""
         for tid in os.listdir(f"/proc/{self.process.pid}/task"):
             if text_of(f"/proc/{self.process.pid}/task/{tid}/comm").strip() == "servo":
                 return f"/proc/{self.process.pid}/task/{tid}"
         raise AssertionError("no servo thread")
 
     def watch_servo(self, looks=100):
-        """Asserts that the servo thread has its core and does nothing but sleep and compute: no read, write or ioctl."""
+        """Asserts that the servo thread runs on its core and only sleeps and computes: no read, write or ioctl."""
         folder = self.servo()
         io = [line for line in text_of(f"{folder}/io").splitlines() if line.startswith(("syscr", "syscw"))]
         calls = {text_of(f"{folder}/syscall").split()[0] for _ in range(looks)}
         assert calls <= {"running", "230"}, f"system calls of the servo thread: {calls}"  # 230: clock_nanosleep
         after = [line for line in text_of(f"{folder}/io").splitlines() if line.startswith(("syscr", "syscw"))]
         assert io == after, (io, after)
-        assert text_of(f"{folder}/stat").rsplit(")", 1)[1].split()[36] == "1", "it is not on core 1"
+        assert text_of(f"{folder}/stat").rsplit(")", 1)[1].split()[36] == "1", "the servo thread is not on core 1"
         assert os.sched_getscheduler(int(folder.rsplit("/", 1)[1])) == os.SCHED_FIFO
 
 
 def with_sections(*texts):
-    """One TOML text out of several; the later ones overwrite keys of the earlier."""
+    """Merges TOML texts; keys of later texts overwrite those of earlier ones."""
     sections = {}
     for text in texts:
         name = ""
@@ -305,6 +305,6 @@ def with_sections(*texts):
 
 
 def unhurt(status):
-    """Asserts that the servo never allocated, locked or faulted."""
+    """Asserts that the servo had no allocations, locks or page faults."""
     servo = status["servo"]
     assert servo["allocations"] == 0 and servo["locks"] == 0 and servo["page_faults"] == 0, servo

@@ -1,34 +1,34 @@
-"""A person at a person_at_arms with emulated arms: arms until the motors pull, makes faults, and sees each end in zero."""
+"""A person with emulated arms: arms until the motors have current, injects faults, and checks that each ends with zero current."""
 import re
 import time
 
 import parts
 
 ARM_S = 60
-TOLD = ("safety open", "hot", "over-current", "brown-out", "count lost", "encoder jump")  # by the board's next state
-TOLD_COMMANDS_MAX = 8  # of the controller, from such a fault to no current
+TOLD = ("safety open", "hot", "over-current", "brown-out", "count lost", "encoder jump")  # reported in the board's next state
+TOLD_COMMANDS_MAX = 8  # of the controller, from such a fault to zero current
 
 
 class PersonAtArms:
-    """The emulator, the controller and the person; faults are those of the arm LEFT unless another is named."""
+    """The emulator, the controller and the person; faults concern the arm LEFT by default."""
 
     def __init__(self, emulator, rt, person, arms=("LEFT",)):
         self.emulator, self.rt, self.person, self.arms = emulator, rt, person, arms
 
     def newest(self, what, arm="LEFT"):
-        """Index and line; asked of what the emulator said, since each question costs time."""
+        """Index and line of the newest report; read from the collected output, because each query takes time."""
         return self.emulator.newest(what, arm)
 
     def flowing(self, arm="LEFT"):
         return self.newest("currents", arm)[1]["detail"] == "flowing"
 
     def new_states(self, what, arm="LEFT"):
-        """Waits for states that the controller fetches."""
+        """Waits until the controller has fetched new states."""
         sent = self.emulator.status(arm)["states"]
-        parts.wait_for(lambda: self.emulator.status(arm)["states"] > sent + 10, f"states after {what}")
+        parts.wait_for(lambda: self.emulator.status(arm)["states"] > sent + 10, f"new states after {what}")
 
     def arm(self):
-        """Until the motors pull: what a person does whom the screen tells what is wrong."""
+        """Arms until the motors have current, following the instructions on the screen."""
         end = time.monotonic() + ARM_S
         while True:
             state = self.rt.state()
@@ -49,17 +49,17 @@ class PersonAtArms:
             parts.soon(lambda s=state: self.rt.state() != s, 0.5)
 
     def stopped(self, arm):
-        """The controller has latched; where its timing latches nothing (KVM on a busy host), the board's watchdog may have."""
+        """True if the controller has latched a fault, or, under KVM (timing does not latch), the board's watchdog has tripped."""
         return self.rt.state() == "fault" or (
             parts.ACCEL == "kvm" and self.newest("amplifier", arm)[1]["detail"] == "tripped")
 
     def notice(self):
-        """What the screen asks the person to do, for each hand."""
+        """The instruction on the screen for each hand."""
         return "".join(next((line for line in reversed(self.rt.said()) if words in line), "")
                        for words in (": device: ", ": device of the second hand: "))
 
     def fault(self, order, arm="LEFT", patience_s=parts.PATIENCE_S):
-        """Gives the order and asserts that it ends in zero, and stays there once it is fixed. False: it never came."""
+        """Injects the fault and asserts zero current, also after the fault is cleared. False: the fault had no effect in time."""
         self.arm()
         self.emulator.order(f"{order} {arm}")
         what, name = ("usb", "unplugged") if order == "unplug" else ("fault", re.sub(r" -?\d.*", "", order))
@@ -75,7 +75,7 @@ class PersonAtArms:
         commands = zero["commands"] - line["commands"]
         if arm == "LEFT":
             print(f"-- {order}: no current{' already' if zero_at < at else ''} after {commands} commands and "
-                  f"{(zero['t_ns'] - line['t_ns']) / 1e6:.1f} ms; told in cycle {told[0]} ({told[1]}), latched in "
+                  f"{(zero['t_ns'] - line['t_ns']) / 1e6:.1f} ms; reported in cycle {told[0]} ({told[1]}), latched in "
                   f"{latched}", flush=True)
             assert name not in TOLD or commands <= TOLD_COMMANDS_MAX, f"{commands} commands from {order} to zero"
         else:
@@ -90,7 +90,7 @@ class PersonAtArms:
 
 
 def names_of_the_kernel(*serials):
-    """Prints where the kernel put each board, once its host has configured it."""
+    """Prints the device node of each board once the host has configured it."""
     for serial in serials:
         node = parts.wait_for(lambda s=serial: parts.find_board(s), f"{serial} configured")
         print(f"{serial}: {node}", flush=True)

@@ -23,7 +23,7 @@ int reproduce(const DockingExperiment& e) {
         try {
             add(mesh_figures(e.out, scratch.path()));
         } catch (const StartupError& error) {
-            // The rates do not depend on it; the table and the exit code say so.
+            // The rates do not depend on the meshes; table and exit code report the failure.
             std::fprintf(stderr, "tact: %s\n", error.what());
             add({{"3, 4", "meshes", "1250 to 8, 12835 to 200", "NOT MADE", error.what()}});
             exit_code = 1;
@@ -46,7 +46,7 @@ int reproduce(const DockingExperiment& e) {
 }  // namespace
 
 int reproduce_docking(const DockingExperiment& experiment) {
-    // Now, and not after two minutes.
+    // Fail now rather than after two minutes.
     write_whole(experiment.out / ".writable", "");
     std::filesystem::remove(experiment.out / ".writable");
     return in_own_session([&](Precedence reached) {

@@ -1,7 +1,7 @@
-// tact reproduce docking: the docking paper's figures 3 to 8 on this machine, its values beside ours.
+// tact reproduce docking: figures 3 to 8 of the docking paper on this machine, beside the published values.
 //
 // Writes   CSV and PNG of every figure, docking.json with all numbers, conditions and the summary table
-// Says     the table: what differs and why
+// Prints   the summary table, with differences and their reasons
 // Thread   one; blocks for about a minute and a half. Fails by StartupError; leaves no process behind.
 #pragma once
 
@@ -14,9 +14,9 @@ namespace tact::launch {
 struct DockingExperiment {
     std::filesystem::path out;  // folder
     RatesSettings rates{};
-    bool with_meshes = true;  // figures 3, 4 and 6; else the rates alone
+    bool with_meshes = true;  // figures 3, 4 and 6; false: only the rates
 };
 
-int reproduce_docking(const DockingExperiment& experiment);  // the exit code
+int reproduce_docking(const DockingExperiment& experiment);  // returns the exit code
 
 }  // namespace tact::launch

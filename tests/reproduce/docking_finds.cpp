@@ -1,14 +1,14 @@
-// What the docking force finds: the table of rt/force/README.md, made again from real maps.
+// Reproduces the table of docking results in rt/force/README.md from real maps.
 //
 //     docking_finds FOLDER [starts [name]]
 //
-// FOLDER holds the maps and structures named below. Without it the program ends with 77, which CTest counts
-// as skipped. For each row whose name holds `name`, seeded starts 15 A and 30 degrees (and 8 A and 15
-// degrees) away from the known place climb the reduced correlation of all atoms, by steepest ascent. A start
-// has found the place within one voxel and 5 degrees, or an equal place by the structure's own symmetry. Felt
-// maps: the density, its Laplacian (at 20 A or the map's resolution, as rt/force/docking/force_map.hpp),
-// and both with the neighbours in the assembly subtracted. Printed beside it: how far the ends are from the
-// place, in the mean.
+// FOLDER holds the maps and structures named below. Without it the program exits with 77, which CTest counts as
+// skipped. `name` selects the rows whose names contain it. Seeded starts, 15 A and 30 degrees (and 8 A and 15
+// degrees) from the known pose, climb the reduced correlation of all atoms by steepest ascent. A start succeeds
+// if it ends within one voxel and 5 degrees of the known pose or of a pose equal to it by the structure's symmetry.
+// Force maps: the density, its Laplacian (at 20 A or the map's resolution, as in rt/force/docking/force_map.hpp),
+// and both with the other parts of the assembly subtracted. Also printed: the mean distance of the ends from the
+// known pose.
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <chrono>
@@ -51,9 +51,8 @@ double gyration_m(const Structure& s) {
     return std::sqrt(sum);
 }
 
-// Steepest ascent in the metric in which a turn counts as the distance that it moves the atoms (radius of
-// gyration). The step doubles after a success and halves after a failure, until below a thousandth of an
-// angstrom.
+// Steepest ascent. A rotation counts as the distance that it moves the atoms (radius of gyration). The step
+// doubles after a success and halves after a failure, until it is below a thousandth of an angstrom.
 Pose climb(const DensityMap& map, const Structure& s, Pose pose) {
     const PointsView points = points_of(s);
     const double radius_m = gyration_m(s);
@@ -77,7 +76,7 @@ Pose climb(const DensityMap& map, const Structure& s, Pose pose) {
     return pose;
 }
 
-// The places that look the same: chain onto chain, where all chains are alike.
+// The poses that are equal by symmetry: each chain onto the first one, if all chains are alike.
 std::vector<Pose> equal_places(const Structure& s) {
     std::vector<std::vector<std::size_t>> chain(s.chain_names.size());
     for (std::size_t i = 0; i < s.size(); ++i) chain[s.chain[i]].push_back(i);
@@ -93,7 +92,7 @@ std::vector<Pose> equal_places(const Structure& s) {
         if (chain[c].size() != chain[0].size()) return {Pose{}};
         const Eigen::Matrix4d t = Eigen::umeyama(matrix(chain[0]), matrix(chain[c]), false);
         places.push_back({t.topRightCorner<3, 1>(), Quat(Eigen::Matrix3d(t.topLeftCorner<3, 3>()))});
-        // Only a symmetry about the whole's own centre takes the whole onto itself.
+        // Only a symmetry about the centre of the whole maps the whole onto itself.
         if (places.back().p_m.norm() > 2.0 * kA) return {Pose{}};
     }
     return places;
@@ -114,13 +113,13 @@ struct Variant {
 constexpr Variant kVariants[] = {
     {"density", false, false},
     {"Laplacian", false, true},
-    {"density - neighbours", true, false},
-    {"Laplacian - neighbours", true, true},
+    {"density, subtracted", true, false},
+    {"Laplacian, subtracted", true, true},
 };
 
 struct Ends {
     int found = 0;
-    double away_a = 0.0, turned_deg = 0.0;  // mean, from the nearest equal place
+    double away_a = 0.0, turned_deg = 0.0;  // mean, from the nearest equal pose
 };
 
 Ends ends(const DensityMap& map, const Structure& s, double offset_m, double turn_rad, int starts) {
@@ -130,7 +129,7 @@ Ends ends(const DensityMap& map, const Structure& s, double offset_m, double tur
         const Pose end =
             climb(map, s, start_pose(s.home(), offset_m, turn_rad, static_cast<std::uint64_t>(k)));
         Pose nearest;
-        double least = 1e300;  // in metres of atoms moved
+        double least = 1e300;  // metres of atom movement
         for (const Pose& e : equal) {
             const Pose place = s.home() * e;
             const double d = (end.p_m - place.p_m).norm() + gyration_m(s) * end.q.angularDistance(place.q);
@@ -168,10 +167,10 @@ void run(const Row& row, const std::filesystem::path& folder, int starts) {
         const Ends far = ends(map, row.body, 15.0 * kA, 30.0 * kDegreeRad, starts);
         const Ends near = ends(map, row.body, 8.0 * kA, 15.0 * kDegreeRad, starts);
         std::printf(
-            "%-28s %-23s %2d (%2d) of %d, %5.1f A %5.1f deg (%4.1f A %4.1f deg) away, made in %3.0f ms",
+            "%-28s %-23s %2d (%2d) of %d, %5.1f A %5.1f deg (%4.1f A %4.1f deg) away, map made in %3.0f ms",
             row.name.c_str(), v.name, far.found, near.found, starts, far.away_a, far.turned_deg, near.away_a,
             near.turned_deg, made.count());
-        if (v.subtract) std::printf(", scale %.3g explains %.2f", scale, explained);
+        if (v.subtract) std::printf(", scale %.3g, explained %.2f", scale, explained);
         std::printf("\n");
         std::fflush(stdout);
     }
@@ -179,7 +178,7 @@ void run(const Row& row, const std::filesystem::path& folder, int starts) {
 
 Structure read(const std::filesystem::path& path) { return import_structure(path).structure; }
 
-// Atoms at the places given, as a structure of their own.
+// A structure of these atoms at the given positions.
 Structure placed_at(const Structure& from, const std::vector<std::size_t>& atoms,
                     const std::vector<Vec3>& place_m) {
     Structure s;
@@ -216,7 +215,7 @@ Structure moved(const Structure& from, const Pose& home) {
     return placed_at(from, atoms, place_m);
 }
 
-// Domains of one chain: each with the four others as neighbours.
+// Domains of one chain, each with the four others subtracted.
 void add_1gte(const std::filesystem::path& folder, std::vector<Row>& rows) {
     std::vector<Structure> domains;
     for (int d = 1; d <= 5; ++d)
@@ -229,7 +228,7 @@ void add_1gte(const std::filesystem::path& folder, std::vector<Row>& rows) {
     }
 }
 
-// Both rings of GroEL: the seven chains of 1OEL moved by one answer for each ring.
+// Both rings of GroEL: the seven chains of 1OEL, moved by one placement per ring from the answers file.
 std::vector<Structure> groel_chains(const std::filesystem::path& folder) {
     const Structure ring = read(folder / "1oel.pdb.gz");
     std::ifstream file(folder / "answers_emd_1080_1oel.json");
@@ -265,7 +264,7 @@ std::vector<Structure> groel_chains(const std::filesystem::path& folder) {
     return chains;
 }
 
-// One chain among the thirteen others: as fitted by others, and as the answers have it.
+// One chain among the thirteen others, at the pose of its authors (1KP8) and from the answers file (1OEL).
 void add_groel(const std::filesystem::path& folder, std::vector<Row>& rows) {
     const char* const map = "emd_1080_groel_11.5A.mrc";
     Row fitted{"EMD-1080, 1KP8 chain A", map, 11.5, read(folder / "1kp8A_fitted_in_emd_1080.pdb"), {}};
@@ -282,8 +281,8 @@ void add_groel(const std::filesystem::path& folder, std::vector<Row>& rows) {
     if (answer.body.size() > 0) rows.push_back(std::move(answer));
 }
 
-// F-actin: the neighbours in the filament, -166.6 degrees and 27.6 A each about the middle of the map,
-// climbed from there. Those beyond the box have nothing to subtract.
+// F-actin: the other subunits of the filament, -166.6 degrees and 27.6 A apart along the axis through the middle of
+// the map, climbed from there. Subunits beyond the box have no density to subtract.
 void add_actin(const std::filesystem::path& folder, const char* file, std::vector<Row>& rows) {
     Row row{std::string("EMD-5168, ") + std::string(file).substr(0, 4),
             "emd_5168_factin.map",
@@ -312,7 +311,7 @@ int main(int argc, char** argv) {
     using namespace tact;
     const std::filesystem::path folder = argc > 1 ? argv[1] : "";
     if (!std::filesystem::is_directory(folder)) {
-        std::printf("no folder of maps: docking_finds FOLDER [starts [name]]\n");
+        std::printf("skipped, no folder of maps given. Usage: docking_finds FOLDER [starts [name]]\n");
         return 77;
     }
     const int starts = argc > 2 ? std::max(1, std::atoi(argv[2])) : 10;

@@ -14,7 +14,7 @@ void draw_figures(const std::filesystem::path& folder) {
     const auto program = std::filesystem::read_symlink("/proc/self/exe", ignored);
     const auto script = program.parent_path().parent_path() / "share/tact/reproduce/draw.py";
     const std::string by_hand = "python3 " + script.string() + " " + folder.string();
-    // Debian's matplotlib belongs to Debian's Python, which need not be the first one in PATH.
+    // Debian's matplotlib belongs to Debian's Python, which may not be first in PATH.
     std::vector<std::filesystem::path> pythons{"/usr/bin/python3"};
     if (auto found = find_in_path("python3"); !found.empty() && found != pythons.front())
         pythons.push_back(found);

@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 """Draws the figures of tact-reproduce from the CSV and JSON files in a folder.
 
-    draw.py FOLDER          draws every figure whose data is there, as PNG beside the data
+    draw.py FOLDER          draws every figure with available data, as PNG beside the data
     draw.py --self-test     draws each kind of figure from synthetic data in a temporary folder
 
 Exit codes: 0 done; 1 error; 77 matplotlib is missing. tact-reproduce starts it; by hand it redraws figures after a change here.
@@ -20,6 +20,7 @@ except ImportError:
 matplotlib.use("Agg")
 import matplotlib.image as mpimg  # noqa: E402
 import matplotlib.pyplot as plt  # noqa: E402
+from matplotlib.lines import Line2D  # noqa: E402
 from matplotlib.patches import Patch  # noqa: E402
 
 # Okabe and Ito's colours, distinguishable with every kind of colour vision.
@@ -33,7 +34,7 @@ plt.rcParams.update({"font.size": 10, "axes.grid": True, "grid.color": "#e4e4e4"
 
 
 def read_rows(path):
-    """Rows of a CSV file; numbers where a field is one."""
+    """Reads the rows of a CSV file; converts numeric fields to numbers."""
     def value(text):
         try:
             return float(text)
@@ -45,14 +46,14 @@ def read_rows(path):
 
 def start(title, remark, panels, height=3.6, width=11.0):
     figure, axes = plt.subplots(panels, 1, sharex=True, squeeze=False, figsize=(width, 1.1 + height * panels), layout="constrained")
-    # A title of two lines: the second, smaller one says the conditions.
+    # A title of two lines; the second, smaller one gives the conditions.
     figure.suptitle(title, x=0.012, ha="left", fontsize=14)
     axes[0][0].set_title(remark, loc="left", color="#666666", pad=10)
     return figure, [a[0] for a in axes]
 
 
 def legend(axes, handles=None):
-    """Outside of the data, to the right."""
+    """Places the legend outside the axes, to the right."""
     options = {"loc": "upper left", "bbox_to_anchor": (1.005, 1.0), "borderaxespad": 0.0}
     if handles is not None:
         options["handles"] = handles
@@ -90,26 +91,77 @@ class Runs:
     def end(self, case):
         return self.case[case][-1]["t_s"]
 
+    @staticmethod
+    def part(row):
+        """Part of the run: start, no_load or load. Files of former versions do not name it."""
+        return row.get("part") or ("load" if row["external_load"] else "no_load")
+
+    @staticmethod
+    def reused(row):
+        """The updates of this window reused a part of their former work."""
+        return row.get("step_work_done_anew", 1.0) < 0.9995
+
     def load(self, case):
-        """Begin and end of the external load; infinity and the last time without one."""
+        """Begin and end of the external load; without one, infinity and the last time."""
         times = [r["t_s"] for r in self.case[case] if r["external_load"]]
         return (min(times), max(times)) if times else (math.inf, self.end(case))
 
 
+def worst_rows(rows):
+    """The row with the lowest rate of each part of a run, but for its start."""
+    worst = {}
+    for row in rows:
+        part = Runs.part(row)
+        if part != "start" and (part not in worst or row["force_rate_100ms_hz"] < worst[part]["force_rate_100ms_hz"]):
+            worst[part] = row
+    return worst
+
+
+def worst_label(worst):
+    def one(row):
+        rate, goal = row["force_rate_100ms_hz"], row["goal_hz"]
+        return f"{rate:.0f} Hz" + (f" ({100.0 * rate / goal:.0f} %)" if goal > 0 else "")
+    said = [f"{one(worst[part])} {name}" for part, name in (("no_load", "without load"), ("load", "with load")) if part in worst]
+    return "\nworst 0.1 s: " + ",\n".join(said) if said else ""
+
+
+def spans(rows, holds):
+    """Stretches of time whose windows have this property, joined where windows overlap."""
+    joined = []
+    for row in rows:
+        if holds(row):
+            begin, end = row["t_s"] - WINDOW_S, row["t_s"]
+            if joined and begin <= joined[-1][1]:
+                joined[-1][1] = end
+            else:
+                joined.append([begin, end])
+    return joined
+
+
 def rate_figure(runs, folder, name, title, curves, goals, load_of=None, until=None):
-    """curves: (case, label, colour); goals: (Hz, label); until: case -> last time that is drawn."""
+    """curves: (case, label, colour); goals: (Hz, label); until: case -> last time to draw."""
     figure, (rates, triangles) = start(title, runs.remark, 2)
-    disturbed = False
+    disturbed = reused = started = False
     for number, (case, label, colour) in enumerate(curves):
         rows = [r for r in runs.case[case] if r["t_s"] > SETTLE_S and r["t_s"] <= (until or {}).get(case, math.inf)]
-        time = [r["t_s"] for r in rows]
-        rates.plot(time, [r["force_rate_100ms_hz"] for r in rows], color=COLOURS[colour], label=label)
-        triangles.plot(time, [1e-3 * r["triangles"] for r in rows], color=COLOURS[colour])
-        for row in rows:
-            if row["disturbed"]:
-                disturbed = True
-                rates.axvspan(row["t_s"] - WINDOW_S, row["t_s"], 1.0 - 0.022 * (number + 1), 1.0 - 0.022 * number - 0.004, color=COLOURS[colour],
-                              linewidth=0)
+        settled = [r for r in rows if Runs.part(r) != "start"]
+        began = [r for r in rows if Runs.part(r) == "start"] + settled[:1]
+        worst = worst_rows(rows)
+        rates.plot([r["t_s"] for r in settled], [r["force_rate_100ms_hz"] for r in settled], color=COLOURS[colour],
+                   label=label + worst_label(worst))
+        if len(began) > 1:
+            started = True
+            rates.plot([r["t_s"] for r in began], [r["force_rate_100ms_hz"] for r in began], color=COLOURS[colour], linewidth=0.6)
+        rates.plot([r["t_s"] for r in worst.values()], [r["force_rate_100ms_hz"] for r in worst.values()], linestyle="none", marker="v",
+                   markersize=7, color=COLOURS[colour], markeredgecolor="white")
+        triangles.plot([r["t_s"] for r in rows], [1e-3 * r["triangles"] for r in rows], color=COLOURS[colour])
+        strip = {"color": COLOURS[colour], "linewidth": 0}
+        for begin, end in spans(rows, lambda r: r["disturbed"]):
+            disturbed = True
+            rates.axvspan(begin, end, 1.0 - 0.022 * (number + 1), 1.0 - 0.022 * number - 0.004, **strip)
+        for begin, end in spans(rows, Runs.reused):
+            reused = True
+            rates.axvspan(begin, end, 0.022 * number + 0.004, 0.022 * (number + 1), **strip)
     for hz, label in goals:
         rates.axhline(hz, color="#222222", linestyle=":", linewidth=1.4, label=label)
     handles, _ = rates.get_legend_handles_labels()
@@ -121,6 +173,11 @@ def rate_figure(runs, folder, name, title, curves, goals, load_of=None, until=No
             handles.append(Patch(color="#f0ece0", label="external load"))
     if disturbed:
         handles.append(Patch(color="#bbbbbb", label="strip above: disturbed by\nother programs"))
+    if reused:
+        handles.append(Patch(color="#bbbbbb", label="strip below: work partly reused\n(recomputed fraction below 1)"))
+    handles.append(Line2D([], [], color="#777777", marker="v", linestyle="none", label="worst 0.1 s of a part"))
+    if started:
+        handles.append(Line2D([], [], color="#777777", linewidth=0.6, label="thin: start of the run"))
     rates.set_ylabel("force updates per second (Hz)")
     triangles.set_ylabel("triangles drawn (thousands)")
     triangles.set_xlabel("time (s)")
@@ -152,7 +209,7 @@ def draw_rates(folder):
 
 # Forces of a burr (drilling: figures 2 to 4).
 def ways(row, quantity):
-    """(column, label, dashed) for each size of block."""
+    """Yields (column, label, dashed) for each block size."""
     for column in row:
         if column.startswith(quantity + "_"):
             size = column[len(quantity) + 1:]
@@ -164,7 +221,7 @@ def burr_panel(axes, rows, radius, quantity, value, last_too=True):
     for number, (column, label, dashed) in enumerate(ways(rows[0], quantity)):
         if dashed and not last_too:
             continue
-        # Each curve is thinner than the one before it, so that equal ones are all visible.
+        # Each curve is thinner than the one before, so that coinciding curves are all visible.
         axes.plot([r["penetration_mm"] / radius for r in some], [value(r, column) for r in some], color=COLOURS[number],
                   linestyle="--" if dashed else "-", linewidth=3.4 - 0.8 * number, label=label)
     axes.margins(x=0.01)
@@ -196,7 +253,7 @@ def draw_drilling(folder):
     axes[-1].set_xlabel("penetration / R")
     save(figure, folder, "fig2b_error.png")
 
-    figure, axes = start("Figure 3: time for one force", "one core; the least of several repetitions", len(radii), height=2.9)
+    figure, axes = start("Figure 3: time for one force", "one core; minimum of several repetitions", len(radii), height=2.9)
     for panel, radius in zip(axes, radii):
         burr_panel(panel, rows, radius, "us", lambda r, c: r[c])
         panel.axhline(1000.0, color="#222222", linestyle=":", linewidth=1.4, label="1 ms")
@@ -252,7 +309,7 @@ def draw_table(folder):
 def draw_filters(folder):
     rows = read_rows(os.path.join(folder, "filters.csv"))
     figure, (axes,) = start("Figure 3: allowed error of the surface by the distance from the probe",
-                            "full detail within 3 mm; distance: the largest of |dx|, |dy| and |dz|", 1, height=4.6)
+                            "full detail within 3 mm; distance: maximum of |dx|, |dy| and |dz|", 1, height=4.6)
     distance = [r["distance_mm"] for r in rows]
     for number, (column, label) in enumerate((("exact_um", "1 - exp(-x²)"), ("bell_um", "bell, as computed"), ("frustums_um", "multiple frustums"))):
         axes.plot(distance, [r[column] for r in rows], color=COLOURS[number], linestyle="--" if number == 0 else "-", label=label, zorder=3 - number)
@@ -305,15 +362,22 @@ def draw(folder):
 
 
 def self_test():
-    """Every kind of figure from a few rows; among them gaps, a single run, and values that are not numbers."""
+    """Draws every kind of figure from a few rows, including gaps, a single run, and values that are not numbers."""
     def write(folder, name, header, rows):
         with open(os.path.join(folder, name), "w", encoding="utf-8", newline="") as f:
             writer = csv.writer(f)
             writer.writerow(header.split(","))
             writer.writerows(rows)
     with tempfile.TemporaryDirectory() as folder:
-        header = "run,case,goal_hz,t_s,external_load,force_rate_100ms_hz,disturbed,triangles"
-        rows = [[f"{case}, x", case, goal, 0.02 * i, int(with_load and i > 400), 900 - 300 * (with_load and i > 400), int(i % 50 < 3), 5000 + i]
+        # The worst window with load comes right after the load begins; without load at 5.2 s; the start does not count.
+        def rate(i, with_load):
+            return 100 if i < 40 else 700 if i == 260 else (450 if i < 420 else 600) if with_load and i > 400 else 900
+
+        def part(i, with_load):
+            return "load" if with_load and i > 400 else "start" if i < 100 else "no_load"
+        header = "run,case,goal_hz,t_s,external_load,force_rate_100ms_hz,step_work_done_anew,disturbed,triangles,part"
+        rows = [[f"{case}, x", case, goal, 0.02 * i, int(with_load and i > 400), rate(i, with_load), 1.0 if i % 70 < 40 else 0.5,
+                 int(i % 50 < 3), 5000 + i, part(i, with_load)]
                 for case, goal, with_load in (("off", 0, True), ("low", 800, False), ("high", 1200, False), ("on", 900, True))
                 for i in range(800 if with_load else 400)]
         write(folder, "rates.csv", header, rows)
@@ -329,6 +393,11 @@ def self_test():
         draw(folder)
         wanted = ["fig5_rates", "fig7_load_without_law", "fig8_load_with_law", "fig2a_force", "fig2b_error", "fig3_time", "fig4_growth", "table1",
                   "fig3_filters", "fig3_border"]
+        worst = worst_rows([r for r in Runs(folder).case["on"] if r["t_s"] > SETTLE_S])
+        rates = {part: row["force_rate_100ms_hz"] for part, row in worst.items()}
+        if rates != {"no_load": 700.0, "load": 450.0}:
+            print(f"FAIL worst windows {rates}")
+            return 1
         missing = [n for n in wanted if not os.path.exists(os.path.join(folder, n + ".png"))]
         for name in missing:
             print(f"FAIL {name}.png was not drawn")

@@ -17,9 +17,9 @@ namespace tact::launch {
 namespace {
 
 constexpr double kVoxelMm = 0.3;
-constexpr double kFeltN = 0.05;  // errors of less are not told
+constexpr double kFeltN = 0.05;  // smaller forces are left out of the error
 
-// Solid below the middle of its height, so wide that a burr half in it does not reach an end.
+// Solid below half of its height, and so wide that a burr does not reach a side.
 struct FlatBone {
     BoneBricks bricks;
     std::vector<std::uint8_t> density;
@@ -100,18 +100,19 @@ std::vector<SummaryRow> summary_of(const std::vector<DrillingRow>& rows,
     std::vector<SummaryRow> table;
     for (std::size_t way = 0; way < kDrillBlocks.size(); ++way) {
         const Spread s = error_of(rows, way);
-        table.push_back({.figure = "2b",
-                         .quantity = "error of the force, " + way_name(way),
-                         .seed = "a few percent or below",
-                         .ours = text("%.2f %% on average, %.2f %% at the most", s.mean, s.most),
-                         .differs = "blocks at the border are cut by planes, there replaced by balls"});
+        table.push_back(
+            {.figure = "2b",
+             .quantity = "error of the force, " + way_name(way),
+             .published = "a few percent or below",
+             .measured = text("%.2f %% on average, %.2f %% at most", s.mean, s.most),
+             .differs = "partly covered blocks are cut by planes; the paper replaces them by balls"});
     }
     for (const DrillingRow& r : growth) {
         if (r.radius_mm != 1.0 && r.radius_mm != 6.0 && r.radius_mm != 20.0) continue;
         table.push_back({.figure = "3, 4",
                          .quantity = text("time of a force, R = %.0f mm, 0.3 R", r.radius_mm),
-                         .seed = r.radius_mm > 6.0 ? "not tried" : "below 1 ms",
-                         .ours = text("%.1f us; voxel by voxel %.0f us", r.us[1], r.us[kDrillWays - 1])});
+                         .published = r.radius_mm > 6.0 ? "not tried" : "below 1 ms",
+                         .measured = text("%.1f us; voxel by voxel %.0f us", r.us[1], r.us[kDrillWays - 1])});
     }
     return table;
 }
@@ -126,7 +127,7 @@ std::vector<DrillingRow> drilling_rows(double radius_mm, int depths, int repeats
     for (int i = 1; i <= depths; ++i) {
         DrillingRow row{.radius_mm = radius_mm};
         row.penetration_mm = half_in_alone ? 0.5 * radius_mm : radius_mm * i / depths;
-        // Off the grid's planes of symmetry, and sideways with depth, as a hand would.
+        // Off the grid's planes of symmetry, and sideways with depth, as a hand moves.
         const Vec3 at(middle + 0.13 + 0.9 * i / depths, middle - 0.27 + 0.4 * i / depths,
                       bone.surface + radius - row.penetration_mm / kVoxelMm);
         row.true_n = elastic_of(radius_mm, ball_moments_exact(octree, at, radius));
@@ -144,7 +145,7 @@ std::vector<DrillingRow> drilling_rows(double radius_mm, int depths, int repeats
 }
 
 int reproduce_drilling(const DrillingExperiment& e) {
-    // Now, and not after some seconds.
+    // Fail now rather than after some seconds.
     write_whole(e.out / ".writable", "");
     std::filesystem::remove(e.out / ".writable");
     const int depths = e.quick ? 12 : 150, repeats = e.quick ? 3 : 30;

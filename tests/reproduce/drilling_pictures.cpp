@@ -17,14 +17,14 @@ int drilling_pictures(const std::filesystem::path& out, bool quick) {
         {.inputs = {}, .words = {"demo", "drill", "--voxels", quick ? "96" : "256"}, .options = {}});
     if (scene.empty()) return 130;
     RunOptions run;
-    run.seconds = every_s * (kPictures - 0.4);  // the first is taken when there is something to see
+    run.seconds = every_s * (kPictures - 0.4);  // the first screenshot is taken after the first frame
     run.headless = true;
     run.quiet = true;
     run.session = "figure1-" + std::to_string(::getpid());
     run.screenshot = out / "fig1_drilling.png";
     run.json = out / "fig1_run.json";
     let_the_hands_drill(run);
-    // How fast pictures come does not matter here, what is on them does.
+    // The frame rate does not matter here, only the content of the frames.
     run.controller.insert(run.controller.end(),
                           {"--hand-at-mm", kMastoidMm, "--law", "fixed", "--level", "gui.particles=0.5"});
     run.visual = {"--picture-every", std::to_string(every_s), "--zoom", "1.5"};

@@ -1,14 +1,14 @@
-// Figure 1 of the drilling paper: a surgeon and a suction tube at work in the synthetic temporal bone, six pictures of one run.
+// Figure 1 of the drilling paper: a surgeon and a suction tube at work in the synthetic temporal bone, six screenshots of a run.
 //
-// Writes   fig1_drilling-01.png to -06.png, of the view alone, equally far apart in time; the first before the burr is in
-//          the bone; fig1_drilling.png, the whole window at the end; fig1_run.json
-// Fails by StartupError where programs are missing
+// Writes   fig1_drilling-01.png to -06.png, the view only, at equal intervals, the first before the burr is in the bone;
+//          fig1_drilling.png, the whole window at the end; fig1_run.json
+// Fails by StartupError if programs are missing
 #pragma once
 
 #include <filesystem>
 
 namespace tact::launch {
 
-int drilling_pictures(const std::filesystem::path& out, bool quick);  // the exit code of the run
+int drilling_pictures(const std::filesystem::path& out, bool quick);  // returns the exit code of the run
 
 }  // namespace tact::launch

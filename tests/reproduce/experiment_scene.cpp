@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cstdio>
-#include <cstring>
-#include <span>
 #include <string>
 
 #include "deploy/tact/files.hpp"
@@ -15,6 +13,7 @@
 #include "ipc/scene/file/scene_meta.hpp"
 #include "ipc/scene/mesh/progressive_mesh.hpp"
 #include "tests/reproduce/run_prep.hpp"
+#include "tests/support/map_file.hpp"
 
 namespace tact::launch {
 namespace {
@@ -22,30 +21,6 @@ namespace {
 void bake(std::vector<std::string> words, const std::filesystem::path& scene) {
     words.insert(words.end(), {"-o", scene.string()});
     run_prep(words, scene.string() + ".log", "baking " + scene.string());
-}
-
-// A map file of mode 2 (float), as MRC 2014 has it.
-std::string mrc_of(const DensityGrid& grid) {
-    std::array<std::int32_t, 256> header{};
-    const auto put_float = [&header](std::size_t word, double value) {
-        const auto f = static_cast<float>(value);
-        std::memcpy(&header[word], &f, sizeof f);
-    };
-    for (std::size_t i = 0; i < 3; ++i) {
-        header[i] = static_cast<std::int32_t>(grid.size[i]);
-        header[7 + i] = header[i];  // one voxel of the cell for each
-        put_float(10 + i, grid.spacing_m[static_cast<Eigen::Index>(i)] / kAngstromM * grid.size[i]);
-        put_float(13 + i, 90.0);
-        header[16 + i] = static_cast<std::int32_t>(i + 1);
-        put_float(49 + i, grid.origin_m[static_cast<Eigen::Index>(i)] / kAngstromM);
-    }
-    header[3] = 2;
-    header[22] = 1;
-    std::memcpy(&header[52], "MAP ", 4);
-    header[53] = 0x00004144;  // little endian
-    std::string bytes(reinterpret_cast<const char*>(header.data()), sizeof header);
-    bytes.append(reinterpret_cast<const char*>(grid.values.data()), grid.values.size() * sizeof(float));
-    return bytes;
 }
 
 std::string pdb_of(const Structure& s) {
@@ -107,7 +82,7 @@ ExperimentScene make_experiment_scene(const std::filesystem::path& folder, const
     const DensityGrid grid = read_grid(demo);
     const Structure structure = read_structure(demo, 0);
     if (!std::filesystem::exists(fine_path, ignored)) {
-        write_whole(folder / "fine.mrc", mrc_of(finer(grid, meta, scale.map_finer)));
+        write_whole(folder / "fine.mrc", map_file_bytes(finer(grid, meta, scale.map_finer)));
         write_whole(folder / "one.pdb", pdb_of(structure));
         bake({"dock", (folder / "fine.mrc").string(), (folder / "one.pdb").string(), "--contour",
               std::to_string(meta.contour)},
@@ -125,9 +100,9 @@ ExperimentScene make_experiment_scene(const std::filesystem::path& folder, const
     write_grid(out, grid);
     const Structure heavy = repeated(structure, scale.atom_repeats);
     write_structure(out, 0, heavy);
-    // A structure of this size needs one coarse level to fall back on. With it alone, every level of the knob
-    // above zero sums all points (the two are blended), so the work stays what it is; with less than 200
-    // vectors, the knob starts at all points.
+    // A structure of this size needs one coarse level as a fallback. With this single level, every knob level above zero sums
+    // all points (the two are blended), so the work is constant; with less than 200 vectors, the knob starts at all
+    // points.
     Codebook coarse = read_codebook(demo, 0);
     std::erase_if(coarse.levels, [](const Codebook::Level& l) { return l.size() >= 200; });
     if (coarse.levels.size() > 1) coarse.levels.erase(coarse.levels.begin(), coarse.levels.end() - 1);

@@ -1,9 +1,9 @@
-// The demo scene, made as heavy as a scene of today has to be to load a core of today.
+// The demo scene, with a workload that is heavy enough for a current processor core.
 //
-// Surface  of the same map, resampled finer by its own spline and baked by tact-prep
-// Force    every atom several times, with its share of the mass: the same wrench, so many times the work. One
-//          level of the codebook stays, so that there is nothing but the picture to give up (see the .cpp).
-// Fit      the map's resolution is left away, so that the visual process computes no correlation on the side
+// Surface  of the same map, resampled on a finer grid by its spline and baked by tact-prep
+// Force    every atom several times, with a fraction of its mass: the same wrench, at a multiple of the work. One level of
+//          the codebook stays, so that only the rendering detail can be reduced (see the .cpp).
+// Fit      without the map's resolution, so that the visual process computes no correlation
 #pragma once
 
 #include <cstdint>
@@ -12,8 +12,8 @@
 namespace tact::launch {
 
 struct SceneScale {
-    int map_finer = 3;      // voxels a side, for each one of the demo's
-    int atom_repeats = 40;  // times that every atom is felt
+    int map_finer = 3;      // voxels per side for each one of the demo's
+    int atom_repeats = 40;  // number of copies of every atom
 };
 
 struct ExperimentScene {
@@ -22,7 +22,7 @@ struct ExperimentScene {
     std::size_t points_summed = 0;
 };
 
-// In that folder. Takes seconds. Throws StartupError.
+// Creates the scene in the folder. Takes seconds. Throws StartupError.
 ExperimentScene make_experiment_scene(const std::filesystem::path& folder, const SceneScale& scale);
 
 }  // namespace tact::launch

@@ -1,4 +1,4 @@
-// tact-reproduce: the published experiments again, on this machine. `tact reproduce` starts it.
+// tact-reproduce: reproduces the published experiments on this machine. `tact reproduce` starts it.
 //
 // Exit  0  done; 1  error; 2  wrong usage
 #include <CLI/CLI.hpp>

@@ -23,7 +23,7 @@ double to_segment2(const Vec3& p, const Vec3& a, const Vec3& b) {
     return (p - a - t * ab).squaredNorm();
 }
 
-// Squared. Above the face by the plane, else by the nearest edge.
+// Squared distance: to the plane above the face, else to the nearest edge.
 double to_triangle2(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c) {
     const Vec3 n = (b - a).cross(c - a);
     const bool over = n.dot((b - a).cross(p - a)) >= 0.0 && n.dot((c - b).cross(p - b)) >= 0.0 &&
@@ -33,7 +33,7 @@ double to_triangle2(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c) 
     return std::min({to_segment2(p, a, b), to_segment2(p, b, c), to_segment2(p, c, a)});
 }
 
-// Triangles with a ball around each, so that most of them are told off without a closer look.
+// Triangles with bounding balls, which exclude most of them without an exact test.
 class Surface {
 public:
     explicit Surface(const TriangleMesh& mesh) {

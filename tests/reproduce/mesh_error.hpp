@@ -1,5 +1,4 @@
-// How far a simplified mesh is from its original: distances of all vertices of each to the surface of the
-// other.
+// Distances between a simplified mesh and its original: of all vertices of each to the surface of the other.
 #pragma once
 
 #include "ipc/scene/mesh/progressive_mesh.hpp"
@@ -10,10 +9,10 @@ struct MeshError {
     double rms_m = 0.0, max_m = 0.0;  // of the original's vertices to the simplified surface
     double back_max_m = 0.0;          // of the simplified vertices to the original surface
     double border_max_m = 0.0;        // of the original's border vertices to the simplified border; 0: closed
-    double diagonal_m = 0.0;          // of the original's box, to measure the others by
+    double diagonal_m = 0.0;          // of the original's box, as the unit of the others
 };
 
-// Every pair of vertex and triangle is tried: seconds for ten thousand vertices.
+// Tests every pair of vertex and triangle: seconds for ten thousand vertices.
 [[nodiscard]] MeshError mesh_error(const TriangleMesh& original, const TriangleMesh& simplified);
 
 }  // namespace tact::launch

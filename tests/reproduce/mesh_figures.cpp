@@ -16,7 +16,7 @@
 namespace tact::launch {
 namespace {
 
-constexpr double kSeedWeight = 1000.0;  // f of the seed
+constexpr double kPublishedWeight = 1000.0;  // border weight f of the paper
 
 TriangleMesh scaled(TriangleMesh mesh, double factor) {
     for (float& x : mesh.position_m) x = static_cast<float>(static_cast<double>(x) * factor);
@@ -25,7 +25,7 @@ TriangleMesh scaled(TriangleMesh mesh, double factor) {
 
 struct Simplifier {
     std::filesystem::path scratch;
-    double per_m;  // units of the file in a metre
+    double per_m;  // units of the file per metre
 
     TriangleMesh operator()(const TriangleMesh& mesh, std::uint32_t vertices, double weight) const {
         const auto in = scratch / "in.ply", made = scratch / "out.ply";
@@ -69,17 +69,18 @@ std::vector<SummaryRow> figure_3(const Simplifier& simplified, std::string& csv,
                             std::string(names[kept ? 1 : 0][n == 100 ? 0 : 1]) +
                                 (kept ? " protected" : " no protection"),
                             n,
-                            kept ? kSeedWeight : 0.0,
-                            simplified(whole, n, kept ? kSeedWeight : 0.0),
+                            kept ? kPublishedWeight : 0.0,
+                            simplified(whole, n, kept ? kPublishedWeight : 0.0),
                             {}});
-    MeshPicture picture{.title = "Figure 3: an open mesh, its border with and without protection",
-                        .remark =
-                            "sizes as in the paper, border planes weighted by f = 1000 as there; distances: "
-                            "the furthest, in percent of the "
-                            "box's diagonal",
-                        .eye = Vec3(0.5, -1.2, 1.1),
-                        .panel_px = 380,
-                        .panel_height_px = 270};
+    MeshPicture picture{
+        .title = "Figure 3: an open mesh, its border with and without protection",
+        .remark =
+            "sizes as in the paper, border planes weighted by f = 1000 as in the paper; distances: "
+            "maximum, in percent of the "
+            "box's diagonal",
+        .eye = Vec3(0.5, -1.2, 1.1),
+        .panel_px = 380,
+        .panel_height_px = 270};
     for (Row& r : rows) {
         if (r.weight >= 0.0) r.error = mesh_error(whole, r.mesh);
         append(csv, r);
@@ -94,12 +95,13 @@ std::vector<SummaryRow> figure_3(const Simplifier& simplified, std::string& csv,
     const auto border = [&](std::size_t i) { return percent_of(rows[i].error.border_max_m, rows[i].error); };
     const std::string counts =
         text("%zu to %zu and %zu", rows[0].mesh.vertices(), rows[3].mesh.vertices(), rows[4].mesh.vertices());
-    return {{"3", "open mesh, vertices", "1250 to 100 and 8", counts,
-             "a bent sheet of ours; the mesh of the paper is not published"},
-            {"3", "border, no protection", "zig-zag at 100, lost at 8",
-             "off by " + border(1) + " and " + border(2), "furthest, of the mesh's diagonal"},
-            {"3", "border, protected (f = 1000)", "kept at 100 and 8",
-             "off by " + border(3) + " and " + border(4), ""}};
+    return {
+        {"3", "open mesh, vertices", "1250 to 100 and 8", counts,
+         "another bent sheet, because the paper's mesh is not published"},
+        {"3", "border, no protection", "zig-zag at 100, lost at 8",
+         "off by " + border(1) + " and " + border(2), "maximum distance, in percent of the mesh's diagonal"},
+        {"3", "border, protected (f = 1000)", "kept at 100 and 8",
+         "off by " + border(3) + " and " + border(4), ""}};
 }
 
 std::vector<SummaryRow> figure_4(const Simplifier& simplified, std::string& csv,
@@ -111,10 +113,10 @@ std::vector<SummaryRow> figure_4(const Simplifier& simplified, std::string& csv,
         rows.push_back({"4",
                         std::to_string(n),
                         n,
-                        n == kSizes[0] ? -1.0 : kSeedWeight,
-                        simplified(n == kSizes[0] ? made : rows.front().mesh, n, kSeedWeight),
+                        n == kSizes[0] ? -1.0 : kPublishedWeight,
+                        simplified(n == kSizes[0] ? made : rows.front().mesh, n, kPublishedWeight),
                         {}});
-    MeshPicture picture{.title = "Figure 4: isosurface like that of a chaperonin, at three sizes",
+    MeshPicture picture{.title = "Figure 4: a chaperonin-like isosurface at three sizes",
                         .remark =
                             "two rings of eight, made in code; sizes as in the paper; flat shaded; distances "
                             "in percent of the box's diagonal",
@@ -129,20 +131,20 @@ std::vector<SummaryRow> figure_4(const Simplifier& simplified, std::string& csv,
              text("(%c) %zu vertices, %zu triangles", *letter++, r.mesh.vertices(), r.mesh.triangles()),
              r.weight < 0.0 ? "by marching cubes"
                             : "off by " + percent_of(r.error.rms_m, r.error) + " (root mean square), " +
-                                  percent_of(r.error.max_m, r.error) + " (most)",
+                                  percent_of(r.error.max_m, r.error) + " (maximum)",
              r.weight >= 0.0});
     }
     save(picture, out, "fig4_chaperonin");
     const auto off = [&](std::size_t i) {
         return text("%zu vertices, off by ", rows[i].mesh.vertices()) +
                percent_of(rows[i].error.rms_m, rows[i].error) + " rms, " +
-               percent_of(rows[i].error.max_m, rows[i].error) + " most";
+               percent_of(rows[i].error.max_m, rows[i].error) + " maximum";
     };
     return {{"4", "chaperonin, vertices", "12835", std::to_string(rows[0].mesh.vertices()),
-             text("a closed isosurface of ours: marching cubes gave %zu, and %zu were contracted",
+             text("another closed isosurface: marching cubes gave %zu vertices, of which %zu were contracted",
                   made.vertices(), made.vertices() - rows[0].mesh.vertices())},
-            {"4", "about 86 % fewer", "2000, most detail kept", off(1), "of the diagonal"},
-            {"4", "98 % fewer", "200, peaks and seam still seen", off(2), "of the diagonal"}};
+            {"4", "about 86 % fewer", "2000, most detail kept", off(1), "in percent of the diagonal"},
+            {"4", "98 % fewer", "200, peaks and seam still visible", off(2), "in percent of the diagonal"}};
 }
 
 TriangleMesh mesh_of(const MeshCut& cut) {
@@ -152,7 +154,7 @@ TriangleMesh mesh_of(const MeshCut& cut) {
     for (const MeshRange draw : cut.draws()) {
         const auto index = cut.index().subspan(draw.first, draw.count);
         for (std::size_t c = 0; c < index.size(); c += 3)
-            if (index[c] != index[c + 1])  // or it is degenerate
+            if (index[c] != index[c + 1])  // skips degenerate triangles
                 m.triangle.insert(m.triangle.end(), &index[c], &index[c] + 3);
     }
     return m;
@@ -181,7 +183,7 @@ std::vector<SummaryRow> adapted_figure(const ProgressiveMesh& mesh, std::uint32_
     const double fewer =
         100.0 * (1.0 - static_cast<double>(some.triangles()) / static_cast<double>(all.triangles()));
     save({.title = "Figure 6: the surface without and with adaptation",
-          .remark = "the map of the rate experiment; as it was drawn on average at the goal B of figure 5",
+          .remark = "the map of the rate experiment, with the mean level of detail at goal B of figure 5",
           .panels = {{&all, text("(a) %zu triangles", all.triangles()), "paper: 10140", false},
                      {&some, text("(b) %zu triangles, %.0f %% fewer", some.triangles(), fewer),
                       text("paper: 2776, 72 %% fewer; error %.2f A",
@@ -193,7 +195,7 @@ std::vector<SummaryRow> adapted_figure(const ProgressiveMesh& mesh, std::uint32_
          out, "fig6_triangles");
     return {{"6", "triangles before and after", "10140 to 2776",
              text("%zu to %zu", all.triangles(), some.triangles()),
-             "the surface is finer, so that drawing it loads a core of today"}};
+             "a finer surface, so that drawing it loads a current core"}};
 }
 
 }  // namespace tact::launch

@@ -1,7 +1,7 @@
-// The docking paper's figures of meshes: 3 (an open border, with and without protection), 4 (a chaperonin at
-// three sizes) and 6 (the surface before and after adaptation).
+// Mesh figures of the docking paper: 3 (an open border, with and without protection), 4 (a chaperonin at three sizes)
+// and 6 (the surface before and after adaptation).
 //
-// Simplified  by tact-prep, as a child; ours to draw and to measure
+// Simplified  by tact-prep, as a child; drawn and measured here
 // Thread      one; takes some seconds.  Fails by  StartupError
 #pragma once
 
@@ -13,10 +13,10 @@
 
 namespace tact::launch {
 
-// Writes fig3_border.png, fig4_chaperonin.png and meshes.csv into `out`; `scratch` is for what lies between.
+// Writes fig3_border.png, fig4_chaperonin.png and meshes.csv into `out`; `scratch` is for intermediate files.
 std::vector<SummaryRow> mesh_figures(const std::filesystem::path& out, const std::filesystem::path& scratch);
 
-// fig6_triangles.png: all of the mesh, and with so many vertices.
+// Writes fig6_triangles.png: the whole mesh, and the mesh with `vertices` vertices.
 std::vector<SummaryRow> adapted_figure(const ProgressiveMesh& mesh, std::uint32_t vertices,
                                        const std::filesystem::path& out);
 

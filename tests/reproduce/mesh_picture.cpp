@@ -14,7 +14,7 @@
 namespace tact::launch {
 namespace {
 
-constexpr int kSamples = 3;  // a side of a pixel
+constexpr int kSamples = 3;  // per side of a pixel
 constexpr double kEdgePx = 0.55;
 const Vec3 kFront(0.36, 0.62, 0.85), kBack(0.93, 0.66, 0.38);
 

@@ -1,8 +1,8 @@
-// Triangle meshes as pictures: flat shaded with their edges, side by side at one scale.
+// Draws triangle meshes: flat shaded with edges, side by side at one scale.
 //
-// Drawn   orthographic, into a depth buffer of three by three samples a pixel; both sides of a surface,
-//         the back in another tone, so that a border can be told from a fold
-// Thread  any.  Fails by  StartupError where the file cannot be written
+// Drawn   orthographic, into a depth buffer of three by three samples per pixel; both sides of a surface, the back in
+//         another tone, so that a border differs from a fold
+// Thread  any.  Fails by  StartupError if the file cannot be written
 #pragma once
 
 #include <cstdint>
@@ -18,16 +18,16 @@ namespace tact::launch {
 struct MeshPanel {
     const TriangleMesh* mesh = nullptr;
     std::string title{};   // "(b) 100 vertices, no protection"
-    std::string remark{};  // a smaller line under it
+    std::string remark{};  // a smaller line below the title
     bool edges = true;
 };
 
 struct MeshPicture {
     std::string title{}, remark{};
     std::vector<MeshPanel> panels{};
-    Vec3 eye = Vec3(1.0, -1.6, 1.0);  // where it is looked from, in the mesh's frame; z is up
+    Vec3 eye = Vec3(1.0, -1.6, 1.0);  // viewpoint in the mesh's frame; z is up
     int panel_px = 460;
-    int panel_height_px = 0;  // 0: as wide
+    int panel_height_px = 0;  // 0: as the width
 };
 
 struct MeshImage {
@@ -35,10 +35,10 @@ struct MeshImage {
     std::vector<std::uint8_t> rgb;  // rows from the top
 };
 
-// In the box of `framed`; `width_px` by `height_px`, on white.
+// Draws in the bounding box of `framed`; `width_px` by `height_px`, on white.
 [[nodiscard]] MeshImage draw_mesh(const TriangleMesh& mesh, const TriangleMesh& framed, const Vec3& eye,
                                   bool edges, int width_px, int height_px);
-// FOLDER/NAME_a.png and so on, one for each panel, in the box of the first one's mesh; and FOLDER/NAME.panels.json with
+// Writes FOLDER/NAME_a.png and so on, one per panel, in the box of the first panel's mesh; and FOLDER/NAME.panels.json with
 // their titles, from which draw.py makes NAME.png.
 void save(const MeshPicture& picture, const std::filesystem::path& folder, const std::string& name);
 

@@ -23,7 +23,7 @@ constexpr char kNice[] = "-20";
 
 Precedence take_precedence() {
     if (setpriority(PRIO_PROCESS, 0, -20) != 0) return Precedence::none;
-    // Where the kernel knows no such groups, the line above is all there is to do.
+    // On a kernel without autogroup, setpriority() above suffices.
     const int fd = open("/proc/self/autogroup", O_WRONLY | O_CLOEXEC);
     if (fd < 0) return Precedence::session;
     const bool written = write(fd, kNice, sizeof kNice - 1) == static_cast<ssize_t>(sizeof kNice - 1);
@@ -34,7 +34,7 @@ Precedence take_precedence() {
 }  // namespace
 
 const char* precedence_text(Precedence p) {
-    return p == Precedence::session ? "all alike at nice -20" : "all alike at the ordinary priority";
+    return p == Precedence::session ? "all at nice -20" : "all at ordinary priority";
 }
 
 int in_own_session(const std::function<int(Precedence)>& work) {

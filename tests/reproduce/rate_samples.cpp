@@ -29,7 +29,7 @@ double foreign_of(const RateSample& a, const RateSample& b) {
     return std::clamp(1.0 - used / s, 0.0, 1.0);
 }
 
-// What went by between an instant in [a, b] and c.
+// Values between an instant in [a, b] and c.
 struct Between {
     double cycles, controller_s, given_up, foreign_share;
 };

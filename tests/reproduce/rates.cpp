@@ -1,13 +1,13 @@
-// What was learned while setting this up (2026-11-20, one core of two, no graphics card):
-// - A visual process that is never asked to wait takes its fair share whatever it draws, and no law can
-//   help: what a coarser picture frees, it spends on more pictures. So its rate is bounded (--fps-max), as a
-//   display bounds it.
-// - Its frame without any surface (panels, window) costs 7 ms in software: 15 % of the core at 20 pictures a
-//   second. That is the law's limit, as the seed's machine was "exhausted" at a goal of 1200.
-// - The external load is one process more. What it really got is measured, since a load that starves proves
+// Experience from the set-up (2026-11-20, one core of two, no graphics card):
+// - A visual process without a frame-rate limit takes its fair share whatever it draws, and no law can
+//   help: it uses the time saved by a coarser rendering for more frames. So its rate is limited (--fps-max), as by
+//   a screen.
+// - Its frame without a surface (panels, window) costs 7 ms in software: 15 % of the core at 20 frames per
+//   second. That is the law's limit; the machine of the paper was also "exhausted" at a goal of 1200.
+// - The external load is one more process. Its actual share is measured, because a starving load proves
 //   nothing.
-// - 2026-11-21: what other people compiled took part in every figure (603 of 997 Hz was seen). Hence the
-//   session of its own with precedence, and the share of strangers in every window.
+// - 2026-11-21: other users' compilers affected every result (603 of 997 Hz was measured). Hence the
+//   session of its own with priority, and the share of other programs in every window.
 #include "tests/reproduce/rates.hpp"
 
 #include <algorithm>
@@ -19,12 +19,12 @@
 namespace tact::launch {
 namespace {
 
-constexpr double kSeedLowGoal = 800.0 / 550.0, kSeedHighGoal = 1200.0 / 550.0;
+constexpr double kPublishedLowGoal = 800.0 / 550.0, kPublishedHighGoal = 1200.0 / 550.0;
 constexpr double kLoadedShareOfReach = 0.92;
 constexpr double kGoalWantedHz = 1000.0;
 constexpr double kDisplayGoalHz = 15.0;
 
-// The cost of an update is that of its points, nearly: one correction is enough.
+// The cost of an update is nearly proportional to its points: one correction is enough.
 bool scale_up(Rates& r, SharedCore& bench) {
     const double times =
         std::clamp(r.scale.atom_repeats * r.reach_hz * kLoadedShareOfReach / kGoalWantedHz, 1.0, 4000.0);
@@ -32,8 +32,8 @@ bool scale_up(Rates& r, SharedCore& bench) {
     r.scale.atom_repeats = static_cast<int>(std::lround(times));
     r.scene = make_experiment_scene(bench.folder(), r.scale);
     bench.scene(r.scene);
-    std::printf("scaled to %zu points felt\n", r.scene.points_summed);
-    Run again{.name = "coarsest picture under load, scaled",
+    std::printf("scaled to %zu summed points\n", r.scene.points_summed);
+    Run again{.name = "coarsest rendering under load, scaled",
               .law = "fixed",
               .mesh_level = 0.01,
               .phase = {0.5, 0.2, 0.5, 3.0}};
@@ -53,7 +53,7 @@ double Rates::triangles(double vertices) const {
 
 std::vector<const Run*> Rates::runs() const {
     std::vector<const Run*> all;
-    for (const Run* const r : {&off, &low, &high, &on, &on_seed, &fifo_off, &fifo_on})
+    for (const Run* const r : {&off, &low, &high, &on, &on_published, &fifo_off, &fifo_on})
         if (!r->samples.empty()) all.push_back(r);
     return all;
 }
@@ -65,7 +65,7 @@ void Rates::tell_disturbed_windows() {
             (r->fifo ? first : ordinary).push_back(w);
     fast_update_s = launch::fast_update_s(ordinary);
     fifo_fast_update_s = launch::fast_update_s(first);
-    for (Run* const r : {&off, &low, &high, &on, &on_seed, &fifo_off, &fifo_on})
+    for (Run* const r : {&off, &low, &high, &on, &on_published, &fifo_off, &fifo_on})
         if (!r->samples.empty()) r->summarize_with(fast_s(*r));
 }
 
@@ -75,10 +75,10 @@ std::optional<Rates> measure_rates(const RatesSettings& s) {
     r.finely_shared = bench.finely_shared();
     r.scene = make_experiment_scene(bench.folder(), r.scale);
     bench.scene(r.scene);
-    std::printf("core %d, %s; %u vertices, %zu points felt\n", r.core, precedence_text(s.precedence),
+    std::printf("core %d, %s; %u vertices, %zu summed points\n", r.core, precedence_text(s.precedence),
                 r.scene.vertices, r.scene.points_summed);
-    const double q = s.quick ? 0.15 : 1.0;  // of all lengths
-    Run reach{.name = "coarsest picture under load",
+    const double q = s.quick ? 0.15 : 1.0;  // factor on all durations
+    Run reach{.name = "coarsest rendering under load",
               .law = "fixed",
               .mesh_level = 0.01,
               .phase = {0.5, 0.2, 0.5, 3.0 * q}};
@@ -90,14 +90,14 @@ std::optional<Rates> measure_rates(const RatesSettings& s) {
     const Phase with_load{2.0 * q, 6.0 * q, 2.0 * q, 10.0 * q}, without{2.0 * q, 6.0 * q, 0, 0};
     r.off = {.name = "law off", .law = "fixed", .mesh_level = 1.0, .phase = with_load};
     if (!bench.go(r.off)) return std::nullopt;
-    r.low = {.name = s.law + ", goal as the seed's 800, no load",
+    r.low = {.name = s.law + ", goal like the published 800 Hz, no load",
              .law = s.law,
-             .goal_hz = std::round(kSeedLowGoal * r.off.free.rate_mean_hz),
+             .goal_hz = std::round(kPublishedLowGoal * r.off.free.rate_mean_hz),
              .phase = without};
     if (!bench.go(r.low)) return std::nullopt;
-    r.high = {.name = s.law + ", goal as the seed's 1200, no load",
+    r.high = {.name = s.law + ", goal like the published 1200 Hz, no load",
               .law = s.law,
-              .goal_hz = std::round(kSeedHighGoal * r.off.free.rate_mean_hz),
+              .goal_hz = std::round(kPublishedHighGoal * r.off.free.rate_mean_hz),
               .phase = without};
     if (!bench.go(r.high)) return std::nullopt;
     r.on = {.name = s.law + ", external load part-way",
@@ -105,12 +105,12 @@ std::optional<Rates> measure_rates(const RatesSettings& s) {
             .goal_hz = std::round(goal_loaded),
             .phase = with_load};
     if (!bench.go(r.on)) return std::nullopt;
-    r.on_seed = {.name = "sensitus, external load part-way",
-                 .law = "sensitus",
-                 .goal_hz = std::round(goal_loaded),
-                 .phase = with_load};
-    if (s.law != "sensitus" && !bench.go(r.on_seed)) return std::nullopt;
-    if (r.finely_shared && s.precedence == Precedence::session) {  // rights are there
+    r.on_published = {.name = "sensitus, external load part-way",
+                      .law = "sensitus",
+                      .goal_hz = std::round(goal_loaded),
+                      .phase = with_load};
+    if (s.law != "sensitus" && !bench.go(r.on_published)) return std::nullopt;
+    if (r.finely_shared && s.precedence == Precedence::session) {  // rights available
         const Phase fifo{1.0 * q, 0.5 * q, 2.5 * q, 5.0 * q};
         r.fifo_off = {.name = "law off, FIFO",
                       .law = "fixed",
@@ -119,7 +119,7 @@ std::optional<Rates> measure_rates(const RatesSettings& s) {
                       .fifo = true,
                       .phase = fifo};
         if (!bench.go(r.fifo_off)) return std::nullopt;
-        r.fifo_on = {.name = s.law + ", FIFO, goal of the picture 15 frames/s",
+        r.fifo_on = {.name = s.law + ", FIFO, goal of the display 15 frames/s",
                      .law = s.law,
                      .goal_hz = r.on.goal_hz,
                      .fifo = true,

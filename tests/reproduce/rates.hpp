@@ -1,13 +1,12 @@
-// The docking paper's load balancing (its figures 5, 7 and 8), run again on this machine.
+// Load balancing of the docking paper (figures 5, 7 and 8) on this machine.
 //
-// Set-up   shared_core.hpp: all parties on one core with the same precedence
-// Scale    today's core is some hundred times faster, so every atom is felt many times and the surface is
-//          finer (experiment_scene.hpp), such that the goal under load is about a thousand updates a second.
-// Goals    without load 1.45 times the unadapted rate, as the seed's 800 is of its 550, and 2.2 times, as its
-//          1200; with load 0.92 of what the coarsest picture would reach, measured before.
-// FIFO     where rights allow it, the same load once more with the force loop at the goal's rate before
-//          all others: then the load takes no share from it, adapted or not, and what the law holds is
-//          the picture's rate
+// Set-up   shared_core.hpp: all parties on one core with the same priority
+// Scale    a current core is some hundred times faster, so every atom is summed many times and the surface is finer
+//          (experiment_scene.hpp), such that the goal under load is about a thousand updates per second.
+// Goals    without load 1.45 times the unadapted rate, like the published 800 Hz and 550 Hz, and 2.2 times, like the
+//          published 1200 Hz; with load 0.92 of the rate with the coarsest rendering, which is measured first.
+// FIFO     if rights permit, the same load again with the force loop at the goal's rate before all others: then the
+//          load takes no share from the loop, adapted or not, and the law controls the frame rate
 // Thread   one; blocks for about a minute, a tenth of that with quick.
 // Fails by StartupError; leaves no process behind.
 #pragma once
@@ -28,9 +27,9 @@ namespace tact::launch {
 
 struct RatesSettings {
     SharedCoreSettings core{};
-    std::string law = "elastic";  // of the adapted runs; the seed's own is run beside it
-    double goal_hz = 0.0;         // under load; 0: from the measurement
-    bool quick = false;           // shorter, not scaled: shows that everything works, not what it is worth
+    std::string law = "elastic";  // of the adapted runs; the paper's own law runs too
+    double goal_hz = 0.0;         // under load; 0: measured
+    bool quick = false;           // shorter and not scaled: a check without meaningful results
     Precedence precedence = Precedence::none;
 };
 
@@ -40,26 +39,26 @@ struct Rates {
     bool finely_shared = false;  // see tick_source.hpp
     SceneScale scale{};
     ExperimentScene scene{};
-    std::shared_ptr<const ProgressiveMesh> mesh{};  // the surface of the scene
-    double reach_hz = 0.0;                          // with the coarsest picture under load
-    Run off{}, low{}, high{}, on{}, on_seed{};
-    Run fifo_off{}, fifo_on{};  // with FIFO scheduling, where rights allow it; else not run
-    // Of an update on a fast core, from all runs with that scheduling: one that comes first wakes to other
-    // caches.
+    std::shared_ptr<const ProgressiveMesh> mesh{};  // surface of the scene
+    double reach_hz = 0.0;                          // with the coarsest rendering under load
+    Run off{}, low{}, high{}, on{}, on_published{};
+    Run fifo_off{}, fifo_on{};  // with FIFO scheduling, if rights permit; else not run
+    // Time of an update on a fast core, from all runs with that scheduling; with FIFO the loop wakes up with other cache
+    // contents.
     double fast_update_s = 0.0, fifo_fast_update_s = 0.0;
     [[nodiscard]] double fast_s(const Run& run) const {
         return run.fifo ? fifo_fast_update_s : fast_update_s;
     }
-    // Triangles of the surface with so many vertices.
+    // Triangles of the surface with that number of vertices.
     [[nodiscard]] double triangles(double vertices) const;
     [[nodiscard]] std::vector<const Run*> runs() const;
-    void tell_disturbed_windows();  // once all runs are there
+    void tell_disturbed_windows();  // after all runs
 };
 
-// Nothing: a signal asked to end.
+// Nothing: a signal requested the end.
 std::optional<Rates> measure_rates(const RatesSettings& settings);
 
-// rates.csv in that folder.
+// Writes rates.csv into the folder.
 void write_rates(const Rates& rates, const std::filesystem::path& out);
 [[nodiscard]] nlohmann::json json_of(const Rates& rates);
 [[nodiscard]] std::vector<SummaryRow> summary_of(const Rates& rates);

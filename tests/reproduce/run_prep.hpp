@@ -1,4 +1,4 @@
-// tact-prep as an experiment needs it: quiet, soon done, and an error with what it said.
+// Runs tact-prep for an experiment: without output, with a time limit, and with its output in the error.
 #pragma once
 
 #include <filesystem>
@@ -7,7 +7,7 @@
 
 namespace tact::launch {
 
-// Its output goes to the file `log`. Throws StartupError "attempt: ... " where it fails or takes a minute.
+// Writes its output to the file `log`. Throws StartupError "attempt: ..." if it fails or takes a minute.
 void run_prep(const std::vector<std::string>& arguments, const std::filesystem::path& log,
               const std::string& attempt);
 

@@ -29,8 +29,8 @@ TriangleMesh open_sheet() {
 
 namespace {
 
-// Of one subunit, by its height from the plane between the rings: equatorial, intermediate and apical domain
-// and the peak at its end. Angstroms: distance from the axis, height, width of the Gaussian; and its weight.
+// Domains of one subunit, by height above the plane between the rings: equatorial, intermediate and apical domain,
+// and the peak at the end. Angstroms: distance from the axis, height, width of the Gaussian; and the weight.
 struct Domain {
     double out_a, up_a, width_a, weight;
 };
@@ -55,7 +55,7 @@ DensityGrid chaperonin_map(double step_a) {
             for (std::size_t d = 0; d < kSubunit.size(); ++d) {
                 const Domain& m = kSubunit[d];
                 const double side = ring == 0 ? 1.0 : -1.0;
-                // Subunits of the rings stand back to back and lean a little.
+                // The subunits of both rings are back to back and lean slightly.
                 const double angle = 2.0 * std::numbers::pi * k / 8.0 + side * 0.003 * m.up_a;
                 const Vec3 at =
                     Vec3(m.out_a * std::cos(angle), m.out_a * std::sin(angle), side * m.up_a) * kAngstromM;
@@ -88,7 +88,7 @@ TriangleMesh chaperonin(std::size_t vertices_min) {
     double step_a = 12.0;
     TriangleMesh mesh = isosurface(chaperonin_map(step_a), kLevel);
     for (int i = 0; i < 60 && mesh.vertices() < vertices_min; ++i) {
-        // Vertices grow as 1 / step^2; a percent short of it, so as not to leap over.
+        // The number of vertices grows with 1 / step^2; aim a percent lower, to avoid overshooting.
         const double times = std::sqrt(static_cast<double>(std::max<std::size_t>(mesh.vertices(), 100)) /
                                        static_cast<double>(vertices_min));
         step_a *= std::min(times, 0.995);

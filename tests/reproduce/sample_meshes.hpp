@@ -8,8 +8,8 @@ namespace tact::launch {
 // A bent sheet with an open border: 50 by 25 vertices, 1 m by 0.6 m.
 [[nodiscard]] TriangleMesh open_sheet();
 
-// Closed isosurface of a density like that of a chaperonin: two rings of eight subunits back to back, each
-// with a peak that stands out at the end of the cylinder. The coarsest grid that gives at least so many
+// Closed isosurface of a chaperonin-like density: two rings of eight subunits back to back, each with a peak that
+// protrudes at the end of the cylinder. Uses the coarsest grid with at least `vertices_min`
 // vertices.
 [[nodiscard]] TriangleMesh chaperonin(std::size_t vertices_min);
 

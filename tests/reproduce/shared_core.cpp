@@ -24,7 +24,7 @@ namespace tact::launch {
 namespace {
 
 constexpr const char* kSession = "reproduce";
-constexpr int kPriority = 50;  // of a run with FIFO scheduling
+constexpr int kPriority = 50;  // of runs with FIFO scheduling
 constexpr int kSampleMs = 5;
 
 int last_core() {
@@ -35,7 +35,7 @@ int last_core() {
     return 0;
 }
 
-// Processor time of a whole process; 0 where it is gone.
+// Processor time of a process; 0 if it is gone.
 double used_s(pid_t pid) {
     clockid_t clock{};
     timespec t{};
@@ -52,8 +52,8 @@ struct SharedCore::Parts {
           x(scratch.path(), 640, 480),
           tick_source(core) {
         write_whole(scratch.path() / "tact.toml",
-                    // A step takes as long as it takes; a loop that waits for its turn is no fault of the
-                    // device.
+                    // No limit on a step's time; the device's watchdog tolerates a loop that waits for the
+                    // processor.
                     "[servo]\nmodel_us_max = 100000\n[device]\nhand = \"wander\"\nwatchdog_us = 1e6\n");
         log = FileDescriptor(
             open((scratch.path() / "log").c_str(), O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC, 0600));
@@ -108,7 +108,7 @@ struct SharedCore::Parts {
         throw StartupError(
             "starting the experiment",
             "the visual process did not draw within 30 s: " + observer.status_text(),
-            "start tact-gui by hand to see why; they said:\n" + read_small(scratch.path() / "log"));
+            "start tact-gui by hand to see the cause; output:\n" + read_small(scratch.path() / "log"));
     }
 
     void alive(Child& controller, Child& visual) const {
@@ -116,7 +116,7 @@ struct SharedCore::Parts {
             if (c->poll())
                 throw StartupError(
                     "running the experiment", c->name() + " " + c->poll()->text(),
-                    "run it alone to see why; it said:\n" + read_small(scratch.path() / "log"));
+                    "run it alone to see the cause; output:\n" + read_small(scratch.path() / "log"));
     }
 
     bool watch(Run& run, Observer& observer, Child& controller, Child& visual) {
@@ -141,7 +141,7 @@ struct SharedCore::Parts {
     }
 
     void take(Run& run, const Observer& observer, Instant begin, const std::array<pid_t, kParties>& party) {
-        TraceTopic update{};  // some five since the last sample; the ring has room for seconds of them
+        TraceTopic update{};  // about five since the last sample; the ring holds seconds
         while (observer.region().trace.next(trace, update))
             given_up += 1.0 - std::min(1.0, update.items / static_cast<double>(scene.points_summed));
         const auto b = newest(observer.region().bodies);  // of every cycle
@@ -202,6 +202,10 @@ void Run::summarize_with(double fast_s) {
     const double loaded_from = phase.load_on_s() + phase.resettle_s;
     free = summarize(samples, phase.settle_s, phase.load_on_s(), goal_hz, fast_s);
     loaded = summarize(samples, loaded_from, loaded_from + phase.loaded_s, goal_hz, fast_s);
+    const std::vector<RateRow> rows = rate_rows(samples, phase.settle_s, fast_s);
+    worst_start = worst_window(rows, RunPart::start);
+    worst_free = worst_window(rows, RunPart::no_load);
+    worst_loaded = worst_window(rows, RunPart::load);
     if (goal_hz <= 0.0) return;
     settled_free_s = settling_s(samples, 0.0, phase.load_on_s(), goal_hz);
     if (phase.loaded_s > 0.0)

@@ -8,7 +8,7 @@ namespace {
 
 constexpr std::size_t kWrap = 100;
 
-// The words of a text, in lines of at most kWrap characters.
+// Splits a text into lines of at most kWrap characters.
 std::vector<std::string> wrapped(const std::string& text) {
     std::vector<std::string> lines;
     std::istringstream words(text);
@@ -29,18 +29,18 @@ std::string padded(std::string text, std::size_t width) {
 }  // namespace
 
 std::string table_of(const std::vector<SummaryRow>& rows) {
-    std::vector<SummaryRow> all{{"fig", "quantity", "seed", "ours", ""}};
+    std::vector<SummaryRow> all{{"fig", "quantity", "published", "measured", ""}};
     all.insert(all.end(), rows.begin(), rows.end());
-    std::size_t figure = 0, quantity = 0, seed = 0;
+    std::size_t figure = 0, quantity = 0, published = 0;
     for (const SummaryRow& r : all) {
         figure = std::max(figure, r.figure.size());
         quantity = std::max(quantity, r.quantity.size());
-        seed = std::max(seed, r.seed.size());
+        published = std::max(published, r.published.size());
     }
     std::string text;
     for (const SummaryRow& r : all) {
-        text += padded(r.figure, figure) + "  " + padded(r.quantity, quantity) + "  " + padded(r.seed, seed) +
-                "  " + r.ours + "\n";
+        text += padded(r.figure, figure) + "  " + padded(r.quantity, quantity) + "  " +
+                padded(r.published, published) + "  " + r.measured + "\n";
         for (const std::string& line : wrapped(r.differs)) text += std::string(figure + 4, ' ') + line + "\n";
     }
     return text;
@@ -51,8 +51,8 @@ nlohmann::json json_of(const std::vector<SummaryRow>& rows) {
     for (const SummaryRow& r : rows)
         all.push_back({{"figure", r.figure},
                        {"quantity", r.quantity},
-                       {"seed", r.seed},
-                       {"ours", r.ours},
+                       {"published", r.published},
+                       {"measured", r.measured},
                        {"differs", r.differs}});
     return all;
 }

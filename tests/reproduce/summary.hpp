@@ -1,4 +1,4 @@
-// What a reproduction says in the end: one row per number of the seed, with ours beside it.
+// The summary of a reproduction: one row per published number, with the measured one beside it.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -8,14 +8,14 @@
 namespace tact::launch {
 
 struct SummaryRow {
-    std::string figure{};    // of the seed: "5"
-    std::string quantity{};  // with its unit
-    std::string seed{};      // as printed there
-    std::string ours{};
-    std::string differs{};  // what is different and why; empty: it is not
+    std::string figure{};     // of the paper: "5"
+    std::string quantity{};   // with its unit
+    std::string published{};  // as printed in the paper
+    std::string measured{};   // on this machine
+    std::string differs{};    // difference and its reason; empty: none
 };
 
-// As a table for people; columns are as wide as they need, the last one wraps.
+// Formats the rows as a table; columns are as wide as needed, the last one wraps.
 [[nodiscard]] std::string table_of(const std::vector<SummaryRow>& rows);
 [[nodiscard]] nlohmann::json json_of(const std::vector<SummaryRow>& rows);
 

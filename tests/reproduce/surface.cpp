@@ -20,12 +20,12 @@
 namespace tact::launch {
 namespace {
 
-// Of our own, with what stands in the paper's table at that size.
+// The synthetic meshes, with the values of the paper's table for that size (without and with adaptation).
 struct Size {
     const char *name, *shape;
     int parts;
     std::size_t triangles;
-    const char *seed_off, *seed_on;
+    const char *published_off, *published_on;
 };
 constexpr Size kSizes[] = {
     {"2 K", "sphere", 10, 2'000, "1500 Hz, good", "1500 Hz, good"},
@@ -36,7 +36,7 @@ constexpr Size kSizes[] = {
     {"2 M", "sphere", 316, 1'997'120, "", ""},
     {"10 M", "sphere", 707, 9'996'980, "", ""},
 };
-// On smooth spheres of the seed's smallest size and of one that is dense.
+// Smooth spheres of the smallest published size and of a dense one.
 constexpr int kSmoothParts[] = {10, 158};
 
 std::vector<DirectionRow> directions(const std::filesystem::path& scene, bool quick) {
@@ -88,7 +88,7 @@ std::string filters_csv() {
 
 std::string rate_text(const TouchRow& r) { return text("%.0f Hz, %s", r.rate_hz, quality(r).c_str()); }
 
-// Ours, beside the seed's where it has that size: the slow hand, as there.
+// Measured rates beside the published ones of the same size, for the slow hand as in the paper.
 std::vector<SummaryRow> summary_of(const std::vector<TouchRow>& rows) {
     std::vector<SummaryRow> table;
     for (const TouchRow& r : rows) {
@@ -96,20 +96,20 @@ std::vector<SummaryRow> summary_of(const std::vector<TouchRow>& rows) {
         if (table.empty() || table.back().quantity != r.mesh) {
             SummaryRow row{.figure = "T1", .quantity = r.mesh};
             for (const Size& size : kSizes) {
-                if (r.mesh != size.name || *size.seed_off == '\0') continue;
-                row.seed = std::string(size.seed_off) + " -> " + size.seed_on;
+                if (r.mesh != size.name || *size.published_off == '\0') continue;
+                row.published = std::string(size.published_off) + " -> " + size.published_on;
                 row.differs =
-                    "a mesh of ours, as large as there; the seed without -> with adaptation, ours without";
+                    "another mesh of the same size; published: without -> with adaptation; measured: without";
             }
             table.push_back(row);
         }
-        std::string& ours = table.back().ours;
-        ours += (ours.empty() ? "" : "; ") + r.mode + ": " + rate_text(r);
+        std::string& measured = table.back().measured;
+        measured += (measured.empty() ? "" : "; ") + r.mode + ": " + rate_text(r);
     }
     return table;
 }
 
-// By size, the tool and hand that are farthest off.
+// The largest deviation per size, over all tools and hands.
 std::vector<SummaryRow> summary_of(const std::vector<DirectionRow>& rows) {
     std::vector<SummaryRow> table;
     double worst_deg = 0.0;
@@ -118,8 +118,8 @@ std::vector<SummaryRow> summary_of(const std::vector<DirectionRow>& rows) {
         if (i + 1 < rows.size() && rows[i + 1].triangles == rows[i].triangles) continue;
         table.push_back({.figure = "-",
                          .quantity = text("direction, sphere of %zu", rows[i].triangles),
-                         .ours = text("off by %.2f degrees at the most, 99 %% of steps", worst_deg),
-                         .differs = "the seed gives none"});
+                         .measured = text("off by at most %.2f degrees, 99 %% of steps", worst_deg),
+                         .differs = "not published"});
         worst_deg = 0.0;
     }
     return table;
@@ -128,7 +128,7 @@ std::vector<SummaryRow> summary_of(const std::vector<DirectionRow>& rows) {
 }  // namespace
 
 int reproduce_surface(const SurfaceExperiment& e) {
-    // Now, and not after some minutes.
+    // Fail now rather than after some minutes.
     write_whole(e.out / ".writable", "");
     std::filesystem::remove(e.out / ".writable");
     const ScratchFolder scratch;

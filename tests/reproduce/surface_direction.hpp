@@ -1,6 +1,6 @@
-// How far the direction of the force is from the true one on a smooth surface: a sphere, whose normal is known.
+// Angle between the force and the true direction on a smooth surface: a sphere, whose normal is known.
 //
-// Hand      slides at 55 and 220 mm/s, 1.5 +- 0.5 mm deep (touch_paths.hpp); without friction, which turns the force
+// Hand      slides at 55 and 220 mm/s, 1.5 +- 0.5 mm deep (touch_paths.hpp); without friction, which would turn the force
 // Truth     the line from the sphere's centre through the tool
 #pragma once
 
@@ -19,7 +19,7 @@ struct DirectionRow {
     double p50_deg = 0.0, p99_deg = 0.0, max_deg = 0.0;
 };
 
-// steps: along path, about a sphere around the model's origin.
+// steps: along path, on a sphere around the model's origin.
 DirectionRow direction_of(const std::vector<TouchStep>& steps, const std::vector<Vec3>& path_model_m);
 
 [[nodiscard]] std::string csv_of(const std::vector<DirectionRow>& rows);

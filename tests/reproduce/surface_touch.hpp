@@ -1,8 +1,8 @@
-// One mesh touched with every tool, by a slow and a fast hand, in the three modes: rows of table 1.
+// Touches one mesh with every tool, with a slow and a fast hand, in the three modes: rows of table 1.
 //
-// Tools     a point, balls, and a block that is 1000 points (TOOLS.md of rt/force/surface)
-// Off-brute only up to a number of triangles, and fewer steps the more there are
-// Thread    one. Fails by StartupError: the scene is no surface with a forest.
+// Tools     a point, balls, and a block of 1000 points (TOOLS.md of rt/force/surface)
+// Off-brute only up to a number of triangles, with fewer steps for larger meshes
+// Thread    one. Fails by StartupError: the scene is not a surface with a forest.
 #pragma once
 
 #include <filesystem>
@@ -18,10 +18,10 @@ struct TouchBall {
     double radius_m;
 };
 inline constexpr TouchBall kTouchBalls[] = {{"point", 0.0}, {"1 mm", 1e-3}, {"3 mm", 3e-3}};
-inline constexpr const char* kSlowHand = "slow";  // that of the seed
+inline constexpr const char* kSlowHand = "slow";  // as in the paper
 
 [[nodiscard]] SurfaceSettings settings_to_measure(double radius_m);
-// Says each row as it comes.
+// Prints each row when it is complete.
 [[nodiscard]] std::vector<TouchRow> touch_in_all_modes(const std::string& name,
                                                        const std::filesystem::path& scene, bool quick);
 

@@ -1,4 +1,4 @@
-// Words for reports.
+// Text formatting for reports.
 #pragma once
 
 #include <cstdio>
@@ -6,7 +6,7 @@
 
 namespace tact::launch {
 
-// As printf; what is longer than 511 bytes is cut.
+// As printf; truncated to 511 bytes.
 template <class... A>
 std::string text(const char* format, A... a) {
     char line[512];

@@ -15,7 +15,7 @@
 namespace tact::launch {
 
 TickSource::TickSource(int core) {
-    // Asked for here, so that a refusal is known; the child keeps it, and this process gives it back.
+    // Requested here to detect a refusal; the child keeps FIFO scheduling, and this process returns to ordinary scheduling.
     const sched_param high{.sched_priority = 1}, ordinary{.sched_priority = 0};
     if (sched_setscheduler(0, SCHED_FIFO, &high) != 0) return;
     const pid_t parent = getpid();

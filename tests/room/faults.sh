@@ -1,16 +1,16 @@
-# Sourced by try: what goes wrong on new machines. Each step does it for real in a bare room, prints the message, and
-# holds it to one message with a fix, within seconds where nothing can be waited for.
+# Sourced by try: typical faults of new machines. Each step causes the fault in a bare room, prints the message, and checks
+# that it is a single message with a fix, within seconds unless a wait makes sense.
 
-# refused SECONDS "PART OF THE MESSAGE" COMMAND...: it fails, within so long, with one message that has a fix.
+# refused SECONDS "PART OF THE MESSAGE" COMMAND...: the command fails in time, with a single message that contains a fix.
 refused() {
     local limit=$1 part=$2 start=$SECONDS output
     shift 2
-    if output=$("$@" 2>&1); then echo "it did not fail: $output"; return 1; fi
+    if output=$("$@" 2>&1); then echo "the command did not fail: $output"; return 1; fi
     printf '%s\n' "$output"
-    [ $((SECONDS - start)) -le "$limit" ] || { echo "after $((SECONDS - start)) s, more than $limit"; return 1; }
-    grep -qF "$part" <<<"$output" || { echo "it does not say: $part"; return 1; }
+    [ $((SECONDS - start)) -le "$limit" ] || { echo "it took $((SECONDS - start)) s, more than $limit s"; return 1; }
+    grep -qF "$part" <<<"$output" || { echo "the message lacks: $part"; return 1; }
     [ "$(grep -cE '^(install packages|Installing packages|build in [^:]*|configure [^:]*): ' <<<"$output")" = 1 ] || { echo "more than one message"; return 1; }
-    grep -q '^  fix: ' <<<"$output" || { echo "no fix is named"; return 1; }
+    grep -q '^  fix: ' <<<"$output" || { echo "the message has no fix"; return 1; }
 }
 
 ROOM_UNSHARE=--net step "no network" refused 10 "cannot be reached" anna ./deploy/run
@@ -29,11 +29,11 @@ waits() {
     printf '%s\n' "$output"
     grep -q "Another package manager is at work" <<<"$output" && grep -q "install ok installed" <<<"$output"
 }
-step "a lock that is let go is waited for" waits
+step "a lock that is released soon only delays the installation" waits
 
 room_as root 'apt-get update -qq; apt-mark hold libc6 >/dev/null; echo "Package: libc6" >/etc/apt/preferences.d/x'
 held() { anna ". deploy/shell/progress.sh; . deploy/shell/packages.sh; echo libc6-dev-held >/tmp/list; tact_install_packages /tmp/list"; }
-step "a package that no archive has" refused 60 "not in the package archives that apt knows: libc6-dev-held" held
+step "a package in no archive" refused 60 "not in the package archives that apt knows: libc6-dev-held" held
 room_as root 'apt-mark unhold libc6 >/dev/null; rm /etc/apt/preferences.d/x'
 
 room_as root 'echo "anna ALL=(ALL) ALL" >/etc/sudoers.d/anna'
@@ -45,13 +45,13 @@ room_as root 'mv /usr/bin/sudo.away /usr/bin/sudo; echo "anna ALL=(ALL) NOPASSWD
 ROOM_MOUNT="mount --bind \"\$1$room_checkout\" \"\$1$room_checkout\"; mount -o remount,bind,ro \"\$1$room_checkout\"" \
     step "a read-only checkout" refused 10 "the file system is read-only" anna ./deploy/run
 room_as root "chown -R root: '$room_checkout'"
-step "another user's checkout" refused 10 "not this user's to write" anna ./deploy/run
+step "another user's checkout" refused 10 "not writable for this user" anna ./deploy/run
 room_as root "chown -R anna: '$room_checkout'"
 
 moved() {
     anna ". deploy/shell/progress.sh; . deploy/shell/packages.sh; . deploy/shell/build.sh; tact_install_packages deploy/packages-run.txt >/dev/null && tact_build release tact_base >/dev/null" || return
     room_as anna "mv '$room_checkout' ~/moved && cd ~/moved && . deploy/shell/progress.sh && . deploy/shell/packages.sh && . deploy/shell/build.sh && tact_build release tact_base" |
         tee "$room/moved.txt"
-    grep -q "This checkout was moved or copied from $room_checkout: build/release is configured anew." "$room/moved.txt"
+    grep -q "This checkout was moved or copied from $room_checkout: build/release is configured again." "$room/moved.txt"
 }
 step "a moved checkout" moved

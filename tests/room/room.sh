@@ -1,12 +1,12 @@
 # Sourced. A clean room: a minimal Debian in a folder, with its own processes and mounts, apt configured as on the host,
-# German locale, and a plain user (anna) who may use sudo. Needs root, mmdebstrap and unshare.
+# German locale, and a plain user (anna) with sudo rights. Needs root, mmdebstrap and unshare.
 #
-#   room_make SUITE         unpacks one; sets $room. The base archive is kept for a week in build/rooms
-#   room_as USER COMMAND    a login shell of USER (anna, root) in the room; ends all that it started
-#   room_clone              this checkout's HEAD at $room_checkout of the room, anna's
-#   room_remove
+#   room_make SUITE         unpacks a room; sets $room. The base archive is kept for a week in build/rooms
+#   room_as USER COMMAND    runs COMMAND in a login shell of USER (anna, root) in the room; ends all processes it started
+#   room_clone              clones HEAD of this checkout to $room_checkout in the room, owned by anna
+#   room_remove             removes the room
 #
-# ROOM_UNSHARE adds namespaces (--net: no network), ROOM_MOUNT a command that is run in the room's namespace first.
+# ROOM_UNSHARE adds namespaces (--net: no network); ROOM_MOUNT is a command that runs in the room's namespace first.
 
 room_root=$(cd "$(dirname "${BASH_SOURCE[0]}")/../.." && pwd) || exit 1
 room=''
@@ -17,7 +17,7 @@ room_cache=${TACT_ROOM_CCACHE:-${XDG_CACHE_HOME:-$HOME/.cache}/tact-room-ccache}
 room_base() {
     local suite=$1 base=$room_root/build/rooms/$1.tar options=() file mirror
     if [ -n "$(find "$base" -mtime -7 2>/dev/null)" ]; then echo "$base"; return; fi
-    # What apt needs here to reach its archive, it needs there.
+    # apt in the room needs the host's settings to reach its archive.
     for file in /etc/apt/apt.conf /etc/apt/apt.conf.d/*; do
         grep -qs '^ *Acquire' "$file" && options+=("--aptopt=$file")
     done
@@ -36,9 +36,9 @@ room_base() {
 
 room_make() {
     local base
-    if [ "$(id -u)" -ne 0 ]; then echo "room: this needs root; fix: sudo $0 ..." >&2; return 1; fi
+    if [ "$(id -u)" -ne 0 ]; then echo "room: root rights are missing; fix: sudo $0 ..." >&2; return 1; fi
     command -v mmdebstrap >/dev/null || { echo "room: mmdebstrap is missing; fix: apt-get install mmdebstrap" >&2; return 1; }
-    base=$(room_base "$1") || { echo "room: no minimal Debian $1 could be made (see above)" >&2; return 1; }
+    base=$(room_base "$1") || { echo "room: creating a minimal Debian $1 failed (see above); fix: check the network and apt's archive" >&2; return 1; }
     room=$(mktemp -d "${TMPDIR:-/var/tmp}/tact-room-$1.XXXXXX") && chmod 755 "$room" && tar -C "$room" -xf "$base" || return
     cp /etc/resolv.conf "$room/etc/resolv.conf" && mkdir -p "$room/ccache" "$room_cache" && chown 1000:1000 "$room_cache"
 }

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
-"""tact-rt as a process: what its servo thread asks of the kernel, how it ends, whom it refuses.
+"""tact-rt as a process: system calls of its servo thread, ends of a run, refusals.
 
-usage: process_test.py BIN_DIR WRITE_SMALL_SCENE. Exit 77 (skipped) where nothing of it can run.
+usage: process_test.py BIN_DIR WRITE_SMALL_SCENE. Exit code 77 (skipped): no test can run here.
 """
 import json
 import os
@@ -15,8 +15,8 @@ import time
 import unittest
 
 BIN, WRITER = None, None
-# What the servo thread may ask for between its first planned cycle and its last: to sleep, and nothing else.
-# Before and after: its own preparation, and one getrusage on either side.
+# System calls of the servo thread between its first planned cycle and its last: only sleep. Before and after: its own
+# preparation, and one getrusage each.
 ALLOWED = {"clock_nanosleep"}
 PATIENCE_S = 120  # a busy machine is slow, not wrong
 
@@ -48,9 +48,9 @@ class Process(unittest.TestCase):
             seen += line
             if any(word in line for word in words):
                 return seen
-        self.fail(f"none of {words} was ever said:\n{seen}")
+        self.fail(f"no output line contains any of {words}:\n{seen}")
 
-    def test_signals_end_it_in_order(self):
+    def test_signals_end_the_run_in_order(self):
         for number in (signal.SIGTERM, signal.SIGINT):
             child = self.start("--arm")
             self.lines_until(child, "armed to active")
@@ -66,7 +66,7 @@ class Process(unittest.TestCase):
                               stderr=subprocess.DEVNULL, text=True)
         return json.loads(said.stdout)["state"] if said.returncode == 0 else None
 
-    def test_a_log_that_nobody_reads_stops_nothing_and_says_later_what_was_lost(self):
+    def test_an_unread_log_blocks_nothing_and_reports_lost_lines_later(self):
         read, write = os.pipe()
         filler = os.open(f"/proc/self/fd/{write}", os.O_WRONLY | os.O_NONBLOCK)
         try:
@@ -84,15 +84,15 @@ class Process(unittest.TestCase):
             time.sleep(0.05)
         with os.fdopen(read, errors="replace") as log:
             for line in log:
-                if "lines of this log were dropped" in line:
+                if "log lines were dropped" in line:
                     break
             else:
-                self.fail("it ended without a word of what was lost")
+                self.fail("the log ended without the number of lost lines")
             child.send_signal(signal.SIGTERM)
             self.assertIn("updates a second", log.read())
         self.assertEqual(child.wait(PATIENCE_S), 0)
 
-    def test_a_signal_while_it_starts_ends_it_at_once_or_in_order(self):
+    def test_a_signal_during_startup_ends_it_at_once_or_in_order(self):
         for step in range(12):
             child = self.start("--arm")
             time.sleep(0.005 * step)
@@ -100,7 +100,7 @@ class Process(unittest.TestCase):
             out, _ = child.communicate(timeout=PATIENCE_S)
             self.assertIn(child.returncode, (0, -signal.SIGTERM), out)
 
-    def test_a_second_controller_is_refused_and_the_first_goes_on(self):
+    def test_a_second_controller_is_refused_and_the_first_continues(self):
         first = self.start("--arm")
         self.lines_until(first, "armed to active")
         second = self.start("--arm")
@@ -113,7 +113,7 @@ class Process(unittest.TestCase):
         self.assertEqual(other.returncode, 0)
         self.assertIsNone(first.poll())
 
-    def test_killed_outright_the_device_goes_to_zero_force_by_itself_and_a_new_controller_stays_disarmed(self):
+    def test_after_sigkill_the_device_goes_to_zero_force_and_a_new_controller_stays_disarmed(self):
         config, log = os.path.join(self.dir, "process.toml"), os.path.join(self.dir, "device.log")
         with open(config, "w", encoding="utf-8") as f:
             f.write(f'[device]\ndriver = "sim-process"\nwatchdog_us = 10000\nprocess_log = "{log}"\n'
@@ -139,12 +139,12 @@ class Process(unittest.TestCase):
             self.assertTrue(wait_for(lambda: states()[-1][1] in ("watchdog_tripped", "ready")), states()[-1])
             last = states()[-1]
             self.assertEqual(float(last[2]), 0.0)
-            # The session is free again, and nothing re-arms itself.
+            # The session is free again, and nothing arms itself.
             again = self.start("--config", config, "--seconds", "0.1")
             out, _ = again.communicate(timeout=PATIENCE_S)
             self.assertEqual(again.returncode, 0, out)
             self.assertNotIn("armed", out)
-            # Where the machine stood still, the controller has found a fault and taken the force away before.
+            # If the machine paused, the controller has found a fault and removed the force before.
             if last[1] == "watchdog_tripped":
                 self.assertGreaterEqual(float(last[5]), 10.0)
                 tripped += 1
@@ -152,7 +152,7 @@ class Process(unittest.TestCase):
                 return
         self.fail("the device was never powered when its controller was killed")
 
-    def test_bad_input_is_refused_in_words(self):
+    def test_bad_input_is_refused_with_a_message(self):
         config = os.path.join(self.dir, "bad.toml")
         with open(config, "w", encoding="utf-8") as f:
             f.write("[servo]\nperiod_ms = 1\n")
@@ -178,15 +178,15 @@ class Process(unittest.TestCase):
                               text=True, timeout=PATIENCE_S)
         self.assertEqual(good.returncode, 0, good.stderr)
 
-    def test_the_servo_thread_asks_the_kernel_for_nothing_but_sleep(self):
+    def test_the_servo_thread_makes_no_system_call_but_sleep(self):
         if not shutil.which("strace"):
             self.skipTest("strace is not installed")
         log = os.path.join(self.dir, "strace.log")
         probe = subprocess.run(["strace", "-o", os.devnull, "true"], capture_output=True)
         if probe.returncode != 0:
             self.skipTest("ptrace is not permitted here")
-        for seconds in ("2", "20", "60"):  # a longer run where a busy machine gives few cycles
-            # Ordinary scheduling: under strace every sleep costs two stops, too long for a FIFO loop beside others.
+        for seconds in ("2", "20", "60"):  # a longer run if a busy machine makes few cycles
+            # Ordinary scheduling: under strace every sleep costs two stops, too much for a FIFO loop beside other processes.
             child = self.start("--arm", "--seconds", seconds, "--rate", "200", "--priority", "0",
                                before=["strace", "-f", "-o", log])
             out, _ = child.communicate(timeout=PATIENCE_S)
@@ -205,7 +205,7 @@ class Process(unittest.TestCase):
             cycle_calls = calls[usage[0] + 1:usage[1]]
             if "clock_nanosleep" not in cycle_calls:
                 continue
-            # Before the first sleep, the thread tells main that it is ready.
+            # Before the first sleep, the thread signals main that it is ready.
             cycle_calls = cycle_calls[cycle_calls.index("clock_nanosleep"):]
             self.assertEqual(set(cycle_calls) - ALLOWED, set())
             if len(cycle_calls) > 100:

@@ -1,5 +1,5 @@
-// The servo cycle under the interposer: any heap call or mutex lock inside one aborts. Real docking model,
-// emulated device, all commands and all fault paths.
+// The servo cycle under the interposer: a heap call or mutex lock inside a cycle aborts. Real docking model, emulated
+// device, all commands and all fault paths.
 #include <gtest/gtest.h>
 
 #include <cstdlib>
@@ -24,7 +24,7 @@ bool guarded() {
     return installed;
 }
 
-// The compiler must not see that the block is unused, or it takes both calls out.
+// Hides the unused block from the compiler, which would remove both calls.
 [[gnu::noinline]] void touch_the_heap() {
     void* volatile block = std::malloc(32);
     std::free(block);
@@ -35,7 +35,7 @@ bool guarded() {
     delete[] block;
 }
 
-TEST(RtSafeDeathTest, the_guard_itself_sees_what_it_is_for) {
+TEST(RtSafeDeathTest, the_guard_detects_heap_calls_and_locks) {
     if (!guarded()) GTEST_SKIP() << "a sanitizer owns malloc here";
     const auto inside = [](auto what) {
         rt_guard::abort_on_violation(true);
@@ -52,7 +52,7 @@ TEST(RtSafeDeathTest, the_guard_itself_sees_what_it_is_for) {
                  "inside a servo cycle: pthread_mutex_lock");
 }
 
-TEST(RtSafe, outside_of_a_cycle_nothing_is_counted_and_inside_everything_is) {
+TEST(RtSafe, calls_are_counted_only_inside_a_cycle) {
     if (!guarded()) GTEST_SKIP() << "a sanitizer owns malloc here";
     const rt_guard::Counts before = rt_guard::counts();
     touch_the_heap();
@@ -85,7 +85,7 @@ TEST(RtSafe, a_whole_run_with_every_command_and_every_fault_touches_neither_heap
     settings.visual_paths = kMeshPaths;
     settings.watchdogs.timing_latches = true;
     settings.chain.passivity = true;
-    settings.model_deadline = true;  // long past on the machine's clock: the step's shortest way out
+    settings.model_deadline = true;  // always passed on the machine's clock: the step takes its shortest path
     Servo servo({clock, {&hand, 1}, *region, mailbox, &lines}, settings);
 
     rt_guard::abort_on_violation(guarded());
@@ -101,7 +101,7 @@ TEST(RtSafe, a_whole_run_with_every_command_and_every_fault_touches_neither_heap
         device.inject(SimFault::none);
         static_cast<void>(device.open());
         lines.inject(LinesFault::none);
-        cycles(600);  // lines that were lost are looked for twice a second
+        cycles(600);  // lost lines are searched twice per second
         order(CommandKind::reset_fault);
         cycles(2);
         order(CommandKind::arm);
@@ -142,8 +142,8 @@ TEST(RtSafe, a_whole_run_with_every_command_and_every_fault_touches_neither_heap
             cycles(3);
         }
     }
-    // Copies come, change hands a hundred times, are put elsewhere, fixed and removed; wrong ids between
-    // them.
+    // Copies are added, change hands a hundred times, are moved, fixed and removed, with wrong ids in
+    // between.
     const auto order_body = [&](CommandKind kind, std::uint32_t body, double value = 0.0) {
         ServoOrder o{++sequence, value, static_cast<std::uint32_t>(kind), 0, body};
         for (double& p : o.pos_model_m) p = 27e-10;
@@ -164,7 +164,7 @@ TEST(RtSafe, a_whole_run_with_every_command_and_every_fault_touches_neither_heap
     gui.gui_heartbeat_ns = to_ns(clock.now());
     gui.gui_vertices_max = 5000;
     mailbox.housekeeping.publish(gui);
-    cycles(1200);  // it falls silent as well
+    cycles(1200);  // also goes silent
     std::unique_ptr<ForceModel> fresh = make_model(2);
     ASSERT_TRUE(mailbox.model.offer(fresh));
     cycles(300);
@@ -181,9 +181,9 @@ TEST(RtSafe, a_whole_run_with_every_command_and_every_fault_touches_neither_heap
     delete servo.state().hand[0].model;
 }
 
-// The real driver under the servo, its board and bus in lockstep between the cycles: calibrated by a person,
-// armed, every fault of the board, unplugged and plugged in again; armed again by nobody but the person.
-TEST(RtSafe, an_arm_on_its_board_goes_through_its_faults_under_the_servo) {
+// The real driver under the servo, its board and bus in lockstep between the cycles: calibrated by a person, armed, every
+// fault of the board, unplugged and replugged; armed again only by the person.
+TEST(RtSafe, a_run_with_the_board_of_an_arm_and_all_its_faults_touches_neither_heap_nor_mutex) {
     const std::vector<std::byte> bytes = small_scene().to_bytes();
     const SceneFile scene = SceneFile::from_bytes(bytes, "small scene");
     auto owned_bus = std::make_unique<emu::BoardBus>(emu::usual<emu::BoardSettings>());
@@ -200,7 +200,7 @@ TEST(RtSafe, an_arm_on_its_board_goes_through_its_faults_under_the_servo) {
     const HandParts hand{&device, model.release(), info};
     ServoSettings settings;
     settings.visual_paths = kMeshPaths;
-    settings.watchdogs.timing_latches = false;  // a fault of the device latches all the same
+    settings.watchdogs.timing_latches = false;  // faults of the device latch nevertheless
     settings.dry_cycles = 1;
     Servo servo({clock, {&hand, 1}, *region, mailbox}, settings);
     rt_guard::abort_on_violation(guarded());
@@ -237,14 +237,14 @@ TEST(RtSafe, an_arm_on_its_board_goes_through_its_faults_under_the_servo) {
     EXPECT_EQ(health().device_notice[0], static_cast<std::uint8_t>(DeviceNotice::hold_reset_pose));
     order(CommandKind::arm);
     cycles(150);
-    EXPECT_EQ(servo.state().run.state, RunState::armed);  // nobody's hand is on it before it is calibrated
+    EXPECT_EQ(servo.state().run.state, RunState::armed);  // no hand is on the arm before it is calibrated
     EXPECT_FALSE(amplifier_on());
     cycles(3000);
     EXPECT_EQ(servo.state().run.state, RunState::active);
     EXPECT_TRUE(amplifier_on());
     EXPECT_EQ(health().device_notice[0], 0);
     EXPECT_NEAR(static_cast<double>(health().delay_p50_ns), 1e6, 1e5);
-    // 3 N s/m over half a period and a delay of one.
+    // 3 N s/m over half a period plus a delay of one period.
     EXPECT_NEAR(health().stiffness_n_m_max, 2000.0, 200.0);
 
     for (const std::uint16_t cause : {phantom::status::kSafetyOpen, phantom::status::kOverTemperature}) {
@@ -283,7 +283,7 @@ TEST(RtSafe, an_arm_on_its_board_goes_through_its_faults_under_the_servo) {
     EXPECT_EQ(servo.state().run.state, RunState::fault);
     EXPECT_EQ(health().device_notice[0], static_cast<std::uint8_t>(DeviceNotice::gone));
     bus.plug();
-    cycles(4000);  // found again, calibrated again
+    cycles(4000);  // reopened and calibrated again
     EXPECT_EQ(servo.state().run.state, RunState::fault);
     EXPECT_FALSE(amplifier_on());
     arm_again();

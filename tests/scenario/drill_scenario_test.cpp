@@ -1,4 +1,4 @@
-// Drilling in the whole loop, in lockstep: what is cut and when, two hands on one bone, pedals, what is published.
+// Drilling in the whole loop, in lockstep: when and how much is cut, two hands on one bone, pedals, published data.
 #include <gtest/gtest.h>
 
 #include <numeric>
@@ -12,7 +12,7 @@
 namespace tact {
 namespace {
 
-// A wall of bone some 5 mm away from the hand at rest, and a hand that presses a burr into it.
+// A wall of bone about 5 mm from the hand at rest, and a hand that presses a burr into it.
 struct DrillScenario {
     BoneBlock block{64, 5e-4, [](const Vec3& v) { return v.z() < 22.0 ? 1.0 : 0.0; }, 1};
     DrillBone bone{block.bricks, block.density, block.revision};
@@ -66,17 +66,18 @@ TEST(DrillScenario, bone_is_cut_only_while_the_force_is_on) {
     EXPECT_EQ(drill.model.removed_levels(), then);
 }
 
-TEST(DrillScenario, without_the_pedal_the_burr_stands_and_the_bone_holds_the_hand) {
+TEST(DrillScenario, without_the_pedal_the_burr_is_still_and_the_bone_stops_the_hand) {
     DrillScenario drill(false);
     drill.loop.active();
     drill.loop.cycles(3000);
     EXPECT_EQ(drill.model.removed_levels(), 0U);
     EXPECT_GT(drill.loop.shown_n(), 0.2);
-    EXPECT_GT(drill.loop.tool().pos_world_m[2], -6.5e-3);  // the wall is at -5.25 mm, the burr's radius 2
+    EXPECT_GT(drill.loop.tool().pos_world_m[2],
+              -6.5e-3);  // the wall is at -5.25 mm, the burr's radius is 2 mm
     EXPECT_LT(drill.loop.tool().pos_world_m[2], -3.25e-3);
 }
 
-TEST(DrillScenario, what_the_tool_is_and_took_is_published) {
+TEST(DrillScenario, the_tool_and_the_removed_bone_are_published) {
     DrillScenario drill(true);
     drill.loop.active();
     drill.loop.cycles(2000);
@@ -136,7 +137,7 @@ struct TwoHands {
         static_cast<void>(lines.open());
         return &lines;
     }
-    static SceneMeta meta() {  // the wall is 10 mm away from the hands at rest
+    static SceneMeta meta() {  // the wall is 10 mm from the hands at rest
         SceneMeta m{};
         m.kind = SceneKind::drilling;
         m.world_per_model = 1.0;
@@ -163,14 +164,14 @@ struct TwoHands {
     [[nodiscard]] std::uint64_t mass() const {
         return std::accumulate(block.density.begin(), block.density.end(), std::uint64_t{0});
     }
-    // The hands, held back by 30 looks of the lines.
+    // Holds the hands until the lines have 30 samples.
     void active() {
         loop.cycles(60);
         loop.active();
     }
 };
 
-TEST(TwoHandsScenario, the_burr_cuts_the_suction_tube_is_held_and_each_has_a_force_of_its_own) {
+TEST(TwoHandsScenario, the_burr_cuts_the_suction_tube_does_not_and_each_has_its_own_force) {
     TwoHands t;
     const std::uint64_t whole = t.mass();
     t.active();
@@ -211,7 +212,7 @@ TEST(TwoHandsScenario, the_same_seed_leaves_the_same_bone) {
     EXPECT_EQ(run(), run());
 }
 
-TEST(TwoHandsScenario, a_foot_pedal_drives_the_burr_and_another_one_the_suction) {
+TEST(TwoHandsScenario, one_foot_pedal_drives_the_burr_and_another_one_the_suction) {
     TwoHands t(DriveSwitch::line, DriveSwitch::line);
     t.active();
     t.loop.cycles(500);
@@ -228,7 +229,7 @@ TEST(TwoHandsScenario, a_foot_pedal_drives_the_burr_and_another_one_the_suction)
     t.lines.board().press(kLineBurr | kLineSuction);
     t.loop.cycles(3);
     EXPECT_EQ(t.loop.state(), RunState::active);
-    // A board that nobody can read: pedals up, whatever else it stops.
+    // An unreadable board: pedals count as released, in addition to its other effects.
     t.lines.inject(LinesFault::unplugged);
     t.loop.cycles(3);
     EXPECT_EQ(t.loop.drill().hand[0].burr_rad_s, 0.0F);

@@ -1,5 +1,5 @@
-// What may happen to a running controller, and what must happen then. The rows are REALTIME.md's fault table
-// as far as they need no hardware.
+// Faults of a running controller and the required reactions: the rows of the design's fault table that need no
+// hardware.
 #include <gtest/gtest.h>
 #include <pwd.h>
 #include <signal.h>
@@ -16,7 +16,7 @@
 namespace tact::scenario {
 namespace {
 
-constexpr double kForceMaxN = 3.3;  // of the safety chain, by default
+constexpr double kForceMaxN = 3.3;  // default of the safety chain
 
 double length(const float (&v)[3]) {
     return std::hypot(static_cast<double>(v[0]), static_cast<double>(v[1]), static_cast<double>(v[2]));
@@ -24,10 +24,10 @@ double length(const float (&v)[3]) {
 
 bool has(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
 
-// The loop stops in the same way for each of them.
+// Each of these signals stops the loop in the same way.
 class StopSignal : public ::testing::TestWithParam<int> {};
 
-TEST_P(StopSignal, the_force_falls_to_zero_within_a_hundred_cycles_of_a_millisecond_and_the_exit_code_is_0) {
+TEST_P(StopSignal, the_force_falls_to_zero_within_a_hundred_cycles_and_the_exit_code_is_0) {
     const Rig rig;
     Controller rt(rig, {});
     Watch watch(rig);
@@ -38,10 +38,10 @@ TEST_P(StopSignal, the_force_falls_to_zero_within_a_hundred_cycles_of_a_millisec
     RingCursor events = watch.region().events.tail();
     kill(rt.child().pid(), GetParam());
     const auto& ending = rt.child().wait(std::chrono::minutes(1));
-    ASSERT_TRUE(ending) << "it did not end";
+    ASSERT_TRUE(ending) << "the controller did not end";
     EXPECT_TRUE(ending->clean()) << ending->text() << "\n" << rt.said();
 
-    // The region outlives the controller: its last words can be read at leisure.
+    // The region outlives the controller, so its last records can be read afterwards.
     std::vector<TraceTopic> cycles;
     TraceTopic t{};
     RingCursor trace;
@@ -50,15 +50,15 @@ TEST_P(StopSignal, the_force_falls_to_zero_within_a_hundred_cycles_of_a_millisec
         return (c.status & 0xFFU) == static_cast<unsigned>(RunState::active);
     };
     const auto last_active = std::find_if(cycles.rbegin(), cycles.rend(), active);
-    ASSERT_NE(last_active, cycles.rend()) << "it never was active";
+    ASSERT_NE(last_active, cycles.rend()) << "the controller was never active";
     const auto left_active = static_cast<std::size_t>(last_active.base() - cycles.begin());
-    ASSERT_LT(left_active, cycles.size()) << "it never left the state active";
+    ASSERT_LT(left_active, cycles.size()) << "the controller never left the state active";
     std::size_t last_force = left_active;
     for (std::size_t i = left_active; i < cycles.size(); ++i)
         if (length(cycles[i].force_world_n) > 0.0) last_force = i;
     EXPECT_LT(last_force + 1, cycles.size()) << "the last cycle still had a force";
     EXPECT_LE(last_force - left_active, 100U);
-    // Where the machine stood still for so long that the device dropped the force, there is nothing to ramp.
+    // If the machine paused so long that the device dropped the force, there is nothing to ramp.
     bool dropped = false;
     for (EventTopic e{}; watch.region().events.next(events, e);)
         dropped = dropped || e.code == static_cast<std::uint16_t>(EventCode::device_watchdog);
@@ -76,7 +76,7 @@ TEST_P(StopSignal, the_force_falls_to_zero_within_a_hundred_cycles_of_a_millisec
 
 INSTANTIATE_TEST_SUITE_P(Signals, StopSignal, ::testing::Values(SIGTERM, SIGINT, SIGHUP));
 
-TEST(SecondController, is_refused_by_name_and_process_and_the_first_does_not_notice) {
+TEST(SecondController, is_refused_with_session_and_process_and_does_not_disturb_the_first) {
     const Rig rig;
     Controller first(rig, {});
     Watch watch(rig);
@@ -86,7 +86,7 @@ TEST(SecondController, is_refused_by_name_and_process_and_the_first_does_not_not
     const std::uint64_t generation = watch.generation();
     const auto second = run_to_end(
         rig, rt_program(), {rig.scene().string(), "--session", rig.session(), "--priority", "0", "--arm"});
-    ASSERT_TRUE(second) << "the second did not end";
+    ASSERT_TRUE(second) << "the second controller did not end";
     EXPECT_FALSE(second->ending.by_signal);
     EXPECT_EQ(second->ending.number, 1);
     EXPECT_TRUE(has(second->text, "process " + std::to_string(first.child().pid()))) << second->text;
@@ -98,7 +98,7 @@ TEST(SecondController, is_refused_by_name_and_process_and_the_first_does_not_not
     EXPECT_FALSE(first.child().poll());
 }
 
-// Random bytes that can be no order to disarm: the kind's high byte is set.
+// Random bytes that cannot be a disarm order: the kind's high byte is set.
 CommandTopic random_command(std::mt19937& random) {
     CommandTopic c{};
     auto* const bytes = reinterpret_cast<unsigned char*>(&c);
@@ -107,7 +107,7 @@ CommandTopic random_command(std::mt19937& random) {
     return c;
 }
 
-// An order to bodies that is nearly right: any id, a value or a place that may be possible, or no number.
+// A nearly valid order to bodies: any id; a value or pose that may be valid or not a number.
 CommandTopic random_body_order(std::mt19937& random) {
     constexpr auto kFirst = static_cast<unsigned>(CommandKind::select_body),
                    kLast = static_cast<unsigned>(kLastCommand);
@@ -122,7 +122,7 @@ CommandTopic random_body_order(std::mt19937& random) {
     return c;
 }
 
-TEST(HostileVisualProcess, a_flood_of_orders_to_bodies_moves_them_about_and_the_force_stays_within_bounds) {
+TEST(HostileVisualProcess, a_flood_of_orders_to_bodies_keeps_the_force_within_bounds) {
     const Rig rig;
     Controller rt(rig, {"--copies", "4"});
     Watch watch(rig);
@@ -150,7 +150,7 @@ TEST(HostileVisualProcess, a_flood_of_orders_to_bodies_moves_them_about_and_the_
     EXPECT_EQ(command(visual, watch, CommandKind::disarm), CommandResult::done);
 }
 
-TEST(HostileVisualProcess, garbage_is_refused_and_counted_and_the_force_goes_on) {
+TEST(HostileVisualProcess, garbage_is_refused_and_counted_and_the_force_continues) {
     const Rig rig;
     Controller rt(rig, {});
     Watch watch(rig);
@@ -162,9 +162,9 @@ TEST(HostileVisualProcess, garbage_is_refused_and_counted_and_the_force_goes_on)
     int commands = 0, loads = 0;
     for (int burst = 0; burst < 100; ++burst) {
         for (int i = 0; i < 20; ++i, ++commands) visual.region().commands.push(random_command(random));
-        // Known orders with impossible content.
+        // Valid kinds of orders with impossible content.
         CommandTopic c{};
-        c.sequence = 1;  // long past: the numbers run backwards
+        c.sequence = 1;  // old numbers: sequence numbers run backwards
         c.kind = static_cast<std::uint16_t>(CommandKind::set_goal_hz);
         for (const double bad : {std::nan(""), -1.0, HUGE_VAL, 0.0, 1e300}) {
             c.value = bad;
@@ -172,7 +172,7 @@ TEST(HostileVisualProcess, garbage_is_refused_and_counted_and_the_force_goes_on)
             ++commands;
         }
         c.kind = static_cast<std::uint16_t>(CommandKind::set_law);
-        std::memset(c.text, 'A', sizeof c.text);  // does not end
+        std::memset(c.text, 'A', sizeof c.text);  // not terminated
         visual.region().commands.push(c);
         ++commands;
         LoadTopic load{};
@@ -190,8 +190,8 @@ TEST(HostileVisualProcess, garbage_is_refused_and_counted_and_the_force_goes_on)
         EXPECT_EQ(watch.state(), RunState::active);
         EXPECT_LE(watch.force_n(), kForceMaxN + 1e-9);
     }
-    // And bytes anywhere in the shared memory: counters, sequences, records. The first bytes of the ring are
-    // left as they are, so that no burst of old records is read again as new orders.
+    // And random bytes anywhere in the shared memory: counters, sequences, records. The first bytes of the ring stay
+    // unchanged, so that no burst of old records is read as new orders.
     auto* const memory = reinterpret_cast<unsigned char*>(&visual.region().load);
     for (int i = 0; i < 200; ++i) {
         for (std::size_t k = 0; k < sizeof visual.region().load; ++k)
@@ -207,7 +207,7 @@ TEST(HostileVisualProcess, garbage_is_refused_and_counted_and_the_force_goes_on)
     EXPECT_LE(watch.force_n(), kForceMaxN + 1e-9);
     std::printf("%d impossible commands and %d loads sent, %llu refusals counted\n", commands, loads,
                 static_cast<unsigned long long>(h.bad_input - refused));
-    // None of its impossible figures were passed on; possible ones are.
+    // None of its impossible values were passed on; possible ones are.
     DisplayTopic picture{};
     EXPECT_TRUE(!watch.region().picture.read(picture) || plausible(picture.metrics));
     FramesTopic frames{};
@@ -215,19 +215,19 @@ TEST(HostileVisualProcess, garbage_is_refused_and_counted_and_the_force_goes_on)
     visual.region().frames.publish(frames);
     EXPECT_TRUE(
         until([&] { return watch.region().picture.read(picture) && picture.metrics.frames == 4321; }));
-    // Good words are still understood.
+    // Valid commands are still accepted.
     EXPECT_EQ(command(visual, watch, CommandKind::disarm), CommandResult::done);
     EXPECT_EQ(watch.state(), RunState::ready);
 }
 
-TEST(HostileVisualProcess, a_ring_whose_count_runs_wild_costs_bounded_work_and_no_cycle) {
+TEST(HostileVisualProcess, a_ring_with_a_wild_count_costs_bounded_work_and_no_cycle) {
     const Rig rig;
     Controller rt(rig, {});
     Watch watch(rig);
     ASSERT_TRUE(watch.attach()) << rt.said();
     Visual visual(rig);
     ASSERT_TRUE(bring_to_force(visual, watch)) << rt.said();
-    // The count is the ring's first word.
+    // The count is the first word of the ring.
     auto* const count = reinterpret_cast<std::atomic<std::uint64_t>*>(&visual.region().commands);
     const std::uint64_t refused = watch.health().bad_input;
     for (const std::uint64_t wild : {~0ULL, 1ULL, 1ULL << 63U, 0ULL, 12345678901ULL, 2ULL}) {
@@ -240,7 +240,7 @@ TEST(HostileVisualProcess, a_ring_whose_count_runs_wild_costs_bounded_work_and_n
     EXPECT_FALSE(rt.child().poll());
 }
 
-TEST(SilentVisualProcess, by_default_the_force_goes_on_and_the_silence_is_said) {
+TEST(SilentVisualProcess, by_default_the_force_continues_and_the_silence_is_reported) {
     const Rig rig;
     Controller rt(rig, {});
     Watch watch(rig);
@@ -249,7 +249,7 @@ TEST(SilentVisualProcess, by_default_the_force_goes_on_and_the_silence_is_said) 
     RingCursor events;
     ASSERT_TRUE(bring_to_force(visual, watch)) << rt.said();
     bool said = false;
-    ASSERT_TRUE(until([&] {  // it hangs: no frame any more
+    ASSERT_TRUE(until([&] {  // it hangs: no more frames
         EventTopic e{};
         while (watch.region().events.next(events, e))
             said = said || e.code == static_cast<std::uint16_t>(EventCode::gui_silent);
@@ -261,7 +261,7 @@ TEST(SilentVisualProcess, by_default_the_force_goes_on_and_the_silence_is_said) 
     ASSERT_TRUE(until([&] { return watch.force_n() > 0.01; }));
 }
 
-TEST(SilentVisualProcess, where_so_configured_the_force_ramps_out_and_a_person_has_to_arm_again) {
+TEST(SilentVisualProcess, if_configured_the_force_ramps_out_until_a_person_arms_again) {
     const Rig rig;
     Controller rt(rig, {}, "[safety]\non_gui_silent = \"ramp\"\n");
     Watch watch(rig);
@@ -271,7 +271,7 @@ TEST(SilentVisualProcess, where_so_configured_the_force_ramps_out_and_a_person_h
     ASSERT_TRUE(until([&] { return watch.state() == RunState::ready; })) << rt.said();
     EXPECT_EQ(watch.health().reason, static_cast<std::uint8_t>(RunReason::gui_silent));
     ASSERT_TRUE(until([&] { return watch.force_n() == 0.0; }));
-    for (int i = 0; i < 100; ++i) {  // it is back, and that alone changes nothing
+    for (int i = 0; i < 100; ++i) {  // its return alone changes nothing
         visual.frame();
         ASSERT_TRUE(watch.cycles_pass(5));
         EXPECT_EQ(watch.state(), RunState::ready);
@@ -280,7 +280,7 @@ TEST(SilentVisualProcess, where_so_configured_the_force_ramps_out_and_a_person_h
     EXPECT_TRUE(bring_to_force(visual, watch)) << rt.said();
 }
 
-TEST(StartPlaces, are_those_of_the_file_and_a_wrong_file_is_refused_with_its_mend) {
+TEST(StartPoses, come_from_the_file_and_a_wrong_file_is_refused_with_a_fix) {
     const Rig rig;
     const std::string body = R"({"structure": 0, "name": "rod", "pos_model_a": [20, 25, 30],
         "quat_model_body_xyzw": [0, 0, 1, 0], "fixed": )";
@@ -311,7 +311,7 @@ TEST(StartPlaces, are_those_of_the_file_and_a_wrong_file_is_refused_with_its_men
     }
 }
 
-TEST(PermissionDenied, a_runtime_folder_that_strangers_may_write_is_refused_with_its_mend) {
+TEST(PermissionDenied, a_runtime_folder_writable_by_others_is_refused_with_a_fix) {
     const Rig rig;
     const auto open_to_all = rig.folder() / "open";
     std::filesystem::create_directory(open_to_all);
@@ -324,11 +324,11 @@ TEST(PermissionDenied, a_runtime_folder_that_strangers_may_write_is_refused_with
     EXPECT_TRUE(has(said->text, "fix: ")) << said->text;
 }
 
-// The same programs as a user without any privilege, by setpriv of util-linux.
+// The same programs as an unprivileged user, by setpriv of util-linux.
 class WithoutPrivilege : public ::testing::Test {
 protected:
     void SetUp() override {
-        if (getuid() != 0) return;  // the test itself has none
+        if (getuid() != 0) return;  // the test itself has no privileges
         const passwd* const nobody = getpwnam("nobody");
         setpriv_ = launch::find_in_path("setpriv");
         if (nobody == nullptr || setpriv_.empty()) GTEST_SKIP() << "root without setpriv or a user nobody";
@@ -356,7 +356,7 @@ protected:
     std::vector<std::string> words_;
 };
 
-TEST_F(WithoutPrivilege, a_scene_that_may_not_be_read_is_named_with_the_reason) {
+TEST_F(WithoutPrivilege, an_unreadable_scene_is_named_with_the_reason) {
     ASSERT_EQ(chmod(rig_.scene().c_str(), 0000), 0);
     const auto said = run({rt_program().string(), rig_.scene().string(), "--priority", "0", "--check"});
     ASSERT_TRUE(said);
@@ -366,8 +366,7 @@ TEST_F(WithoutPrivilege, a_scene_that_may_not_be_read_is_named_with_the_reason) 
     EXPECT_TRUE(has(said->text, "fix: ")) << said->text;
 }
 
-TEST_F(WithoutPrivilege,
-       real_time_scheduling_that_is_not_permitted_is_said_with_its_mend_and_the_run_goes_on) {
+TEST_F(WithoutPrivilege, refused_real_time_scheduling_is_reported_with_a_fix_and_the_run_continues) {
     const auto said = run({rt_program().string(), rig_.scene().string(), "--seconds", "0.3"});
     ASSERT_TRUE(said);
     EXPECT_TRUE(said->ending.clean()) << said->text;

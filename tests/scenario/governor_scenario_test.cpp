@@ -1,4 +1,4 @@
-// Stories of the governor in the whole loop: what the visual process says comes in by mailbox, levels go out.
+// The governor in the whole loop: reports of the visual process come by mailbox, levels go out.
 #include <gtest/gtest.h>
 
 #include "tests/scenario/lockstep.hpp"
@@ -7,8 +7,9 @@ namespace tact {
 namespace {
 
 using std::chrono::microseconds;
+using std::chrono::milliseconds;
 
-// A visual process whose frames take so long at all of the picture, in proportion below it.
+// A visual process with a frame time proportional to the level; frame_s at level 1.
 struct Picture {
     Lockstep& loop;
     double frame_s;
@@ -43,7 +44,7 @@ ServoSettings with_display_goal(Law law, double hz) {
     return s;
 }
 
-TEST(GovernorScenario, a_map_too_big_for_the_renderer_becomes_usable_while_the_force_stays) {
+TEST(GovernorScenario, a_map_too_big_for_the_renderer_becomes_usable_with_the_same_force_level) {
     for (const Law law : {Law::elastic, Law::sensitus}) {
         Lockstep loop(with_display_goal(law, 30.0));
         loop.active();
@@ -61,7 +62,7 @@ TEST(GovernorScenario, a_map_too_big_for_the_renderer_becomes_usable_while_the_f
     }
 }
 
-TEST(GovernorScenario, a_frame_that_has_not_obeyed_yet_is_not_answered_again) {
+TEST(GovernorScenario, a_frame_that_has_not_applied_the_level_causes_no_further_change) {
     Lockstep loop(with_display_goal(Law::elastic, 30.0));
     loop.active();
     Picture picture{loop, 0.5};
@@ -76,7 +77,7 @@ TEST(GovernorScenario, a_frame_that_has_not_obeyed_yet_is_not_answered_again) {
     EXPECT_LT(picture.level(), once);
 }
 
-TEST(GovernorScenario, without_a_goal_of_its_own_a_slow_picture_stays_as_it_is) {
+TEST(GovernorScenario, without_a_display_goal_a_slow_display_keeps_its_level) {
     Lockstep loop(with_display_goal(Law::elastic, 0.0));
     loop.active();
     Picture picture{loop, 0.5};
@@ -84,11 +85,11 @@ TEST(GovernorScenario, without_a_goal_of_its_own_a_slow_picture_stays_as_it_is) 
     EXPECT_FLOAT_EQ(picture.level(), 1.0F);
 }
 
-// --- bone: the picture's particles ---
+// --- bone: the display's particles ---
 
 PathLevel particles_of(const Lockstep& loop) { return loop.levels().path[kParticlesPathIndex]; }
 
-TEST(GovernorScenario, particles_give_way_with_the_picture_of_bone_and_are_not_there_elsewhere) {
+TEST(GovernorScenario, particles_are_reduced_with_the_display_of_bone_and_absent_elsewhere) {
     ServoSettings settings = with_display_goal(Law::elastic, 30.0);
     EXPECT_EQ(Lockstep(settings).levels().count, 2U);
     settings.visual_paths = kBonePaths;
@@ -116,7 +117,7 @@ TEST(GovernorScenario, particles_give_way_with_the_picture_of_bone_and_are_not_t
     EXPECT_GT(particles_of(loop).level, p.level + 0.2F);
 }
 
-TEST(GovernorScenario, a_force_rate_in_danger_takes_particles_to_their_floor_before_the_force) {
+TEST(GovernorScenario, a_low_force_rate_reduces_particles_to_their_floor_before_the_force) {
     ServoSettings settings;
     settings.free_running = true;
     settings.visual_paths = kBonePaths;
@@ -124,16 +125,19 @@ TEST(GovernorScenario, a_force_rate_in_danger_takes_particles_to_their_floor_bef
     settings.watchdogs.timing_latches = false;
     Lockstep loop(settings);
     loop.model_.clock = &loop.clock_;
-    loop.model_.cost = microseconds(990);
+    loop.model_.cost = microseconds(300);
     loop.active();
     Picture picture{loop, 0.004};
     for (int i = 0; i < 3; ++i) picture.frame();
     ASSERT_EQ(particles_of(loop).level, 1.0F);
-    loop.model_.cost = microseconds(4000);
     const float force_before = loop.levels().path[kForcePathIndex].level;
     bool force_fell = false;
     for (int i = 0; i < 400 && !force_fell; ++i) {
         picture.frame();
+        for (int turn = 0; turn < 10; ++turn) {  // another program uses the processor most of the time
+            loop.cycles(1);
+            loop.clock_.advance(milliseconds(3));
+        }
         const LevelsTopic l = loop.levels();
         force_fell = l.path[kForcePathIndex].level < force_before;
         if (!force_fell) continue;
@@ -143,9 +147,9 @@ TEST(GovernorScenario, a_force_rate_in_danger_takes_particles_to_their_floor_bef
     EXPECT_TRUE(force_fell);
 }
 
-// --- a slow half that does not get through ---
+// --- a slow update that takes too long ---
 
-TEST(GovernorScenario, a_slow_half_that_falls_behind_lowers_the_picture_and_then_what_it_has_to_do) {
+TEST(GovernorScenario, a_late_slow_update_lowers_the_display_and_then_its_own_work) {
     Lockstep loop(with_display_goal(Law::elastic, 30.0));
     loop.model_.clock = &loop.clock_;
     loop.model_.cost = microseconds(100);
@@ -154,7 +158,7 @@ TEST(GovernorScenario, a_slow_half_that_falls_behind_lowers_the_picture_and_then
     for (int i = 0; i < 20; ++i) picture.frame();
     ASSERT_EQ(picture.level(), 1.0F);
     ASSERT_EQ(loop.levels().path[kForcePathIndex].level, 1.0F);
-    loop.model_.turn_s = 0.008;  // of four milliseconds
+    loop.model_.turn_s = 0.008;  // of a period of four milliseconds
     const auto force = [&] { return static_cast<double>(loop.levels().path[kForcePathIndex].level); };
     bool force_fell = false;
     for (int i = 0; i < 2000; ++i) {
@@ -163,7 +167,7 @@ TEST(GovernorScenario, a_slow_half_that_falls_behind_lowers_the_picture_and_then
         force_fell = true;
         EXPECT_EQ(picture.level(), loop.levels().path[kDisplayPathIndex].floor);
     }
-    // Nine tenths of a turn's time are used, and the servo itself missed nothing.
+    // Slow updates use nine tenths of their period, and the servo itself missed nothing.
     EXPECT_TRUE(force_fell);
     EXPECT_LT(loop.model_.slow_update_s(), 0.0041);
     EXPECT_GT(loop.model_.slow_update_s(), 0.003);
@@ -187,7 +191,7 @@ struct FreeLoop : Lockstep {
         s.watchdogs.timing_latches = false;
         return s;
     }
-    // Fewest and most updates in any tenth of the next seconds.
+    // Fewest and most updates in any tenth of a second during the given time.
     std::pair<std::size_t, std::size_t> windows(double seconds) {
         std::vector<Instant> begun;
         const Instant end =
@@ -199,28 +203,29 @@ struct FreeLoop : Lockstep {
         std::pair<std::size_t, std::size_t> w{100000, 0};
         std::size_t from = 0;
         for (std::size_t to = 0; to < begun.size(); ++to) {
-            if (begun[to] - begun[0] < std::chrono::milliseconds(100)) continue;
-            while (begun[to] - begun[from] > std::chrono::milliseconds(100)) ++from;
+            if (begun[to] - begun[0] < milliseconds(100)) continue;
+            while (begun[to] - begun[from] > milliseconds(100)) ++from;
             w = {std::min(w.first, to - from + 1), std::max(w.second, to - from + 1)};
         }
         return w;
     }
 };
 
-TEST(GovernorScenario, free_running_steps_give_up_work_before_the_law_can_answer) {
+TEST(GovernorScenario, free_running_steps_reduce_their_work_before_the_law_can_react) {
     FreeLoop loop(Law::elastic);
-    loop.model_.cost = std::chrono::microseconds(950);
+    loop.model_.cost = std::chrono::microseconds(500);
     static_cast<void>(loop.windows(1.0));
     EXPECT_FLOAT_EQ(loop.health().recomputed_fraction_least, 1.0F);
     loop.model_.cost = std::chrono::microseconds(1500);
     EXPECT_GE(loop.windows(0.25).first, 96U);
-    EXPECT_LT(loop.health().recomputed_fraction_least, 0.95F);
     EXPECT_GE(loop.windows(5.0).first, 96U);
-    EXPECT_GT(loop.health().recomputed_fraction_mean, 0.95F);  // by then the law has answered
-    EXPECT_NEAR(static_cast<double>(loop.levels().path[kForcePathIndex].level), 0.66, 0.05);
+    EXPECT_GT(loop.health().recomputed_fraction_mean, 0.95F);  // by then the level has adapted
+    // Steps of 0.7 ms at most; a rise keeps a tenth of that free.
+    EXPECT_LT(static_cast<double>(loop.levels().path[kForcePathIndex].level), 0.7 / 1.5);
+    EXPECT_GT(static_cast<double>(loop.levels().path[kForcePathIndex].level), 0.7 * 0.63 / 1.5);
 }
 
-TEST(GovernorScenario, free_running_a_level_that_a_person_fixed_is_computed_wholly_at_any_rate) {
+TEST(GovernorScenario, free_running_a_fixed_level_is_computed_completely_at_any_rate) {
     FreeLoop loop(Law::fixed);
     loop.model_.cost = std::chrono::microseconds(1500);
     EXPECT_LE(loop.windows(1.0).second, 68U);
@@ -230,24 +235,29 @@ TEST(GovernorScenario, free_running_a_level_that_a_person_fixed_is_computed_whol
     EXPECT_FLOAT_EQ(loop.health().rested, 0.0F);
 }
 
-TEST(GovernorScenario, free_running_a_loop_ahead_of_its_goal_rests_where_a_picture_could_be_finer) {
+TEST(GovernorScenario, free_running_a_loop_ahead_of_its_goal_rests_if_the_display_could_be_finer) {
     FreeLoop loop(Law::elastic);
     Picture picture{loop, 0.02};
-    loop.model_.cost = std::chrono::microseconds(2000);
-    while (picture.level() > 0.5F) picture.frame();
-    loop.model_.cost = std::chrono::microseconds(400);
+    loop.model_.cost = microseconds(400);
+    while (picture.level() > 0.5F) {
+        picture.frame();
+        for (int turn = 0; turn < 20; ++turn) {  // another program uses the processor most of the time
+            loop.cycles(1);
+            loop.clock_.advance(milliseconds(2));
+        }
+    }
     picture.frame();
     EXPECT_LT(picture.level(), 1.0F);
     const auto [least, most] = loop.windows(0.3);
     EXPECT_GE(least, 96U);
-    EXPECT_LE(most, 112U);  // what lacked before the core was fast again is made good
+    EXPECT_LE(most, 112U);  // deficits from before the core became fast are compensated
     EXPECT_GT(loop.health().rested, 0.3F);
     for (int i = 0; i < 400 && picture.level() < 1.0F; ++i) picture.frame();
-    EXPECT_FLOAT_EQ(picture.level(), 1.0F);  // the law saw that there is time to spare
+    EXPECT_FLOAT_EQ(picture.level(), 1.0F);  // the law detected the spare time
     EXPECT_GE(loop.windows(0.3).first, 200U);
 }
 
-TEST(GovernorScenario, hostile_words_of_the_picture_leave_the_levels_within_their_bounds) {
+TEST(GovernorScenario, hostile_reports_of_the_display_keep_the_levels_within_bounds) {
     for (const double bad : {-1.0, 1e300, 0.0}) {
         Lockstep loop(with_display_goal(Law::elastic, 30.0));
         loop.active();
@@ -267,7 +277,7 @@ TEST(GovernorScenario, hostile_words_of_the_picture_leave_the_levels_within_thei
     }
 }
 
-// A step costs up to 500 us by its level; the picture is not there. Goal 4 kHz: a level of one half.
+// A step costs up to 500 us, proportional to the level; no display. Goal 4 kHz: steps of 175 us at most.
 TEST(GovernorScenario, free_running_the_governor_finds_the_level_that_gives_the_goal) {
     ServoSettings s;
     s.free_running = true;
@@ -277,15 +287,17 @@ TEST(GovernorScenario, free_running_the_governor_finds_the_level_that_gives_the_
     loop.model_.clock = &loop.clock_;
     loop.model_.cost = microseconds(500);
     loop.cycles(30000);
-    EXPECT_NEAR(loop.health().force_rate_hz, 4000.0, 0.05 * 4000.0);
-    EXPECT_NEAR(static_cast<double>(loop.levels().path[kForcePathIndex].level), 0.5, 0.03);
+    EXPECT_GE(loop.health().force_rate_hz, 4000.0);
+    EXPECT_LE(static_cast<double>(loop.levels().path[kForcePathIndex].level), 0.35);
+    EXPECT_GE(static_cast<double>(loop.levels().path[kForcePathIndex].level), 0.25);
     EXPECT_EQ(loop.health().period_ns, 0);
     LatenessTopic lateness{};
     ASSERT_TRUE(loop.region_->lateness.read(lateness));
-    EXPECT_EQ(lateness.total, 0U);  // without a plan nothing is late
+    EXPECT_EQ(lateness.total, 0U);  // without a plan no cycle is late
 }
 
-TEST(GovernorScenario, at_a_fixed_rate_levels_fall_when_cycles_overrun_and_return_when_there_is_time) {
+TEST(GovernorScenario,
+     at_a_fixed_rate_the_level_falls_when_steps_cost_too_much_and_returns_when_there_is_time) {
     ServoSettings s;
     s.watchdogs.timing_latches = false;
     Lockstep loop(s);
@@ -293,37 +305,42 @@ TEST(GovernorScenario, at_a_fixed_rate_levels_fall_when_cycles_overrun_and_retur
     loop.model_.cost = microseconds(1600);
     loop.cycles(20000);
     const float low = loop.levels().path[kForcePathIndex].level;
-    EXPECT_LT(low, 0.75F);
+    EXPECT_LT(low, 0.7F / 1.6F);
     EXPECT_GT(low, 0.35F);
+    const std::uint64_t misses = loop.health().deadline_misses;
+    loop.cycles(10000);
+    EXPECT_EQ(loop.health().deadline_misses, misses);
     loop.model_.cost = microseconds(100);
     loop.cycles(10000);
     EXPECT_FLOAT_EQ(loop.levels().path[kForcePathIndex].level, 1.0F);
     EXPECT_GT(loop.said(EventCode::level_changed), 2);
-    // Each change says why.
+    // Each change reports its reason.
     bool fell = false, rose = false;
     RingCursor cursor;
     for (EventTopic e{}; loop.region_->events.next(cursor, e);) {
         if (e.code != static_cast<std::uint16_t>(EventCode::level_changed)) continue;
         const auto why = static_cast<LevelReason>(e.detail);
-        EXPECT_TRUE(why == LevelReason::rate_low || why == LevelReason::rate_high) << e.detail;
-        fell = fell || why == LevelReason::rate_low;
-        rose = rose || why == LevelReason::rate_high;
+        fell = fell || why == LevelReason::cost_high || why == LevelReason::deadline_missed;
+        rose = rose || why == LevelReason::cost_low;
     }
     EXPECT_TRUE(fell);
     EXPECT_TRUE(rose);
 }
 
-TEST(GovernorScenario, with_a_gui_the_picture_is_given_up_and_the_force_keeps_its_level) {
+TEST(GovernorScenario, with_a_gui_the_display_is_reduced_and_the_force_keeps_its_level) {
     ServoSettings s;
     s.free_running = true;
     s.governor.goal_hz = 1000.0;
     s.watchdogs.timing_latches = false;
     Lockstep loop(s);
     loop.model_.clock = &loop.clock_;
-    loop.model_.cost = microseconds(2000);  // the machine is too slow even so
+    loop.model_.cost = microseconds(300);
     for (int i = 0; i < 20; ++i) {
         loop.mailbox_.housekeeping.publish(gui_at(loop.clock_.now()));
-        loop.cycles(100);
+        for (int turn = 0; turn < 100; ++turn) {  // other programs use the processor most of the time
+            loop.cycles(1);
+            loop.clock_.advance(milliseconds(2));
+        }
         if (loop.levels().path[kDisplayPathIndex].level > 0.011F) {
             EXPECT_FLOAT_EQ(loop.levels().path[kForcePathIndex].level, 1.0F);
         }

@@ -1,12 +1,10 @@
-// kill -9 of the controller and of the visual process, in any order, at random instants, many times.
+// kill -9 of the controller and of the visual process, in any order, at random times, many times.
 //
-// What must hold   the side that was not killed goes on; both find each other again (a new generation, a
-//                  heartbeat); a controller that starts anew is ready, disarmed, and has not shown a force in
-//                  any cycle since.
-// Visual process   this program itself, started with --visual: the same link, region and heartbeat as
-//                  tact-gui without a window, so that hundreds of kills take seconds. SIGUSR1 makes it ask
-//                  the controller to arm.
-// Repeats          the order of events comes from a seed; the instants are the machine's.
+// What must hold   the other process continues; both find each other again (a new generation, a heartbeat); a restarted
+//                  controller is ready, disarmed, and has had zero force in every cycle.
+// Visual process   this program itself, started with --visual: the same link, region and heartbeat as tact-gui without a
+//                  window, so that hundreds of kills take seconds. On SIGUSR1 it asks the controller to arm.
+// Repeats          the order of events comes from a seed; the times depend on the machine.
 #include <gtest/gtest.h>
 #include <signal.h>
 #include <sys/wait.h>
@@ -78,14 +76,14 @@ private:
         kill(controller_->child().pid(), SIGKILL);
         const auto& ending = controller_->child().wait(std::chrono::minutes(1));
         ASSERT_TRUE(ending && ending->by_signal && ending->number == SIGKILL)
-            << "it had ended before: " << controller_->said();
+            << "the controller had already ended: " << controller_->said();
         ++count_.controllers;
     }
     void kill_visual() {
         kill(visual_->pid(), SIGKILL);
         const auto& ending = visual_->wait(std::chrono::minutes(1));
         ASSERT_TRUE(ending && ending->by_signal && ending->number == SIGKILL)
-            << "it had ended before: " << (ending ? ending->text() : "");
+            << "the visual process had already ended: " << (ending ? ending->text() : "");
         ++count_.visuals;
     }
 
@@ -106,7 +104,7 @@ private:
         if (coin()) restart_visual(visual_dies);
         if (controller_dies) {
             start_controller();
-            while (coin(4)) {  // and again, before it is up
+            while (coin(4)) {  // and again before it has started
                 pause(40);
                 kill_controller();
                 ++count_.while_starting;
@@ -141,7 +139,7 @@ private:
         }
     }
 
-    // The visual process died: no cycle is lost by it, and the force is not.
+    // The visual process died: the controller misses no cycle and keeps the force.
     void check_goes_on() {
         ASSERT_TRUE(watch_.cycles_pass(50)) << controller_->said();
         EXPECT_EQ(watch_.state(), RunState::active) << controller_->said();
@@ -150,7 +148,7 @@ private:
         ++count_.went_on;
     }
 
-    // A controller of another generation: from its first cycle on it is ready and without force, and stays
+    // A controller of another generation: it is ready with zero force from its first cycle on, and stays
     // so.
     void check_new_controller() {
         ASSERT_TRUE(watch_.attach(generation_)) << controller_->said();
@@ -173,7 +171,7 @@ private:
         ++count_.came_up_ready;
     }
 
-    // Attached, and its heartbeat is heard.
+    // Attached, and its heartbeat is received.
     void check_visual() {
         ASSERT_TRUE(until([&] {
             const HealthTopic h = watch_.health();
@@ -186,7 +184,7 @@ private:
 
     void arm() {
         ASSERT_TRUE(until([&] {
-            // Asked anew until it is heard: the process may not have been attached when the first one came.
+            // Repeats the request until it is received: the process may not have been attached at the first one.
             if (watch_.state() == RunState::ready) kill(visual_->pid(), SIGUSR1);
             ::usleep(10000);
             return watch_.state() == RunState::active && watch_.force_n() > 0.0;
@@ -207,7 +205,7 @@ private:
         EXPECT_FALSE(std::filesystem::exists(rig_.socket()));
         EXPECT_TRUE(rig_.lock_is_free());
         controller_.reset();
-        EXPECT_EQ(waitpid(-1, nullptr, WNOHANG), -1) << "a process is left";
+        EXPECT_EQ(waitpid(-1, nullptr, WNOHANG), -1) << "a child process is left";
         EXPECT_GT(count_.controllers, 0);
         EXPECT_GT(count_.visuals, 0);
         EXPECT_GT(count_.went_on, 0);
@@ -222,7 +220,7 @@ private:
     Count count_;
 };
 
-TEST(KillCampaign, whoever_dies_the_other_goes_on_and_a_new_controller_has_no_force_until_a_person_arms_it) {
+TEST(KillCampaign, if_one_process_dies_the_other_continues_and_a_new_controller_has_no_force_until_armed) {
     const char* const longer = std::getenv("TACT_CAMPAIGN_S");
     const int seconds = longer != nullptr ? std::atoi(longer) : 4;
     Campaign().run(std::chrono::seconds(std::clamp(seconds, 1, 86400)), 8);

@@ -1,5 +1,5 @@
-// The whole loop with emulated safety lines, in lockstep: zero force in the cycle that sees a stop, latched
-// with its cause, and back by a person alone.
+// The whole loop with emulated safety lines, in lockstep: zero force in the cycle that detects a stop, latched with its
+// cause, cleared only by a person.
 #include <gtest/gtest.h>
 
 #include "hal/sim/sim_lines.hpp"
@@ -10,7 +10,7 @@ namespace {
 
 using std::chrono::milliseconds;
 
-// Open before the loop is built.
+// The lines are open before the loop is built.
 struct WithLines {
     WithLines() { static_cast<void>(lines_.open()); }
     SimLines lines_;
@@ -18,8 +18,8 @@ struct WithLines {
 
 struct Loop : WithLines, Lockstep {
     Loop() : Lockstep({}, {}, &lines_) {
-        model_.stiffness_n_m = 4.0;  // still far from its rest when the stop comes
-        cycles(60);                  // contacts have stood
+        model_.stiffness_n_m = 4.0;  // still far from its rest position when the stop comes
+        cycles(60);                  // contacts have settled
     }
     [[nodiscard]] std::uint8_t driven() { return lines_.board().driven(); }
     [[nodiscard]] bool enabled() { return (driven() & kLineEnable) != 0; }
@@ -30,7 +30,7 @@ struct Stop {
     const char* name;
     LinesFault fault;
     RunReason reason;
-    int cycles_until_zero;  // 1: the cycle that sees it
+    int cycles_until_zero;  // 1: the cycle that detects it
 };
 
 class LinesScenario : public testing::TestWithParam<Stop> {};
@@ -54,14 +54,14 @@ TEST_P(LinesScenario, leads_to_zero_force_latched_until_a_person_resets_and_arms
         EXPECT_FALSE(loop.enabled());
     }
 
-    // What stops cannot be reset.
+    // An active stop cannot be reset.
     if (stop.fault != LinesFault::pedal_released && stop.fault != LinesFault::amplifier_off) {
         loop.cycles(100);
         loop.order(CommandKind::reset_fault);
         loop.cycles(2);
         EXPECT_EQ(loop.state(), RunState::fault);
     }
-    // Released alone, nothing happens.
+    // Releasing it alone has no effect.
     loop.lines_.inject(LinesFault::stop_pressed);
     loop.cycles(1000);
     loop.lines_.inject(LinesFault::none);
@@ -82,7 +82,7 @@ TEST_P(LinesScenario, leads_to_zero_force_latched_until_a_person_resets_and_arms
     loop.cycles(3);
     EXPECT_EQ(loop.state(), RunState::active);
     EXPECT_TRUE(loop.enabled());
-    EXPECT_LT(loop.shown_n(), 0.05);  // the ramp from its beginning
+    EXPECT_LT(loop.shown_n(), 0.05);  // the ramp restarts
     loop.cycles(300);
     EXPECT_GT(loop.shown_n(), 0.0);
 }
@@ -95,11 +95,11 @@ INSTANTIATE_TEST_SUITE_P(
                     Stop{"pedal", LinesFault::pedal_released, RunReason::dead_man, 1},
                     Stop{"read_error", LinesFault::read_error, RunReason::lines_lost, 1},
                     Stop{"unplugged", LinesFault::unplugged, RunReason::lines_lost, 1},
-                    // 100 ms to follow, counted from the first look that differs
+                    // 100 ms to follow, counted from the first differing sample
                     Stop{"amplifier_off", LinesFault::amplifier_off, RunReason::amplifier_readback, 102}),
     [](const auto& tested) { return std::string(tested.param.name); });
 
-TEST(LinesScenarios, an_emergency_stop_is_a_fault_also_while_nothing_is_powered_and_a_pedal_is_none) {
+TEST(LinesScenarios, an_emergency_stop_is_a_fault_even_unpowered_and_a_released_pedal_is_not) {
     Loop loop;
     loop.lines_.inject(LinesFault::pedal_released);
     loop.cycles(100);
@@ -110,7 +110,7 @@ TEST(LinesScenarios, an_emergency_stop_is_a_fault_also_while_nothing_is_powered_
     EXPECT_EQ(loop.result(), CommandResult::refused_state);
     EXPECT_EQ(loop.health().lines, static_cast<std::uint8_t>(LinesShown::stopped));
     EXPECT_EQ(loop.health().lines_reason, static_cast<std::uint8_t>(RunReason::dead_man));
-    // A pedal that is up hides no other fault.
+    // A released pedal masks no other fault.
     loop.device_.inject(SimFault::unplugged);
     loop.cycles(2);
     EXPECT_EQ(loop.reason(), RunReason::device_lost);
@@ -122,7 +122,7 @@ TEST(LinesScenarios, an_emergency_stop_is_a_fault_also_while_nothing_is_powered_
     EXPECT_EQ(other.reason(), RunReason::emergency_stop);
 }
 
-TEST(LinesScenarios, the_pedal_pressed_again_needs_only_what_a_person_does_anyway) {
+TEST(LinesScenarios, after_a_pedal_fault_reset_and_arm_suffice) {
     Loop loop;
     loop.lines_.inject(LinesFault::pedal_released);
     loop.cycles(100);
@@ -138,10 +138,10 @@ TEST(LinesScenarios, the_pedal_pressed_again_needs_only_what_a_person_does_anywa
     EXPECT_TRUE(loop.enabled());
 }
 
-TEST(LinesScenarios, a_stop_that_came_and_went_while_the_servo_stood_still_is_one) {
+TEST(LinesScenarios, a_brief_stop_while_the_servo_was_stopped_is_latched) {
     Loop loop;
     loop.active();
-    // The pump goes on while the servo does not.
+    // The pump continues while the servo is stopped.
     LinesSample s;
     Instant now = loop.clock_.now();
     loop.lines_.inject(LinesFault::stop_pressed);
@@ -176,7 +176,7 @@ TEST(LinesScenarios, a_drop_by_the_supervisor_is_a_fault_of_its_own) {
     EXPECT_TRUE(loop.enabled());
 }
 
-TEST(LinesScenarios, the_enable_line_is_high_only_with_the_amplifier_and_the_lamp_says_so) {
+TEST(LinesScenarios, the_enable_line_is_high_only_with_the_amplifier_and_the_lamp_shows_it) {
     Loop loop;
     EXPECT_FALSE(loop.enabled());
     EXPECT_EQ(loop.driven() & kLineLamp, 0);
@@ -197,7 +197,7 @@ TEST(LinesScenarios, the_enable_line_is_high_only_with_the_amplifier_and_the_lam
     EXPECT_FALSE(loop.enabled());
 }
 
-TEST(LinesScenarios, the_watchdog_line_moves_once_a_cycle) {
+TEST(LinesScenarios, the_watchdog_line_toggles_once_per_cycle) {
     Loop loop;
     const std::uint64_t before = loop.lines_.health().toggles;
     loop.cycles(100);

@@ -1,5 +1,4 @@
-// The whole servo loop on a clock that is moved by hand, with the emulated device: nothing waits, all
-// repeats.
+// The whole servo loop on a manual clock, with the emulated device: no waiting, repeatable.
 #pragma once
 
 #include <array>
@@ -17,7 +16,7 @@
 
 namespace tact {
 
-// Of another hand, where there is one.
+// Parts of a second hand, if there is one.
 struct SecondHand {
     SimSettings sim;
     ForceModel* model = nullptr;
@@ -26,7 +25,7 @@ struct SecondHand {
 
 class Lockstep {
 public:
-    // Lines that are given are open; a model that is given is felt instead of the spring.
+    // lines: already open. model: replaces the spring.
     explicit Lockstep(ServoSettings settings = {}, SimSettings sim = {}, Lines* lines = nullptr,
                       ForceModel* model = nullptr, const SecondHand& second = {}, DriveInput drive = {})
         : region_(new RtRegion{}), device_(sim), device2_(second.sim) {
@@ -47,7 +46,7 @@ public:
     void order(CommandKind kind, double value = 0.0, std::uint32_t index = 0) {
         mailbox_.orders.push({++sequence_, value, static_cast<std::uint32_t>(kind), index});
     }
-    // Armed, active, ramp over.
+    // Armed and active, and the ramp has ended.
     void active() {
         order(CommandKind::arm);
         cycles(600);
@@ -80,7 +79,7 @@ public:
         static_cast<void>(region_->levels.read(t));
         return t;
     }
-    // How many events of this code so far.
+    // Number of events with this code so far.
     [[nodiscard]] int said(EventCode code) const {
         RingCursor cursor;
         EventTopic e{};
@@ -99,7 +98,7 @@ public:
     std::uint64_t sequence_ = 0;
 };
 
-// What the housekeeping thread says of a visual process that reported then.
+// The housekeeping report about a visual process that reported at time t.
 inline HousekeepingReport gui_at(Instant t) {
     HousekeepingReport r{};
     r.gui_heartbeat_ns = to_ns(t);

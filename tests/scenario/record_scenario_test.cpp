@@ -1,4 +1,4 @@
-// What the loop says of every cycle for recordings: all of it, in order, with the inputs as they came.
+// The loop's records of every cycle for recordings: complete, in order, with the inputs as received.
 #include <gtest/gtest.h>
 
 #include "ipc/recorder/drain.hpp"
@@ -17,7 +17,7 @@ SimSettings wandering() {
     return s;
 }
 
-TEST(RecordScenario, every_cycle_is_there_with_its_hand_and_the_dry_ones_too) {
+TEST(RecordScenario, every_cycle_is_recorded_with_its_hand_including_dry_ones) {
     Lockstep loop({}, wandering());
     Drain drain(*loop.region_);
     loop.active();
@@ -41,7 +41,7 @@ TEST(RecordScenario, every_cycle_is_there_with_its_hand_and_the_dry_ones_too) {
     EXPECT_GT(start.device[0].force_n_max, 1.0);
 }
 
-TEST(RecordScenario, a_step_says_what_the_device_gave_and_what_it_was_sent) {
+TEST(RecordScenario, a_step_holds_the_device_sample_and_the_command_sent) {
     Lockstep loop({}, wandering());
     loop.active();
     loop.cycles(1);
@@ -61,10 +61,10 @@ TEST(RecordScenario, a_step_says_what_the_device_gave_and_what_it_was_sent) {
     EXPECT_EQ(h.hand_present, 1);
     EXPECT_EQ(h.deadline_check, 0U);
     EXPECT_EQ(batch.cycles.back().run_state, static_cast<std::uint8_t>(RunState::active));
-    EXPECT_EQ(batch.cycles.back().timestamps, 4);  // wake, before and behind the model, end
+    EXPECT_EQ(batch.cycles.back().timestamps, 4);  // wake-up, before and after the model, end
 }
 
-TEST(RecordScenario, orders_and_reports_come_with_the_step_that_took_them) {
+TEST(RecordScenario, orders_and_reports_are_recorded_with_the_step_that_read_them) {
     Lockstep loop;
     loop.cycles(10);
     loop.order(CommandKind::set_goal_hz, 500.0);
@@ -86,7 +86,7 @@ TEST(RecordScenario, orders_and_reports_come_with_the_step_that_took_them) {
     EXPECT_FALSE(batch.levels.empty());
 }
 
-TEST(RecordScenario, a_reader_that_was_lapped_says_how_many_it_missed) {
+TEST(RecordScenario, a_lapped_reader_reports_the_number_of_missed_records) {
     Lockstep loop;
     Drain drain(*loop.region_);
     Batch batch;
@@ -105,7 +105,7 @@ TEST(RecordScenario, a_reader_that_was_lapped_says_how_many_it_missed) {
     EXPECT_EQ(batch.cycles.size() + lost, static_cast<std::size_t>(capacity) + 120U);
 }
 
-TEST(RecordScenario, who_comes_late_begins_with_the_oldest_and_has_dropped_nothing) {
+TEST(RecordScenario, a_late_reader_begins_with_the_oldest_record_and_counts_no_drops) {
     Lockstep loop;
     loop.cycles(static_cast<int>(decltype(RtRegion::cycles)::kCapacity) + 100);
     Drain drain(*loop.region_);
@@ -117,7 +117,7 @@ TEST(RecordScenario, who_comes_late_begins_with_the_oldest_and_has_dropped_nothi
     EXPECT_EQ(batch.cycles.front().step, batch.hand[0].front().step);
 }
 
-TEST(FlightTape, keeps_the_last_seconds_and_no_more_bytes_than_it_may) {
+TEST(FlightTape, keeps_the_last_seconds_within_its_byte_limit) {
     Lockstep loop;
     Drain drain(*loop.region_);
     record::FlightTape tape(std::chrono::seconds(2), std::size_t{64} << 20U);
@@ -138,7 +138,7 @@ TEST(FlightTape, keeps_the_last_seconds_and_no_more_bytes_than_it_may) {
     EXPECT_GT(small.first_step(), tape.first_step());
 }
 
-TEST(FlightTape, a_fault_an_overrun_and_a_mark_are_causes_and_nothing_else) {
+TEST(FlightTape, only_a_fault_an_overrun_and_a_mark_are_causes) {
     Lockstep loop({}, wandering());
     Drain drain(*loop.region_);
     const auto cause_of = [&] {

@@ -1,5 +1,5 @@
-// A recorded run done again in the test's own process: orders of a visual process, models built aside, a fault; and a
-// recording that was changed.
+// A recorded run replayed inside the test: orders of a visual process, rebuilt models, a fault; and a modified
+// recording.
 #include <gtest/gtest.h>
 
 #include "ipc/record/recording_reader.hpp"
@@ -28,7 +28,7 @@ public:
         stop_ = true;
         if (thread_.joinable()) thread_.join();
     }
-    // The controller has ended.
+    // Call it after the controller has ended.
     const record::RecorderOutcome& join() {
         thread_.join();
         return outcome_;
@@ -55,7 +55,7 @@ std::string words(const ReplayResult& r) {
            std::to_string(d.replayed[0]);
 }
 
-TEST(ReplayScenario, orders_and_models_built_aside_come_again_in_their_steps) {
+TEST(ReplayScenario, orders_and_rebuilt_models_are_replayed_in_their_steps) {
     const Rig rig;
     Recording recording(rig);
     Controller rt(rig, {"--copies", "2"});
@@ -67,7 +67,7 @@ TEST(ReplayScenario, orders_and_models_built_aside_come_again_in_their_steps) {
         EXPECT_EQ(command(visual, watch, kind, 1.0), CommandResult::done);
         ASSERT_TRUE(watch.cycles_pass(200));
     }
-    // The other density is built aside.
+    // The other density needs a rebuild.
     const std::uint32_t all = kDockingClash | kDockingLaplacian;
     ASSERT_TRUE(until([&] {
         visual.frame();
@@ -88,13 +88,13 @@ TEST(ReplayScenario, orders_and_models_built_aside_come_again_in_their_steps) {
     EXPECT_EQ(r.steps, outcome.progress.cycles);
     EXPECT_EQ(r.different, 0U) << words(r);
     EXPECT_GT(r.force_n_most, 0.01);
-    // The region of the replay says what the controller's said at its end.
+    // The region of the replay has the controller's final values.
     BodiesTopic was{}, is{};
     ASSERT_TRUE(watch.region().bodies.read(was));
     ASSERT_TRUE(replay.region()->bodies.read(is));
     EXPECT_EQ(was.options, is.options);
     EXPECT_EQ(std::memcmp(was.body, is.body, sizeof was.body), 0);
-    // A second time, at another hour: only differences of time count.
+    // A second replay with another time offset: only differences of time matter.
     Replay later({.recording = recording.file(), .scene = {}});
     later.shift_by(std::chrono::hours(5));
     EXPECT_EQ(again(later).different, 0U);
@@ -133,7 +133,7 @@ TEST(ReplayScenario, a_changed_sample_is_found_at_its_step) {
     const ReplayResult r = again(replay);
     ASSERT_TRUE(r.first);
     EXPECT_EQ(r.first->step, changed);
-    EXPECT_EQ(r.first->what, "force that the model wants");
+    EXPECT_EQ(r.first->what, "force of the model");
     EXPECT_GT(r.different, 0U);
 }
 

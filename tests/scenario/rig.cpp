@@ -23,7 +23,7 @@ namespace {
 
 constexpr double kA = 1e-10;
 
-// A bent rod of atoms in a map of Gaussians about them: small, so that a controller is up in an instant.
+// A bent rod of atoms in a map of Gaussians around them: small, so that a controller starts quickly.
 void bake_rod(const std::filesystem::path& path) {
     constexpr std::size_t kAtoms = 120;
     constexpr std::uint32_t kSize = 24;
@@ -106,7 +106,7 @@ launch::ChildSettings settings_of(const Rig& rig, const std::vector<std::string>
         s.arguments.insert(s.arguments.end(), {"--priority", "0"});
     s.arguments.insert(s.arguments.end(), more.begin(), more.end());
     s.output_fd = log_fd;
-    s.grace = std::chrono::minutes(1);  // a busy machine must not be taken for a hang
+    s.grace = std::chrono::minutes(1);  // a busy machine must not look like a hang
     return s;
 }
 
@@ -223,7 +223,7 @@ std::uint64_t Visual::send(CommandKind kind, double value, const std::string& te
 }
 
 CommandResult command(Visual& visual, Watch& watch, CommandKind kind, double value, const std::string& text) {
-    // Commands of before the attachment are not for this controller, so it is waited for.
+    // The controller ignores commands from before the attachment, so wait for it.
     if (!until([&] { return visual.frame() && watch.health().gui_attached != 0; }))
         return CommandResult::none;
     const std::uint64_t number = visual.send(kind, value, text);
@@ -231,15 +231,16 @@ CommandResult command(Visual& visual, Watch& watch, CommandKind kind, double val
     const bool answered = until([&] {
         visual.frame();
         h = watch.health();
-        return h.command_sequence == number;
+        return h.command_sequence == number || h.state_sequence == number;
     });
-    return answered ? static_cast<CommandResult>(h.command_result) : CommandResult::none;
+    if (!answered) return CommandResult::none;
+    return static_cast<CommandResult>(h.state_sequence == number ? h.state_result : h.command_result);
 }
 
 bool bring_to_force(Visual& visual, Watch& watch) {
     return until([&] {
         visual.frame();
-        // Armed anew where a machine that stood still made the controller think that the process fell silent.
+        // Arms again if a paused machine made the controller treat the process as silent.
         if (watch.state() == RunState::ready &&
             command(visual, watch, CommandKind::arm) == CommandResult::none)
             return false;

@@ -1,4 +1,4 @@
-# Stories about the whole: the real controller as a process, with what befalls it. See scenario/README.md.
+# Tests of the whole system: the real controller as a process, under faults. See scenario/README.md.
 function(tact_scenario_rig name)
     target_sources(${name} PRIVATE scenario/rig.cpp)
     target_compile_definitions(${name} PRIVATE TACT_RT_PROGRAM="$<TARGET_FILE:tact-rt>")

@@ -1,4 +1,4 @@
-// Stories of the whole loop: it converges, it is commanded, it is stopped, and it repeats to the bit.
+// The whole loop: it converges, executes commands, stops, and is repeatable to the bit.
 #include <gtest/gtest.h>
 
 #include <cstring>
@@ -10,7 +10,7 @@ namespace {
 
 using std::chrono::milliseconds;
 
-TEST(ServoScenario, a_spring_draws_the_emulated_hand_to_its_rest) {
+TEST(ServoScenario, a_spring_moves_the_emulated_hand_to_its_rest_position) {
     Lockstep loop;
     loop.order(CommandKind::arm);
     loop.cycles(4000);
@@ -30,7 +30,7 @@ TEST(ServoScenario, a_spring_draws_the_emulated_hand_to_its_rest) {
     EXPECT_EQ(loop.region_->trace.pushed(), loop.servo_->state().cycle);
 }
 
-TEST(ServoScenario, unarmed_it_shows_no_force_and_the_hand_stays) {
+TEST(ServoScenario, unarmed_there_is_no_force_and_the_hand_stays) {
     Lockstep loop;
     loop.cycles(1000);
     EXPECT_EQ(loop.state(), RunState::ready);
@@ -72,7 +72,7 @@ TEST(ServoScenario, the_same_run_twice_writes_the_same_bytes) {
     EXPECT_GT(a->device_.hand_pose().p_m.norm(), 1e-3);
 }
 
-TEST(ServoScenario, the_hand_leaving_takes_the_force_out_and_its_return_ramps_it_in) {
+TEST(ServoScenario, the_force_ramps_out_when_the_hand_leaves_and_in_when_it_returns) {
     Lockstep loop;
     loop.active();
     loop.device_.inject(SimFault::hand_off);
@@ -117,7 +117,7 @@ TEST(ServoScenario, a_signal_ends_a_faulted_loop_as_well) {
 
 // --- commands ---
 
-TEST(ServoScenario, the_devices_tell_their_samples_their_age_and_the_motors_heat) {
+TEST(ServoScenario, devices_report_samples_their_age_and_motor_heat) {
     Lockstep loop;
     loop.cycles(200);
     const DevicesTopic cool = loop.devices();
@@ -129,7 +129,7 @@ TEST(ServoScenario, the_devices_tell_their_samples_their_age_and_the_motors_heat
     EXPECT_LT(cool.hand[0].age_ns_most, 5'000'000);
     EXPECT_FLOAT_EQ(cool.hand[0].heat, 0.0F);
     EXPECT_GT(cool.hand[0].force_n_continuous, 0.0F);
-    EXPECT_EQ(cool.hand[0].winding_c_max, 0.0F);  // the emulated device counts none
+    EXPECT_EQ(cool.hand[0].winding_c_max, 0.0F);  // the emulated device reports none
     loop.active();
     loop.cycles(2000);
     const DevicesTopic warm = loop.devices();
@@ -138,9 +138,10 @@ TEST(ServoScenario, the_devices_tell_their_samples_their_age_and_the_motors_heat
     EXPECT_GT(warm.hand[0].samples, cool.hand[0].samples + 1000);
 }
 
-TEST(ServoScenario, commands_are_obeyed_and_answered_in_order) {
+TEST(ServoScenario, commands_are_applied_and_answered_in_order) {
     Lockstep loop;
     loop.order(CommandKind::disarm);
+    loop.cycles(1);
     loop.order(CommandKind::arm);
     loop.cycles(3);
     EXPECT_EQ(loop.health().command_sequence, 2U);
@@ -166,7 +167,24 @@ TEST(ServoScenario, commands_are_obeyed_and_answered_in_order) {
     EXPECT_STREQ(loop.levels().law, "elastic");
     EXPECT_EQ(loop.state(), RunState::ready);
     EXPECT_EQ(loop.shown_n(), 0.0);
-    EXPECT_EQ(loop.health().command_sequence, 8U);
+    EXPECT_EQ(loop.health().state_sequence, 8U);
+    EXPECT_EQ(loop.health().command_sequence, 7U);  // overtaken
+}
+
+TEST(ServoScenario, no_flood_of_orders_holds_up_a_disarm_or_hides_its_answer) {
+    for (const int flood : {70, 10'000}) {
+        Lockstep loop;
+        loop.active();
+        ASSERT_EQ(loop.state(), RunState::active);
+        for (int i = 0; i < flood; ++i) loop.order(CommandKind::set_goal_hz, 750.0);
+        loop.order(CommandKind::disarm);
+        for (int i = 0; i < flood; ++i) loop.order(CommandKind::mark);
+        loop.cycles(1);
+        EXPECT_EQ(loop.state(), RunState::ready);
+        loop.cycles(20);
+        EXPECT_EQ(loop.health().state_sequence, 2U + static_cast<std::uint64_t>(flood));
+        EXPECT_EQ(loop.health().state_result, static_cast<std::uint16_t>(CommandResult::done));
+    }
 }
 
 TEST(ServoScenario, a_refused_command_is_answered_without_effect) {
@@ -180,7 +198,7 @@ TEST(ServoScenario, a_refused_command_is_answered_without_effect) {
 
 // --- the visual process ---
 
-TEST(ServoScenario, a_silent_gui_is_said_and_the_force_goes_on_or_ramps_out_as_configured) {
+TEST(ServoScenario, a_silent_gui_is_reported_and_the_force_continues_or_ramps_out_as_configured) {
     for (const bool ramps : {false, true}) {
         ServoSettings s;
         s.gui_silent_ramps = ramps;
@@ -201,7 +219,7 @@ TEST(ServoScenario, a_silent_gui_is_said_and_the_force_goes_on_or_ramps_out_as_c
     }
 }
 
-// --- handing a model over ---
+// --- passing on a model ---
 
 TEST(ServoScenario, a_new_model_enters_with_zero_force_and_the_old_one_comes_back) {
     int destroyed = 0;
@@ -219,7 +237,7 @@ TEST(ServoScenario, a_new_model_enters_with_zero_force_and_the_old_one_comes_bac
     EXPECT_EQ(loop.said(EventCode::model_swapped), 1);
     std::unique_ptr<ForceModel> old = loop.mailbox_.model.collect();
     EXPECT_EQ(old.get(), &loop.model_);
-    static_cast<void>(old.release());  // the fixture's own
+    static_cast<void>(old.release());  // owned by the fixture
     loop.cycles(4000);
     EXPECT_NEAR(loop.tool().pos_world_m[1], 0.05, 1e-4);
 

@@ -1,4 +1,4 @@
-// Dust in the window is the bone that the controller took, to the level: the servo loop, the region between, the site.
+// Dust in the window equals the bone that the controller removed, to the level: servo loop, region, site effects.
 #include <fcntl.h>
 #include <gtest/gtest.h>
 
@@ -24,7 +24,7 @@ SceneMeta meta_of_block() {
     return m;
 }
 
-// A wall of bone in a region, as tact-rt has it, and a window that looks on.
+// A wall of bone in a region, as tact-rt has it, and a window that reads it.
 struct WatchedDrill {
     BoneBlock block{kEdge, 5e-4, [](const Vec3& v) { return v.z() < 22.0 ? 1.0 : 0.0; }, 1};
     OwnedBoneRegion region{head()};
@@ -77,7 +77,7 @@ struct WatchedDrill {
         static_cast<void>(loop->region_->drill.read(t));
         return t;
     }
-    // Of so many milliseconds; few bricks are looked at, so that some wait.
+    // A frame of the given duration; reads few bricks, so that some wait.
     std::size_t frame(int ms) {
         loop->cycles(ms);
         const DrillTopic topic = drill();
@@ -87,7 +87,7 @@ struct WatchedDrill {
     }
 };
 
-TEST(SiteScenario, all_that_the_burr_took_is_dust_or_accounted_for) {
+TEST(SiteScenario, all_bone_that_the_burr_removed_is_dust_or_accounted_for) {
     WatchedDrill watched;
     watched.loop->active();
     for (int i = 0; i < 150; ++i) watched.frame(17);

@@ -1,5 +1,5 @@
-// What the hand feels of a field when the host stalls: the delay of a second bounds the stiffness, and the felt
-// force glides there.
+// The force of a field on a host that stalls: the delay of each second bounds the stiffness, and the force follows
+// smoothly.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -15,7 +15,7 @@ using std::chrono::milliseconds;
 
 constexpr double kSaysNM = 2000.0;
 
-// As stiff as it says somewhere else; where the hand is, so weak that the force lasts for seconds.
+// Reports its stiffness, but is so weak at the hand that the force lasts for seconds.
 class StiffModel final : public ForceModel {
 public:
     [[nodiscard]] KnobSpec knob() const noexcept override { return spring_.knob(); }
@@ -35,7 +35,7 @@ private:
 };
 
 struct Felt {
-    std::vector<double> scale;  // of the model's force, cycle by cycle
+    std::vector<double> scale;  // factor on the model's force in each cycle
     std::vector<double> shown_n;
 };
 
@@ -45,7 +45,7 @@ protected:
         std::unique_ptr<ForceModel> offered(&stiff_);
         loop_.mailbox_.model.offer(offered);
         loop_.cycles(10);
-        static_cast<void>(loop_.mailbox_.model.collect().release());  // the lockstep's own
+        static_cast<void>(loop_.mailbox_.model.collect().release());  // owned by the lockstep
         loop_.active();
     }
     static ServoSettings settings(double damping_n_s_m) {
@@ -79,7 +79,7 @@ struct DampedStallScenario : StallScenario {
     DampedStallScenario() : StallScenario(30.0) {}
 };
 
-TEST_F(StallScenario, the_felt_force_glides_to_what_is_stable_and_back_more_slowly) {
+TEST_F(StallScenario, the_force_follows_the_stable_stiffness_smoothly_and_returns_more_slowly) {
     const Felt smooth = seconds(1, false);
     EXPECT_NEAR(smooth.scale.back(), 1.0, 1e-6);  // 3 N s/m over 1.5 ms are 2000 N/m
     const Felt down = seconds(5, true);
@@ -89,7 +89,7 @@ TEST_F(StallScenario, the_felt_force_glides_to_what_is_stable_and_back_more_slow
     const Felt up = seconds(6, false);
     EXPECT_NEAR(up.scale.back(), 1.0, 0.01);
 
-    // Neither steps: what followed at once would leave out two thirds in one cycle.
+    // Neither steps: an immediate change would remove two thirds in one cycle.
     for (const Felt* felt : {&down, &up})
         for (std::size_t i = 1; i < felt->scale.size(); ++i) {
             ASSERT_LT(std::abs(felt->scale[i] / felt->scale[i - 1] - 1.0), 0.02) << i;
@@ -106,7 +106,7 @@ TEST_F(StallScenario, the_felt_force_glides_to_what_is_stable_and_back_more_slow
     EXPECT_GT(took(up, false), 1.5 * took(down, true));
 }
 
-TEST_F(DampedStallScenario, walls_and_damping_keep_to_bounds_of_their_own) {
+TEST_F(DampedStallScenario, walls_and_damping_have_their_own_bounds) {
     seconds(5, true);
     const HandCycle& h = loop_.servo_->state().hand[0];
     const HealthTopic t = loop_.health();
@@ -117,7 +117,7 @@ TEST_F(DampedStallScenario, walls_and_damping_keep_to_bounds_of_their_own) {
     EXPECT_GT(h.damper.gain(), 1.5 * h.field.gain());
 }
 
-TEST_F(StallScenario, while_nothing_is_felt_the_bound_holds_at_once) {
+TEST_F(StallScenario, without_force_the_bound_applies_at_once) {
     loop_.order(CommandKind::disarm);
     loop_.cycles(200);
     ASSERT_EQ(loop_.shown_n(), 0.0);

@@ -1,5 +1,5 @@
-// The supervisor on real threads: a servo that stands still loses the enable line while it stands, finds that out
-// once it runs again, and only a person brings the line back. How long the drop takes: tests/bench/supervisor_bench.
+// The supervisor on real threads: a stopped servo loses the enable line during the stop, detects this once it runs again,
+// and only a person restores the line. For the duration of the drop see tests/bench/supervisor_bench.
 #include <gtest/gtest.h>
 
 #include "tests/support/real_loop.hpp"
@@ -10,12 +10,12 @@ namespace {
 
 using test::wait_for;
 
-// Longer than a busy host stands still by itself; where it does all the same, that is one drop more.
+// Longer than pauses on a busy host; a longer pause only causes one more drop.
 constexpr Duration kSilence = std::chrono::milliseconds(500);
 
 class SupervisorScenario : public testing::TestWithParam<Stand> {};
 
-TEST_P(SupervisorScenario, a_servo_that_stands_loses_the_enable_line_until_a_person_resets_and_arms) {
+TEST_P(SupervisorScenario, a_stopped_servo_loses_the_enable_line_until_a_person_resets_and_arms) {
     RealLoop loop(kSilence);
     const auto cycles_pass = [&](std::uint64_t n) {
         const std::uint64_t begin = loop.health().cycle;
@@ -26,13 +26,13 @@ TEST_P(SupervisorScenario, a_servo_that_stands_loses_the_enable_line_until_a_per
         before = loop.drops();
         return loop.brought_up();
     }));
-    // The servo has no part in it: it stands until it is let go below.
+    // The servo is not involved: it is stopped until it is released below.
     loop.stand(GetParam());
     ASSERT_TRUE(wait_for([&] { return loop.drops() > before && !loop.enabled(); }));
     EXPECT_EQ(loop.drops(), before + 1);
     EXPECT_TRUE(wait_for([&] { return loop.lines().drops == loop.drops(); }));
 
-    // It runs again: fault, cause and counter said, and the line stays low.
+    // It runs again: fault, cause and counter are reported, and the line stays low.
     loop.stand(Stand::none);
     ASSERT_TRUE(wait_for([&] { return loop.state() == RunState::fault; }));
     EXPECT_EQ(loop.health().reason, static_cast<std::uint8_t>(RunReason::supervisor));

@@ -1,4 +1,4 @@
-// A record whose every word follows from its number, so that a mixture of two is noticed.
+// A record in which every word follows from its number, so that a mixture of two is detected.
 #pragma once
 
 #include <cstddef>

@@ -1,6 +1,6 @@
-// Torn reads are hunted for SECONDS: a child process writes at full speed, this one reads; then the other way
-// round, through two regions at once, with records from 64 bytes to 4 KiB. Exits with 1 on the first torn,
-// repeated or backward value, and prints how many were looked at.
+// Searches for torn reads for SECONDS: a child process writes at full speed and this one reads, then the other way round,
+// through two regions at once, with records from 64 bytes to 4 KiB. Exits with 1 on the first torn, repeated or
+// backward value, and prints the number of values read.
 //
 // usage: two_process_stress [SECONDS]
 #include <fcntl.h>
@@ -109,7 +109,7 @@ bool hunt(double seconds) {
         waitpid(pid, nullptr, 0);
     }
     const std::uint64_t written = first->small.count() + second->small.count();
-    std::printf("%llu written, %llu looked at, %llu missed, %llu torn, %llu backward\n",
+    std::printf("%llu written, %llu read, %llu missed, %llu torn, %llu backward\n",
                 static_cast<unsigned long long>(written), static_cast<unsigned long long>(a.reads + b.reads),
                 static_cast<unsigned long long>(a.misses + b.misses),
                 static_cast<unsigned long long>(a.torn + b.torn),

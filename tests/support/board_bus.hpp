@@ -1,7 +1,7 @@
-// A USB bus made of memory with one emulated board on it, and the driver in lockstep with it.
+// An emulated USB bus with one emulated board, and the driver in lockstep with it.
 //
-// Time    the bus's own; wait() moves it on when nothing has come, so that open() runs without sleeping. For a
-//         driver with a thread of its own the test holds it: no outcome depends on how fast the machine is.
+// Time    of the bus; wait() advances it while no data is pending, so that open() runs without sleeping. For a
+//         driver with a thread of its own the test controls it: no result depends on the speed of the machine.
 // Faults  of the board through board().faults(), of the bus through the members here
 #pragma once
 
@@ -46,7 +46,7 @@ public:
             if (room > Duration{0})
                 advance(std::min(patience, room));
             else
-                std::this_thread::sleep_for(std::chrono::microseconds(20));  // until the test goes on
+                std::this_thread::sleep_for(std::chrono::microseconds(20));  // until the test continues
         }
         std::size_t n = 0;
         for (; n < events.size() && !events_.empty(); ++n) {
@@ -102,12 +102,12 @@ public:
         std::copy_n(bytes.begin(), std::min(bytes.size(), e.bytes.size()), e.bytes.begin());
         events_.push_back(e);
     }
-    // Any thread: time stands still once it is there, and how far it has come.
+    // Any thread: time stops at t; the second function returns the current time.
     void hold_time_at(Instant t) noexcept { held_at_ns_.store(to_ns(t), std::memory_order_release); }
     [[nodiscard]] Instant reached() const noexcept {
         return instant_from_ns(reached_ns_.load(std::memory_order_acquire));
     }
-    // Out of the socket: the board loses its power too.
+    // Unplugs the board, which also loses its power.
     void unplug() noexcept {
         plugged = false;
         if (open_) push(usb::BusEventKind::gone);
@@ -121,7 +121,7 @@ public:
     [[nodiscard]] bool is_open() const noexcept { return open_; }
 
     usb::BusFault finding = usb::BusFault::none;
-    unsigned finds = std::numeric_limits<unsigned>::max();  // of so many calls of open(), the first ones
+    unsigned finds = std::numeric_limits<unsigned>::max();  // number of calls of open() that succeed
     std::string detail, usb_serial, last_serial;
     bool plugged = true, out_hangs = false, clears = true;
     unsigned stalls = 0, send_fails = 0, stalls_cleared = 0, opens = 0;
@@ -140,10 +140,10 @@ private:
     std::atomic<std::int64_t> held_at_ns_{std::numeric_limits<std::int64_t>::max()}, reached_ns_{to_ns(now_)};
 };
 
-// The driver, its pump and the bus, one after the other on one thread. Its `now` is the caller's.
+// Driver, pump and bus in sequence on one thread. The caller advances `now`.
 class LockstepPhantom final : public HapticDevice {
 public:
-    // By reference: g++ 12 mistakes the end of default arguments for a use of uninitialized strings.
+    // By reference: g++ 12 takes the end of default arguments for a use of uninitialized strings.
     LockstepPhantom() : LockstepPhantom(usual<BoardSettings>(), usual<PhantomUsbSettings>()) {}
     LockstepPhantom(const BoardSettings& board, PhantomUsbSettings driver) {
         auto bus = std::make_unique<BoardBus>(board);
@@ -153,7 +153,7 @@ public:
         device_ = std::make_unique<PhantomUsb>(driver, std::move(bus));
     }
 
-    // Also lets the person calibrate it.
+    // Also calibrates it, as a person does.
     DeviceInfo open() override {
         const DeviceInfo info = device_->open();
         opened_ = true;
@@ -180,7 +180,7 @@ public:
     }
     void relax() noexcept override { device_->relax(); }
 
-    // A millisecond, a read, a write.
+    // One millisecond, one read, one write.
     IoStatus cycle(DeviceCommand command) noexcept {
         bus_->advance(std::chrono::milliseconds(1));
         device_->pump().round(Duration{0});
@@ -211,7 +211,7 @@ private:
     std::unique_ptr<PhantomUsb> device_;
     bool opened_ = false, matched_ = false;
     Duration offset_{0};
-    std::uint64_t heartbeat_ = 1'000'000;  // not the caller's
+    std::uint64_t heartbeat_ = 1'000'000;  // the test's own
 };
 
 }  // namespace tact::emu

@@ -1,4 +1,4 @@
-// Bone volumes for tests and benches: densities of a shape, sampled at 27 points a voxel.
+// Bone volumes for tests and benchmarks: densities of a shape, sampled at 27 points per voxel.
 #pragma once
 
 #include <algorithm>
@@ -15,7 +15,7 @@ struct BoneBlock {
     std::vector<std::uint8_t> density;
     std::vector<std::uint32_t> revision;
 
-    // solid(point in voxels): the share of solid bone there, 0 to 1.
+    // solid(point in voxels): the fraction of solid bone there, 0 to 1.
     template <class Solid>
     BoneBlock(std::uint32_t edge, double voxel_m, const Solid& solid, int parts = 3) {
         bricks.size = {edge, edge, edge};

@@ -1,6 +1,6 @@
-// One hand, a spring and a CycleState: what a stage of the servo cycle needs when it is called by itself.
+// One hand, a spring and a CycleState, for tests that call a single stage of the servo cycle.
 //
-// Time     by hand; begins at 100 s
+// Time     manual; begins at 100 s
 #pragma once
 
 #include <gtest/gtest.h>
@@ -19,7 +19,7 @@
 
 namespace tact {
 
-// Gives what a test puts in, and keeps the last command.
+// Returns what a test sets, and keeps the last command.
 class StubDevice final : public HapticDevice {
 public:
     DeviceInfo open() override {
@@ -62,7 +62,7 @@ public:
     LinesCommand command;
 };
 
-// A path of the display, by the name of no system.
+// A path of the display that belongs to no system.
 inline constexpr std::array kStubPaths{VisualPath{{.path = "stub.display", .floor = 0.1F, .start = 1.0F},
                                                   &HousekeepingReport::gui_vertices_max,
                                                   &HousekeepingReport::gui_busy_s}};

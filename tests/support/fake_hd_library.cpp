@@ -207,7 +207,7 @@ void hdGetDoublev(Enum name, double* values) {
     } else if (name == kAngularVelocity) {
         std::fill_n(values, 3, 0.25);
     } else if (name == kTransform) {
-        // A quarter turn about y: x of the tool is -z of the device. Columns after each other.
+        // A quarter turn about y: x of the tool is -z of the device. Column-major.
         const std::array<double, 16> t{0, 0, -1, 0, 0, 1, 0, 0, 1, 0, 0, 0, 0, 0, 0, 1};
         std::copy(t.begin(), t.end(), values);
         if (fake().no_rotation.load()) values[5] = 1.1;

@@ -1,2 +1,2 @@
-// A library that has the right name and one of the functions.
+// A library with the right name but only one of the functions.
 extern "C" unsigned hdInitDevice(const char* name) { return name == nullptr ? 0 : 1; }

@@ -1,7 +1,7 @@
-// A Falcon made of memory, as PROTOCOL.md has it: converter, loader, firmware, legs, and a hand of 0.25 kg at
-// the grip; and the driver in lockstep with it.
+// An emulated Falcon according to PROTOCOL.md: converter, loader, firmware, legs, and a hand of 0.25 kg at the grip;
+// and the driver in lockstep with it.
 //
-// Time    the board's own; wait() moves it on when nothing has come, so that open() runs without sleeping
+// Time    of the board; wait() advances it while no data is pending, so that open() runs without sleeping
 // Faults  members of FalconBoard
 #pragma once
 
@@ -78,7 +78,7 @@ public:
             events_.clear();
             if (!late_bytes_survive) coming_.clear();
         }
-        if (r == falcon::ftdi::kDtrHigh && !dtr_) {  // starts anew, without its marks
+        if (r == falcon::ftdi::kDtrHigh && !dtr_) {  // restarts, not homed
             dtr_ = true;
             restart();
         }
@@ -113,7 +113,7 @@ public:
         plugged = true;
         restart();
     }
-    // As a person does it: the grip all the way in.
+    // Homes it as a person does, by pushing the grip all the way in.
     void push_through() noexcept { homed = falcon::kHomedAll; }
     void restart() noexcept {
         runs = awake_ = false;
@@ -123,12 +123,12 @@ public:
         heard_.clear();
         loaded.clear();
     }
-    // Bytes of the line, as if the device had sent them.
+    // Bytes on the line, as if the device had sent them.
     void say(std::span<const std::byte> bytes, Duration after = std::chrono::microseconds(700)) {
         coming_.push_back({now_ + after, {bytes.begin(), bytes.end()}});
     }
     [[nodiscard]] const Vec3& grip_m() const noexcept { return grip_m_; }
-    // What the motors push with now.
+    // Current force of the motors.
     [[nodiscard]] Vec3 force_n() const noexcept {
         return legs_.force_n(legs_.configuration(grip_m_), shown_);
     }
@@ -136,15 +136,15 @@ public:
 
     bool plugged = true, deaf = false, mute = false, stall = false, refuses_settings = false;
     bool late_bytes_survive = false;
-    bool runs = true;  // the firmware
+    bool runs = true;  // the firmware runs
     std::uint8_t homed = 0, buttons = 0;
-    std::array<std::int16_t, 3> shift{};  // of the counts
+    std::array<std::int16_t, 3> shift{};  // offset of the counts
     std::array<std::int16_t, 3> torque{};
     std::uint8_t leds = 0;
     std::vector<std::byte> firmware = firmware_of(700), loaded;
     std::size_t wrong_echo_at = SIZE_MAX, wrong_echoes = 0;
     unsigned opens = 0, requests = 0, stalls_cleared = 0, forgotten = 0, hellos_missed = 0, loads = 0;
-    std::vector<std::byte> instead;  // of the next reply, once
+    std::vector<std::byte> instead;  // replaces the next reply
     bool instead_set = false;
     Duration reply_after = std::chrono::microseconds(700);
     usb::BusFault finding = usb::BusFault::none;
@@ -180,7 +180,7 @@ private:
                 --hellos_missed;
                 return;
             }
-            // Some converters give a zero first.
+            // Some converters send a zero first.
             const std::array back{std::byte{0}, std::byte{0x0A}, std::byte{0x44}, std::byte{0x2C},
                                   std::byte{0x0D}};
             return say(back);
@@ -251,7 +251,7 @@ private:
     Instant now_ = instant_from_ns(4'294'000'000'000);  // microseconds of 32 bits wrap a second later
 };
 
-// The driver, its pump and the board, one after the other on one thread. Its `now` is the caller's.
+// Driver, pump and board in sequence on one thread. The caller advances `now`.
 class LockstepFalcon final : public HapticDevice {
 public:
     explicit LockstepFalcon(const std::string& firmware = {}) {
@@ -264,7 +264,7 @@ public:
         device_ = std::make_unique<Falcon>(settings, std::move(board));
     }
 
-    // Also lets the person push the grip in.
+    // Also pushes the grip in, as a person does.
     DeviceInfo open() override {
         const DeviceInfo info = open_only();
         board_->push_through();
@@ -293,7 +293,7 @@ public:
     }
     void relax() noexcept override { device_->relax(); }
 
-    // A millisecond, a read, a write.
+    // One millisecond, one read, one write.
     IoStatus cycle(DeviceCommand given) noexcept {
         pass(std::chrono::milliseconds(1));
         const IoStatus status = device_->read(sample, board_->now());
@@ -304,7 +304,7 @@ public:
     }
     // At most a millisecond without the servo.
     void pass(Duration d) noexcept {
-        // In pieces, as a pump's thread has them, so that its requests fall in step with the servo.
+        // In small pieces, as the pump thread works, so that its requests are in step with the servo.
         Duration left = std::min<Duration>(d, std::chrono::milliseconds(1));
         while (left > Duration{0}) {
             const Duration piece = std::min<Duration>(left, std::chrono::microseconds(250));
@@ -328,7 +328,7 @@ private:
     std::unique_ptr<Falcon> device_;
     bool opened_ = false, matched_ = false;
     Duration offset_{0};
-    std::uint64_t heartbeat_ = 1'000'000;  // not the caller's
+    std::uint64_t heartbeat_ = 1'000'000;  // the test's own
 };
 
 }  // namespace tact::emu

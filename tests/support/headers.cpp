@@ -1,1 +1,1 @@
-// The headers that most tests begin with; see tact_test_headers.
+// The headers that most tests include; see tact_test_headers.

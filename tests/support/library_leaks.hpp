@@ -1,7 +1,7 @@
-// For the leak sanitizer: what libraries lose by themselves, in tests that lead them there.
+// Suppressions for the leak sanitizer: leaks inside libraries, in tests that provoke them.
 //
 // libhdf5   some hundred bytes for each damaged file that it refuses.
-// GDCM      80 bytes for a picture in JPEG-LS that is cut short.
+// GDCM      80 bytes for a truncated JPEG-LS image.
 #pragma once
 
 extern "C" const char* __lsan_default_suppressions();  // NOLINT(bugprone-reserved-identifier)

@@ -1,5 +1,5 @@
-// A Haptikfabriken board made of memory: the emulated arm of hal/emu behind 14-byte reports, with the board's
-// own watchdog of half a second that lets the force back by itself.
+// An emulated Haptikfabriken board: the emulated arm of tests/emu with reports of 14 bytes and the board's own
+// watchdog of half a second, which restores the force by itself.
 #pragma once
 
 #include <algorithm>
@@ -100,7 +100,7 @@ private:
     Instant now_ = instant_from_ns(4'294'000'000'000), told_at_ = now_;
 };
 
-// The driver, its pump and the board, one after the other on one thread. Its `now` is the caller's.
+// Driver, pump and board in sequence on one thread. The caller advances `now`.
 class LockstepPolhem final : public HapticDevice {
 public:
     LockstepPolhem() {
@@ -141,7 +141,7 @@ public:
     }
     void relax() noexcept override { device_->relax(); }
 
-    // A millisecond, a read, a write.
+    // One millisecond, one read, one write.
     IoStatus cycle(DeviceCommand given) noexcept {
         pass(std::chrono::milliseconds(1));
         const IoStatus status = device_->read(sample, port_->now());
@@ -166,7 +166,7 @@ private:
     std::unique_ptr<PhantomUsb> device_;
     bool opened_ = false, matched_ = false;
     Duration offset_{0};
-    std::uint64_t heartbeat_ = 1'000'000;  // not the caller's
+    std::uint64_t heartbeat_ = 1'000'000;  // the test's own
 };
 
 }  // namespace tact::emu

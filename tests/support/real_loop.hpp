@@ -1,8 +1,8 @@
-// The servo loop on the machine's own clock, with its thread, the supervisor's and that of the safety lines: only
-// the device and the adapter are emulated. Its servo can be made to stand still in the middle of a cycle.
+// The servo loop on the machine's own clock, with its thread and the threads of supervisor and safety lines; only
+// device and adapter are emulated. A test can stop its servo in the middle of a cycle.
 //
-// Limits   what a busy host could trip is far away (the device's watchdog, the age of the lines' look, lateness),
-//          so that a servo that stands for long is what is seen; only the supervisor's silence is given.
+// Limits   that a busy host could exceed are large (the device's watchdog, the age of the lines' sample, lateness),
+//          so that only the supervisor's limit of silence, which the test sets, acts.
 #pragma once
 
 #include <unistd.h>
@@ -49,7 +49,7 @@ private:
 
 class RealLoop {
 public:
-    // `priority` of the servo thread, FIFO where it is permitted; 0: ordinary.
+    // priority: of the servo thread, FIFO if permitted; 0: ordinary scheduling.
     explicit RealLoop(Duration silence_max, int priority = 0)
         : region_(new RtRegion{}),
           device_({.hand = {}, .watchdog = kLong}),
@@ -80,7 +80,7 @@ public:
         mailbox_.orders.push({++sequence_, 0.0, static_cast<std::uint32_t>(kind), 0});
         return sequence_;
     }
-    // A person resets and arms whenever that is due. True once the amplifier is enabled.
+    // Resets and arms as needed, as a person does. True once the amplifier is enabled.
     bool brought_up() {
         const HealthTopic h = health();
         if (h.command_sequence == sequence_ && state() == RunState::fault) order(CommandKind::reset_fault);
@@ -96,7 +96,7 @@ public:
     [[nodiscard]] RunState state() const { return static_cast<RunState>(health().state); }
     [[nodiscard]] std::uint64_t drops() const { return mailbox_.pulse.drops.load(); }
     [[nodiscard]] Instant beat() const { return instant_from_ns(mailbox_.pulse.beat_ns.load()); }
-    // As someone at the adapter measures it.
+    // As measured at the adapter.
     [[nodiscard]] bool enabled() const { return (board_.driven() & kLineEnable) != 0; }
     [[nodiscard]] LinesHealth lines() const { return lines_.health(); }
     [[nodiscard]] const RtRegion& region() const { return *region_; }
@@ -105,7 +105,7 @@ public:
 private:
     static constexpr Duration kLong = std::chrono::hours(1);
 
-    // The board outlives the lines, who own their port.
+    // The board outlives the lines, which own their port.
     class BoardPort final : public LinePort {
     public:
         explicit BoardPort(SimBoard& board) : board_(board) {}

@@ -1,4 +1,4 @@
-// Does an error's text name all of these?
+// True if the text of an error contains all these parts.
 #pragma once
 
 #include <initializer_list>

@@ -1,14 +1,14 @@
-// A processor that a force loop, a picture and other programs share, in arithmetic: for running laws over the
-// same loads again and again, to the bit.
+// A model of a processor shared by a force loop, a display and other programs, for deterministic runs of the laws
+// under identical loads.
 //
-// Sharing   those who have work get equal shares of the core, in steps of 0.25 ms (a fluid model of fair
-//           scheduling). The force loop always has work; the picture while it draws a frame; each external
-//           program while it runs.
-// Picture   a frame costs fixed_s + full_s * level of the levels at its beginning, times a jitter that is
-//           drawn once per frame from the seed; frames begin no faster than fps_max.
-// Held      where the settings say so, updates give up a part of their work, or the loop rests, as in rt/loop
-// Governed  as rt/loop does it: an interval at a time, frames that applied once each, and nothing judged
-//           before the picture applied where the law waits for it.
+// Sharing   busy programs get equal shares of the core, in steps of 0.25 ms (a fluid model of fair scheduling).
+//           The force loop is always busy; the display while it draws a frame; each external program while it
+//           runs.
+// Display   a frame costs fixed_s + full_s * level with the levels at its start, times a random jitter per
+//           frame (seeded); the frame rate is at most fps_max.
+// Held      if the settings say so, updates reduce their work fraction, or the loop rests, as in rt/govern
+// Governed  as in rt/servo: once per interval, with each applied frame reported once, and no decision before the
+//           display has applied the levels where the law waits for it.
 #pragma once
 
 #include <algorithm>
@@ -26,32 +26,32 @@
 namespace tact {
 
 struct PlantSettings {
-    double update_s = 0.38e-3;  // of the core, for one force update at haptic level 1
+    double update_s = 0.38e-3;  // processor time of one force update at haptic level 1
     double frame_fixed_s = 7e-3, frame_full_s = 45e-3;
-    double frame_jitter = 0.05;  // standard deviation, of its cost
+    double frame_jitter = 0.05;  // standard deviation of its cost
     double fps_max = 20.0;
-    bool free_running = true;  // else updates are made at the goal's rate, on a core of their own
+    bool free_running = true;  // false: updates run at the goal's rate, on a core of their own
     double seconds = 30.0;
     double interval_s = 0.1;
     bool hold = false;
     unsigned seed = 1;
 };
 
-// What changes while it runs.
+// Parameters that change during a run.
 struct Load {
-    double programs = 0.0;      // external ones that run
-    double update_times = 1.0;  // cost of an update
-    double frame_times = 1.0;   // cost of what varies in a frame
-    double core_times = 1.0;    // of everything: a core that is slower
+    double programs = 0.0;      // number of running external programs
+    double update_times = 1.0;  // factor on the cost of an update
+    double frame_times = 1.0;   // factor on the variable cost of a frame
+    double core_times = 1.0;    // factor on all costs: a slower core
 };
 using LoadTrace = std::function<Load(double t_s)>;
 
-// Of a tenth of a second.
+// Mean over a tenth of a second.
 struct PlantSample {
-    double t_s;  // its end
+    double t_s;  // end time
     double rate_hz, fps;
-    double level, haptic_level;  // at its end
-    double fresh;                // of the updates' work, what they did anew
+    double level, haptic_level;  // at the end
+    double fresh;                // recomputed fraction of the updates' work
 };
 
 class SharedCorePlant {
@@ -76,25 +76,26 @@ public:
         }
         return samples_;
     }
-    void set_level(double level) {  // from now on, and the law is "fixed"
+    void set_level(double level) {  // from now on, with the law "fixed"
         static_cast<void>(governor_.set_level(0, level));
         static_cast<void>(governor_.step(0.0, std::chrono::hours(1)));
     }
     [[nodiscard]] const Governor& governor() const { return governor_; }
     [[nodiscard]] const std::vector<PlantSample>& samples() const { return samples_; }
     [[nodiscard]] int changes() const { return changes_; }
-    // Of a frame at that level now, were it drawn alone.
+    // Time of a frame at that level if drawn alone.
     [[nodiscard]] double frame_s(double level) const {
         return p_.frame_fixed_s + p_.frame_full_s * load_.frame_times * level;
     }
 
 private:
-    static constexpr double kFixed = 0.04;  // of an update, whatever its share
+    static constexpr double kFixed =
+        0.04;  // fixed part of an update's cost, independent of its work fraction
 
     void step(double dt_s) {
         if (work_left_s_ <= 0.0 && t_s_ >= next_frame_s_) begin_frame();
         const bool drawing = work_left_s_ > 0.0;
-        // A loop of fixed rate has a core of its own; the picture then shares with the external programs.
+        // A loop of fixed rate has a core of its own; the display then shares a core with the external programs.
         const bool resting = t_s_ < rest_until_s_;
         if (resting) interval_rest_s_ += dt_s;
         const double parties =

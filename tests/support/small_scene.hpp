@@ -1,4 +1,4 @@
-// A docking scene small enough to be made in every test: a helix of atoms and the blob of density around it.
+// A docking scene small enough to be created in every test: a helix of atoms and the density around it.
 #pragma once
 
 #include <cmath>

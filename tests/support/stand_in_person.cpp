@@ -1,5 +1,5 @@
-// Somebody at the screen, for checks that need one: attaches to the controller as its visual process does, and
-// gives the commands that come on standard input, one a line: arm, disarm, reset. Ends with the input.
+// A person at the screen, for checks that need one: attaches to the controller as a visual process does, and
+// sends the commands from standard input, one per line: arm, disarm, reset. Ends with the input.
 #include <poll.h>
 #include <unistd.h>
 
@@ -18,7 +18,7 @@ class Person {
 public:
     explicit Person(const std::string& session) : link_(session, ready_region()) {}
 
-    // True while attached; a frame tells the controller that somebody is there.
+    // True while attached; sends a frame, which tells the controller that a visual process is present.
     bool frame() {
         link_.poll();
         LoadTopic load{};

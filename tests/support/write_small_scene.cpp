@@ -1,4 +1,4 @@
-// Writes tests/support/small_scene.hpp to the file named, for tests of whole processes.
+// Writes the scene of tests/support/small_scene.hpp to a file, for tests of whole processes.
 #include <cstdio>
 
 #include "tests/support/small_scene.hpp"

@@ -1,13 +1,13 @@
 #!/usr/bin/env python3
-"""What the servo path can call, read from the machine code: only arithmetic, copies and the clock.
+"""Checks in the machine code that the servo path calls only arithmetic, copies and the clock.
 
 usage: hot_symbols.py BUILD [--self-test]
 
 Disassembles the objects of the servo path's libraries (x86-64, objdump), takes every call and jump between functions,
-and walks from the entry points of a cycle: Servo::cycle() and the virtual functions it calls on devices, force models
-and clocks. A call that leaves these objects has to be in ALLOWED; so no allocation, lock, throw, file or log can come
-in, also not on a branch that no test takes. Calls through pointers other than those entries are not seen; the guard
-that counts allocations at run time covers them.
+and follows them from the entry points of a cycle: Servo::cycle() and the virtual functions it calls on devices, force models
+and clocks. A call that leaves these objects must be in ALLOWED, so there is no allocation, lock, throw, file or log, not
+even on a branch that no test takes. Calls through other pointers are not followed; the guard that counts allocations at
+run time covers them.
 """
 import os
 import re
@@ -22,7 +22,7 @@ ENTRIES = re.compile(
     r"|::order\(tact::ModelOrder const&\)$|::adopt\(tact::ForceModel const&\)$|::(stale|knob|give_up|stiffness_n_m)\(\)( const)?$|::items\(float\) const$"
     r"|::read\((unsigned int, tact::TrackerSample|tact::DeviceSample|tact::LinesSample)&, .*\)( const)?$|::write\(tact::(Device|Lines)Command const&, .*\)$|::relax\(\)$"
     r"|^tact::\w*Clock::(now|wait_until)\("
-    r"|^tact::density_sum_\w+\(|^tact::look_(generic|avx2|avx512)\(|^tact::brick_(sum|erode|cut)_\w+\(")
+    r"|^tact::density_sum_\w+\(|^tact::query_(generic|avx2|avx512)\(|^tact::brick_(sum|erode|cut)_\w+\(")
 ALLOWED = re.compile(
     r"^(mem(cpy|set|move|cmp)(@.*)?|__mem(cpy|set|move)_chk|str(len|nlen|cmp|ncmp)"
     r"|(sin|cos|sincos|tan|asin|acos|atan|atan2|sqrt|exp|exp2|expm1|log|log2|log1p|pow|hypot|cbrt|floor|ceil|round|rint|nearbyint"
@@ -36,7 +36,7 @@ RELOCATION = re.compile(r"^\s+[0-9a-f]+: (R_X86_64_\w+)\s+(.*?)([-+]0x[0-9a-f]+)
 
 
 def disassemble(path, unresolved):
-    """Adds {function: set of callees}; jumps inside a function are left out."""
+    """Returns {function: set of callees}, without jumps inside a function; adds unresolved calls to unresolved[0]."""
     text = subprocess.run(["objdump", "-drC", "--no-show-raw-insn", path], capture_output=True, text=True, check=True).stdout
     starts, section, calls, now = {}, "", {}, None
     pending = None
@@ -84,7 +84,7 @@ def plain(name):
 
 
 def walk(calls):
-    """(entries, reached functions, [(path, external)])."""
+    """Returns (entries, reached functions, call paths to functions that are not allowed)."""
     entries = sorted(f for f in calls if ENTRIES.search(plain(f)) and "[clone" not in f)
     came_from = {e: None for e in entries}
     todo, bad = list(entries), []
@@ -163,7 +163,7 @@ def main():
     entries, reached, bad, pointers = check(list(objects_of(sys.argv[1])))
     for wanted in ("tact::Servo::cycle()", "::step(", "::read(", "::write("):
         if not any(wanted in e for e in entries):
-            bad.append(f"no entry point like {wanted} was found; fix ENTRIES or build first")
+            bad.append(f"no entry point matches {wanted}; fix ENTRIES or build first")
     print("\n".join(sorted(set(bad))))
     print(f"{len(entries)} entry points, {len(reached)} functions reached, {pointers} calls through pointers, {len(set(bad))} wrong")
     if "--entries" in sys.argv:

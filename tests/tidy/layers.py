@@ -1,14 +1,14 @@
 #!/usr/bin/env python3
-"""Includes point downward, and only to what USES says.
+"""Checks that includes point downward and are covered by USES.
 
 Reads every CMakeLists.txt and *.cmake for tact_library, tact_program, tact_plugin, tact_test, tact_bench and tact_fuzz, finds
-which target each source belongs to (a header: the target of its .cpp, else the library of its folder), and reports
-  1. an include of another folder's header that the target's USES do not lead to,
-  2. a folder that includes what ARCHITECTURE's table puts above it or beside it,
+the target of each source (for a header: the target of its .cpp, else the library of its folder), and reports
+  1. an include of another folder's header that the target's USES do not reach,
+  2. an include of a folder that ARCHITECTURE's table puts above or beside the including one,
   3. a third-party header outside the folder that wraps it,
   4. an include that does not start at the root or does not exist, and a source that no target lists,
-  5. a system that is named outside of its program's table of systems.
-Prints file:line: what, and exits 1 if there was anything. --self-test proves on a small tree that it finds each.
+  5. a system that is named outside its program's table of systems.
+Prints file:line and the problem, and exits 1 if there is any. --self-test proves on a small tree that it finds each kind.
 """
 import os
 import re
@@ -16,10 +16,10 @@ import tempfile
 
 import tree_check
 
-# What the systems of the launcher may use of it.
+# Parts of the launcher that its systems may use.
 LAUNCHER = ["deploy/tact/baked_run", "deploy/tact/child", "deploy/tact/files", "deploy/tact/observer", "deploy/tact/run",
             "deploy/tact/scene_cache", "deploy/tact/signals", "deploy/tact/system_run"]
-# Folder -> what it may include; the longest matching prefix decides. Itself is always allowed.
+# Folder -> folders that it may include; the longest matching prefix decides. The folder itself is always allowed.
 BELOW = {
     "ipc/base": [],
     "ipc/image": ["ipc/base"],
@@ -38,7 +38,7 @@ BELOW = {
     "ipc/station": ["ipc/base"],
     "hal": ["ipc/base", "ipc/shm", "ipc/version"],  # shm: mailboxes between a bus pump and the servo
     "rt/force": ["ipc/base", "ipc/scene"],
-    # Force models do not know each other. Each knows the topic that it publishes, and the commands that it takes.
+    # Force models do not include each other. Each includes the topic that it publishes and the commands that it accepts.
     "rt/force/docking": ["ipc/base", "ipc/scene", "ipc/topics/bodies", "ipc/topics/command", "rt/force/force_model", "rt/force/force_fade"],
     "rt/force/drilling": ["ipc/base", "ipc/scene", "ipc/shm/latest", "ipc/topics/drill", "ipc/topics/event", "ipc/topics/touch",
                           "rt/force/force_model", "rt/force/force_fade"],
@@ -47,7 +47,7 @@ BELOW = {
                          "rt/force/force_fade"],
     "rt/govern": ["ipc/base"],
     "rt/safety": ["ipc/base"],
-    # The cycle knows the contract of a force model and no model.
+    # The cycle includes the contract of force models, but no model.
     "rt/servo": ["ipc/base", "ipc/shm", "ipc/topics", "hal/api", "rt/force/force_model", "rt/govern", "rt/safety"],
     "rt/threads": ["ipc/base", "ipc/shm", "ipc/topics", "hal", "rt/force/force_model", "rt/govern", "rt/servo"],
     "rt/config": ["ipc/base", "ipc/shm", "ipc/topics", "hal", "rt/force", "rt/govern", "rt/safety", "rt/servo", "rt/threads"],
@@ -58,7 +58,7 @@ BELOW = {
     "gui/link": ["ipc/base", "ipc/shm", "ipc/topics", "ipc/scene/file"],
     "gui/render": ["ipc/base", "ipc/topics", "ipc/scene"],
     "gui/dashboard": ["ipc/base", "ipc/topics"],
-    # What a system gives the window; systems do not know each other.
+    # The interface between systems and window; systems do not include each other.
     "gui/system": ["ipc", "gui/base", "gui/link", "gui/render", "gui/dashboard"],
     "gui/docking": ["ipc", "gui/base", "gui/link", "gui/render", "gui/dashboard", "gui/system"],
     "gui/surface": ["ipc", "gui/base", "gui/link", "gui/render", "gui/dashboard", "gui/system"],
@@ -68,7 +68,7 @@ BELOW = {
     "gui/window": ["ipc", "gui/base", "gui/link", "gui/render", "gui/dashboard", "gui/system", "gui/docking", "gui/surface", "gui/drilling", "gui/field",
                    "gui/stereo"],
     "prep": ["ipc/base", "ipc/image", "ipc/version", "ipc/scene", "ipc/manual"],
-    # Systems do not know each other; they share readers, meshes and the console.
+    # Systems do not include each other; they share readers, meshes and the console.
     "prep/console": ["ipc/base", "ipc/scene"],
     "prep/docking": ["ipc/base", "ipc/version", "ipc/scene", "prep/codebook", "prep/console", "prep/input", "prep/map", "prep/mesh",
                      "prep/structure", "prep/synthetic"],
@@ -99,7 +99,7 @@ WRAPPED = [
     (r"nlohmann/", ["deploy", "prep", "gui", "rt/config/check_config", "rt/start/start_bodies", "rt/replay", "ipc/topics/frames_json",
                     "ipc/recorder/main", "ipc/station/station_report", "tests"]),
 ]
-# What is named under a folder in these files alone: a table of the systems there.
+# Names that only these files of a folder may use: the tables of its systems.
 NAMED = [("gui/", re.compile(r"\bSceneKind::"), ["gui/window/systems.cpp"]),
          ("rt/", re.compile(r"\bSceneKind::"), ["rt/start/systems.cpp"])]
 CALL = re.compile(r"\b(tact_library|tact_program|tact_test|tact_bench|tact_fuzz|tact_plugin)\s*\(([^()]*)\)", re.S)
@@ -124,7 +124,7 @@ FUNCTION = re.compile(r"function\s*\(.*?endfunction\s*\(\s*\)", re.S)
 
 
 def shared_sources(root, cmake_files):
-    """Sources that a helper function adds to every target it makes."""
+    """Returns the sources that helper functions add to every target they make."""
     shared = set()
     for path in cmake_files:
         with open(os.path.join(root, path), encoding="utf-8") as f:
@@ -163,7 +163,7 @@ def read_targets(root, cmake_files):
 
 
 def owners(path, targets, by_source):
-    """Targets a file may belong to."""
+    """Returns the possible targets of a file."""
     if path in by_source:
         return by_source[path]
     stem = os.path.splitext(path)[0]
@@ -173,12 +173,12 @@ def owners(path, targets, by_source):
     while True:
         here = [t for t in targets if t.folder == folder and folder != "tests"]
         if here or not folder:
-            return [t for t in here if t.library]  # nobody's, if the folder is a program's: the folders decide
+            return [t for t in here if t.library]  # empty if the folder belongs to a program: then only the folders are checked
         folder = os.path.dirname(folder)
 
 
 def reach(target, targets):
-    """Names of the libraries that a target's USES lead to, as CMake passes them on."""
+    """Returns the names of the libraries that a target reaches through USES, transitively as in CMake."""
     libraries = {t.name: t for t in targets if t.library}
     seen, todo = set(), list(target.uses)
     while todo:
@@ -241,8 +241,8 @@ def check(root):
             neighbours = os.path.dirname(path) == os.path.dirname(target_path)
             if not theirs or not mine or set(theirs) & set(mine) or neighbours:
                 continue
-            # A source that several targets list needs the library in each of them; a header in a folder of several
-            # libraries belongs to one of them, which cannot be told.
+            # A source listed by several targets needs the library in each of them; a header in a folder of several
+            # libraries belongs to an unknown one of them.
             lacking = [t for t in mine if not any(o.name in reach(t, targets) for o in theirs)]
             for t in lacking:
                 if path in by_source or len(lacking) == len(mine):

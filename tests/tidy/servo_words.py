@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
-"""The servo core knows no system: no word of one stands in rt/servo, neither in code nor in comments.
+"""The servo core depends on no system: no system-specific word is in rt/servo, neither in code nor in comments.
 
 usage: servo_words.py [--self-test]
-Prints file:line: word, and exits 1 if there was any.
+Prints file:line, the word and a fix for each, and exits 1 if there is any.
 """
 import os
 import re
@@ -11,10 +11,11 @@ import tempfile
 import tree_check
 
 FOLDER = "rt/servo"
-# Parts of words too: kBoneKnob, gui_particles_max.
+# Also parts of words: kBoneKnob, gui_particles_max.
 WORDS = ["bone", "burr", "drill", "suction", "irrigat", "pedal", "mesh", "triangle", "surface", "particle", "docking", "clash", "density",
          "voxel"]
 FOUND = re.compile("|".join(WORDS), re.IGNORECASE)
+FIX = "fix: use a system-neutral word, or move this to the model in rt/force or to its row in rt/start/systems.cpp"
 
 
 def check(root):
@@ -22,20 +23,24 @@ def check(root):
     for name in sorted(os.listdir(os.path.join(root, FOLDER))):
         with open(os.path.join(root, FOLDER, name), encoding="utf-8") as f:
             for number, line in enumerate(f, 1):
-                found += [f"{FOLDER}/{name}:{number}: {m.group(0)}" for m in FOUND.finditer(line)]
+                for word in re.findall(r"\w+", line):
+                    if (m := FOUND.search(word)) is not None:
+                        found.append(f'{FOLDER}/{name}:{number}: "{word}" contains the system-specific word "{m.group(0).lower()}"; {FIX}')
     return found
 
 
 def self_test():
     bad = 0
-    for text, count in [("void step_models();\n", 0), ("// turns the burr\n", 1), ("int kMeshIndex;\nint gui_particles_max;\n", 2)]:
+    for text, wanted in [("void step_models();\n", []), ("// turns the burr\n", ['a.hpp:1: "burr"']),
+                         ("int kMeshIndex;\nint gui_particles_max;\n", ['a.hpp:1: "kMeshIndex"', 'a.hpp:2: "gui_particles_max"'])]:
         with tempfile.TemporaryDirectory() as root:
             os.makedirs(os.path.join(root, FOLDER))
             with open(os.path.join(root, FOLDER, "a.hpp"), "w", encoding="utf-8") as f:
                 f.write(text)
-            right = len(check(root)) == count
+            found = check(root)
+            right = len(found) == len(wanted) and all(f"{FOLDER}/{w}" in line and "fix:" in line for w, line in zip(wanted, found))
         bad += not right
-        print(f"{'ok  ' if right else 'FAIL'} {text!r}")
+        print(f"{'ok  ' if right else 'FAIL'} {text!r}: {found}")
     return bad
 
 

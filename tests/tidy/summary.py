@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
-"""Counts what deploy/test ran and prints one plain line: N passed, N failed, N skipped.
+"""Counts the results of deploy/test and prints one line: N passed, N failed, N skipped.
 
-usage: summary.py RESULTS. In RESULTS: checks.tsv (status, what), and a folder per preset with ctest.junit and one
+usage: summary.py RESULTS. RESULTS contains checks.tsv (status, name), and a folder per preset with ctest.junit and one
 GoogleTest XML file per test program. A GoogleTest program counts with its cases, every other test as one. A
-program that CTest saw fail counts as failed even if its cases look well (it crashed, leaked, or ran too long).
-The last lines that each failed program printed come first: they are far above in the log by now.
+program that failed in CTest counts as failed even if its cases passed (it crashed, leaked, or ran too long).
+Prints first the last output lines of each failed program, which are far above in the log.
 """
 import collections
 import os
@@ -15,7 +15,7 @@ LAST_LINES = 60
 
 
 def cases_of(path):
-    """(status, name) of each case, or None if the program did not live to write the file."""
+    """Returns (status, name) of each case, or None if the program ended before it wrote the file."""
     try:
         root = ElementTree.parse(path).getroot()
     except (OSError, ElementTree.ParseError):
@@ -53,7 +53,7 @@ def print_failed(preset, folder):
         if test.get("status") != "fail":
             continue
         print(f'\n-- {preset}: {test.get("name")} failed after {test.get("time")} s. Its last lines:')
-        print("\n".join((test.findtext("system-out") or "it printed nothing").rstrip().splitlines()[-LAST_LINES:]))
+        print("\n".join((test.findtext("system-out") or "no output").rstrip().splitlines()[-LAST_LINES:]))
 
 
 def main():

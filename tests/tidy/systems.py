@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
-"""A system is its own folders and one row in each table: nothing else names a SceneKind.
+"""Checks that a system is defined by its own folders and one row in each table: no other source names a SceneKind.
 
-Lists every source that writes SceneKind::NAME outside of the tables, the system's own folders and the tests, as file:line, and
-exits 1 if there is one. --self-test proves on a small tree that it finds each.
+Lists every SceneKind::NAME outside the tables, the system's own folders and the tests, as file:line, and
+exits 1 if there is one. --self-test proves on a small tree that it finds each kind.
 """
 import os
 import re
@@ -49,7 +49,7 @@ def check(root, exempt):
         for number, line in enumerate(read(root, path).splitlines(), 1):
             for kind in NAMES.findall(line):
                 if not any(path.startswith(f"{folder}/{kind}/") for folder in SYSTEM_FOLDERS):
-                    found.append(f"{path}:{number}: names SceneKind::{kind}; ask the row of a table in place of it")
+                    found.append(f"{path}:{number}: names SceneKind::{kind}; use the row of a table of systems instead")
     for path in sorted(TABLES):
         if not path.endswith(".cpp") or not os.path.exists(os.path.join(root, path)):
             continue
@@ -92,4 +92,4 @@ def self_test():
 
 
 if __name__ == "__main__":
-    tree_check.run(lambda root: check(root, EXEMPT), self_test, "systems are named by their tables and folders alone")
+    tree_check.run(lambda root: check(root, EXEMPT), self_test, "only tables and their own folders name systems")

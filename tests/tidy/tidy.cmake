@@ -18,7 +18,7 @@ if(Python3_FOUND)
         tidy_servo_words tidy_servo_words_finds_violations
         PROPERTIES LABELS tidy)
 endif()
-# The code as it runs: a build for x86-64 with optimization and without sanitizers.
+# Checks the shipped machine code: a build for x86-64 with optimization and without sanitizers.
 if(Python3_FOUND AND CMAKE_BUILD_TYPE STREQUAL "Release" AND NOT TACT_SANITIZE AND CMAKE_SYSTEM_PROCESSOR STREQUAL "x86_64")
     add_test(NAME tidy_hot_symbols COMMAND ${Python3_EXECUTABLE} tests/tidy/hot_symbols.py ${CMAKE_BINARY_DIR}
         WORKING_DIRECTORY ${CMAKE_SOURCE_DIR})

@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
-"""Words that do not come back: each with its replacement and the reason.
+"""Finds banned words, each with its replacement and the reason.
 
-Reads all tracked text files (code, comments, configuration, documentation) and prints file:line: word, replacement and reason; exits 1 if there
-was anything. A line that needs a word all the same (an old name that files may hold, a word of a foreign interface) ends with the
+Reads all tracked text files (code, comments, configuration, documentation) and prints file:line, word, replacement and reason; exits 1 if there
+is any. A line that needs a banned word (an old name in existing files, a word of a foreign interface) ends with the
 comment "former name", or is listed in ALLOWED. --self-test proves that it finds each.
 """
 import os
@@ -80,4 +80,4 @@ def self_test():
 
 
 if __name__ == "__main__":
-    tree_check.run(check, self_test, "no word that was replaced has come back")
+    tree_check.run(check, self_test, "no banned words")

@@ -9,7 +9,7 @@
 namespace tact {
 namespace {
 
-// RE25 of a Premium 1.5.
+// Motor RE25 of a Premium 1.5.
 const MotorHeatParameters kMotor{2.18, 3.1, 14.0, 12.0, 612.0, 100.0};
 
 MotorHeat by_small_steps(MotorHeat h, double current_a, double for_s) {
@@ -26,7 +26,7 @@ MotorHeat by_small_steps(MotorHeat h, double current_a, double for_s) {
     return h;
 }
 
-TEST(MotorHeat, one_step_of_any_length_is_what_small_steps_come_to) {
+TEST(MotorHeat, one_step_of_any_length_equals_many_small_steps) {
     for (const double current_a : {0.0, 0.5, 1.24, 2.5, 5.5}) {
         for (const double for_s : {0.1, 3.0, 40.0}) {
             const MotorHeat start{60.0, 40.0};
@@ -34,7 +34,7 @@ TEST(MotorHeat, one_step_of_any_length_is_what_small_steps_come_to) {
             const MotorHeat once = heated(kMotor, start, current_a, for_s);
             MotorHeat often = start;
             for (int i = 0; i < 1000; ++i) often = heated(kMotor, often, current_a, for_s / 1000);
-            if (slow.winding_c > 900.0) continue;  // beyond the bound of the state
+            if (slow.winding_c > 900.0) continue;  // beyond the limit of the state
             EXPECT_NEAR(once.winding_c, slow.winding_c, 1e-3 * (slow.winding_c - 20.0))
                 << current_a << " " << for_s;
             EXPECT_NEAR(once.housing_c, slow.housing_c, 1e-3 * (slow.housing_c - 20.0));
@@ -54,11 +54,11 @@ TEST(MotorHeat, without_current_it_cools_to_the_ambient) {
     EXPECT_NEAR(end.winding_c, 25.0, 1e-9);
     EXPECT_NEAR(end.housing_c, 25.0, 1e-9);
     const MotorHeat later = heated(kMotor, {150.0, 90.0}, 0.0, 60.0);
-    EXPECT_GT(later.housing_c, 80.0);  // the housing keeps its heat for minutes
+    EXPECT_GT(later.housing_c, 80.0);  // the housing stays hot for minutes
     EXPECT_LT(later.winding_c, 95.0);
 }
 
-TEST(MotorHeat, who_keeps_to_the_limit_never_burns_the_winding) {
+TEST(MotorHeat, within_the_limit_the_winding_never_overheats) {
     MotorHeat h;
     double worst_c = 0.0;
     for (int i = 0; i < 400'000; ++i) {  // more than an hour at 10 ms
@@ -69,7 +69,7 @@ TEST(MotorHeat, who_keeps_to_the_limit_never_burns_the_winding) {
     EXPECT_NEAR(current_limit_a(kMotor, h, 5.5), continuous_current_a(kMotor), 0.05);
 }
 
-TEST(MotorHeat, the_limit_falls_without_a_step_and_never_rises_with_the_heat) {
+TEST(MotorHeat, the_limit_falls_continuously_with_the_heat) {
     double before = current_limit_a(kMotor, {20.0, 20.0}, 5.5);
     EXPECT_EQ(before, 5.5);
     for (double c = 20.0; c <= 130.0; c += 0.1) {
@@ -82,7 +82,7 @@ TEST(MotorHeat, the_limit_falls_without_a_step_and_never_rises_with_the_heat) {
     EXPECT_EQ(before, 0.0);
 }
 
-TEST(MotorHeat, nonsense_leaves_it_finite) {
+TEST(MotorHeat, invalid_input_keeps_it_finite) {
     const double nan = std::numeric_limits<double>::quiet_NaN();
     EXPECT_EQ(heated(kMotor, {30.0, 26.0}, nan, 1.0).winding_c, 30.0);
     EXPECT_EQ(heated(kMotor, {30.0, 26.0}, 1.0, nan).winding_c, 30.0);

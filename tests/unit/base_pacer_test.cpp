@@ -1,4 +1,4 @@
-// Planned instants: no drift, no catching up, every period accounted for.
+// Planned start times: no drift, no catching up, every period accounted for.
 #include "ipc/base/pacer.hpp"
 
 #include <gtest/gtest.h>
@@ -21,7 +21,7 @@ TEST(Pacer, cycles_that_end_in_time_follow_at_exact_periods) {
     EXPECT_EQ(pacer.overruns(), 0U);
 }
 
-TEST(Pacer, an_overrun_skips_to_the_next_period_that_is_still_ahead) {
+TEST(Pacer, an_overrun_skips_to_the_next_future_period) {
     Pacer pacer(milliseconds(1), kBegin);
     EXPECT_TRUE(pacer.ended(kBegin + microseconds(3400)));
     EXPECT_EQ(pacer.planned(), kBegin + milliseconds(4));

@@ -5,14 +5,14 @@
 namespace tact {
 namespace {
 
-TEST(WholeNumbers, are_read_with_their_letters_between) {
+TEST(WholeNumbers, are_read_with_letters_between) {
     EXPECT_EQ(numbers_between("1280x720", "x"), (std::array{1280U, 720U}));
     EXPECT_EQ(numbers_between("0:256,10:90", ":,:"), (std::array{0U, 256U, 10U, 90U}));
     EXPECT_EQ(numbers_between("7", ""), (std::array{7U}));
     EXPECT_EQ(numbers_between("4294967295x0", "x"), (std::array{4294967295U, 0U}));
 }
 
-TEST(WholeNumbers, nothing_else_is_read) {
+TEST(WholeNumbers, other_text_is_refused) {
     for (const char* const text :
          {"", "x", "1280", "1280x", "x720", "1280x720 ", " 1280x720", "1280 x720", "1280X720", "-1x720",
           "+1x720", "1280x-720", "1280x720x3", "12.5x720", "4294967296x1", "0x10x1", "nanx1"}) {

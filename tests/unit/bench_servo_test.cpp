@@ -1,4 +1,4 @@
-// The servo bench measures what it says: every cycle once, on a plan, percentiles in order.
+// The servo benchmark counts every cycle once, on a plan, and orders its percentiles.
 #include <gtest/gtest.h>
 
 #include "tests/bench/bench_servo.hpp"

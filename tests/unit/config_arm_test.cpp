@@ -1,4 +1,4 @@
-// [arm] of the configuration: figures reach the device's settings, and every error names file, line and key.
+// Section [arm] of the configuration: parameters reach the device's settings, and every error names file, line and key.
 #include <gtest/gtest.h>
 #include <unistd.h>
 
@@ -37,8 +37,8 @@ std::string error_of(const std::string& text) {
     return {};
 }
 
-TEST(ConfigArm, what_the_file_says_of_the_arm_reaches_the_device) {
-    // The model overwrites nothing that stands beside it, whatever their order.
+TEST(ConfigArm, arm_parameters_of_the_file_reach_the_device) {
+    // The model does not overwrite other keys, in any order.
     const RtConfig c =
         read("[arm]\ncounts_per_turn = [-8192, 8192, 8192]\nforce_n_max = 5\nmodel = \"premium-1.5\"\n");
     const ArmParameters p = arm_parameters(device_settings_from(c).arm);
@@ -48,7 +48,7 @@ TEST(ConfigArm, what_the_file_says_of_the_arm_reaches_the_device) {
     EXPECT_EQ(c.arm.drive_ratio[0].source, FigureSource::verified);
 }
 
-TEST(ConfigArm, an_arm_with_unknown_figures_opens_once_they_are_set) {
+TEST(ConfigArm, an_arm_with_unknown_parameters_opens_once_they_are_set) {
     EXPECT_THROW(static_cast<void>(arm_parameters(read("[arm]\nmodel = \"omni\"\n").arm)), StartupError);
     const RtConfig c = read(
         "[arm]\nmodel = \"omni\"\nwrist = \"none\"\ntorque_constant_mn_m_a = [20, 20, 20]\n"
@@ -58,7 +58,7 @@ TEST(ConfigArm, an_arm_with_unknown_figures_opens_once_they_are_set) {
     EXPECT_DOUBLE_EQ(p.joint_n_m_per_a[2], 0.020);
 }
 
-TEST(ConfigArm, without_the_section_it_is_the_arm_of_the_documentation) {
+TEST(ConfigArm, without_the_section_it_is_the_documented_arm) {
     const RtConfig c;
     EXPECT_EQ(c.arm.model, "premium-1.5");
     RtConfig documented;
@@ -67,7 +67,7 @@ TEST(ConfigArm, without_the_section_it_is_the_arm_of_the_documentation) {
     EXPECT_EQ(documented.arm.model, c.arm.model);
 }
 
-TEST(ConfigArm, errors_name_line_key_and_mend) {
+TEST(ConfigArm, errors_name_line_key_and_fix) {
     EXPECT_TRUE(says(error_of("[arm]\nmodel = \"delta\"\n"), {".toml:2", "arm.model", "omni", "fix:"}));
     EXPECT_TRUE(
         says(error_of("[arm]\n\nthigh_cm = 3\n"), {".toml:3", "arm.thigh_cm", "no such key", "thigh_mm"}));

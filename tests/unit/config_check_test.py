@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""tact config check and tact probe --config, as typed: exit codes, all problems of a file, JSON; the controller refuses what it refuses.
+"""tact config check and tact probe --config on the command line: exit codes, all problems of a file, JSON; the controller refuses the same files.
 
 usage: config_check_test.py BIN_DIR   (from the root of the project)
 """
@@ -32,16 +32,16 @@ class Folder(unittest.TestCase):
 
 
 class Check(Folder):
-    def test_a_good_file_is_0_and_a_bad_one_1_with_every_problem(self):
+    def test_a_valid_file_exits_with_0_and_a_bad_one_with_1_and_every_problem(self):
         done = run("tact", "config", "check", "deploy/tact.toml")
         self.assertEqual((done.returncode, done.stdout), (0, "deploy/tact.toml: no problems\n"), done.stderr)
         done = run("tact", "config", "check", self.file(BAD))
         self.assertEqual(done.returncode, 1)
         for part in (":2: servo.period_uss: there is no such key", "did you mean servo.period_us?", ":4: device.driver: \"magic\"", "phantom-usb",
-                     ":6: lines.driver: this is not a text", ":8: safety.force_n_max: 1000 is outside 0 to 100", "4 problems"):
+                     ":6: lines.driver: this is not text", ":8: safety.force_n_max: 1000 is outside 0 to 100", "4 problems"):
             self.assertIn(part, done.stdout)
 
-    def test_a_core_that_this_machine_does_not_have_is_a_problem(self):
+    def test_a_missing_core_is_a_problem(self):
         done = run("tact", "config", "check", self.file("[servo]\ncore = 4000\n"))
         self.assertEqual(done.returncode, 1, done.stdout)
         self.assertIn("servo.core: this machine has no core 4000", done.stdout)
@@ -55,7 +55,7 @@ class Check(Folder):
         self.assertTrue(answer["ok"])
         self.assertEqual(answer["values"]["servo.core"], -1)
 
-    def test_wrong_usage_is_2_and_a_missing_or_odd_file_1(self):
+    def test_wrong_usage_exits_with_2_and_a_missing_or_odd_file_with_1(self):
         for words in (("config",), ("config", "check"), ("config", "check", "a", "b"), ("config", "chek", "a")):
             self.assertEqual(run("tact", *words).returncode, 2, words)
         self.assertEqual(run("tact", "config", "check", os.path.join(self.folder, "none.toml")).returncode, 1)
@@ -72,7 +72,7 @@ class Check(Folder):
 
 
 class Probe(Folder):
-    def test_probe_fails_on_what_the_controller_would_not_read(self):
+    def test_probe_fails_on_a_file_that_the_controller_refuses(self):
         root = os.path.join(self.folder, "root")
         os.makedirs(root)
 

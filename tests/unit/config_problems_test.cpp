@@ -30,7 +30,7 @@ private:
     fs::path path_;
 };
 
-TEST(CheckConfig, the_core_of_the_servo_has_to_be_online_here) {
+TEST(CheckConfig, the_servo_core_must_be_online) {
     const Folder folder;
     const auto keys = [&](const std::string& text) {
         RtConfig config;
@@ -39,7 +39,7 @@ TEST(CheckConfig, the_core_of_the_servo_has_to_be_online_here) {
             all += e.key + ": " + e.problem + "; ";
         return all;
     };
-    EXPECT_EQ(keys("[servo]\ncore = 3\n"), "");  // a kernel that hides its cores
+    EXPECT_EQ(keys("[servo]\ncore = 3\n"), "");  // a kernel that does not list its cores
     static_cast<void>(folder.file("sys/devices/system/cpu/online", "0-2,5\n"));
     for (const char* const core : {"-2", "-1", "0", "2", "5"})
         EXPECT_EQ(keys("[servo]\ncore = " + std::string(core) + "\n"), "") << core;
@@ -48,10 +48,10 @@ TEST(CheckConfig, the_core_of_the_servo_has_to_be_online_here) {
                          {"servo.core", "no core", core, "online: 0-2,5"}))
             << core;
     EXPECT_TRUE(says(keys("[servo]\ncore = 5000\n"), {"servo.core: 5000 is outside"}));
-    EXPECT_FALSE(says(keys("[servo]\ncore = 5000\n"), {"no core"}));  // once is enough
+    EXPECT_FALSE(says(keys("[servo]\ncore = 5000\n"), {"no core"}));  // reported only once
 }
 
-TEST(CheckConfig, the_answer_ends_with_the_number_of_problems_and_the_exit_code_says_whether_there_are_any) {
+TEST(CheckConfig, the_report_ends_with_the_number_of_problems_and_the_exit_code_is_1_if_any) {
     const Folder folder;
     std::ostringstream out;
     EXPECT_EQ(print_config_check(out, "deploy/tact.toml", false), 0);

@@ -1,4 +1,4 @@
-// The configuration: its documentation is true, and every error names file, line, key and fix.
+// The configuration: its documentation is correct, and every error names file, line, key and fix.
 #include "rt/config/config.hpp"
 
 #include <gtest/gtest.h>
@@ -28,7 +28,7 @@ private:
     std::filesystem::path path_;
 };
 
-// What the file's error says; empty: it is fine.
+// The error of a file with this text; empty if valid.
 std::string error_of(const std::string& text) {
     const TempFile file(text);
     RtConfig config;
@@ -40,9 +40,9 @@ std::string error_of(const std::string& text) {
     return {};
 }
 
-TEST(Config, the_documented_file_is_the_defaults_and_names_every_key) {
+TEST(Config, the_documented_file_has_the_defaults_and_every_key) {
     RtConfig config;
-    config.servo.period_us = 1.0;  // whatever is not in the file would stay changed
+    config.servo.period_us = 1.0;  // a key missing in the file would keep this value
     config.governor.law = "x";
     config.safety.force_n_max = 0.0;
     read_config("deploy/tact.toml", config);
@@ -131,7 +131,7 @@ TEST(Config, the_documented_file_is_the_defaults_and_names_every_key) {
     EXPECT_EQ(config.governor.tolerance, defaults.governor.tolerance);
     EXPECT_EQ(config.governor.interval_ms, defaults.governor.interval_ms);
 
-    // Every key that config.cpp knows has a line in the documentation.
+    // Every key of config.cpp has a line in the documentation.
     std::ifstream code("rt/config/config.cpp"), doc("deploy/tact.toml");
     ASSERT_TRUE(code && doc);
     std::stringstream code_text, doc_text;
@@ -144,7 +144,7 @@ TEST(Config, the_documented_file_is_the_defaults_and_names_every_key) {
         const std::size_t dot = source.find('.', row), quote = source.find('"', row + 2);
         if (dot > quote ||
             (source.compare(quote, 6, "\", &c.") != 0 && source.compare(quote, 5, "\", c.") != 0))
-            continue;  // not a row of the table
+            continue;  // not a row of the table of keys
         const std::string key = source.substr(dot + 1, quote - dot - 1);
         EXPECT_NE(doc_text.str().find("\n" + key + " ="), std::string::npos) << key;
         ++keys;
@@ -152,7 +152,7 @@ TEST(Config, the_documented_file_is_the_defaults_and_names_every_key) {
     EXPECT_GE(keys, 63);
 }
 
-TEST(Config, an_unknown_key_is_refused_with_line_and_the_likely_one) {
+TEST(Config, an_unknown_key_is_refused_with_line_and_a_suggestion) {
     const std::string error = error_of("[servo]\nperiod_us = 500\nspin_tail_us = 3\n");
     EXPECT_TRUE(says(error, {".toml:3", "servo.spin_tail_us", "no such key", "fix:", "servo.spin_us"}))
         << error;
@@ -184,7 +184,7 @@ TEST(Config, a_wrong_type_is_refused) {
     EXPECT_TRUE(says(error_of("[safety]\nforce_n_max = [1, 2]\n"), {".toml:2", "number"}));
 }
 
-TEST(Config, lists_have_their_length_numbers_and_range_and_a_rotation_its_unit_length) {
+TEST(Config, lists_are_checked_for_length_numbers_and_range_and_rotations_for_unit_length) {
     EXPECT_EQ(error_of("[tracker]\nposition_screen_m = [0.1, -1, 0.25]\n"), "");
     EXPECT_TRUE(
         says(error_of("[tracker]\nposition_screen_m = [0.1, 0.2]\n"), {".toml:2", "a list of 3 numbers"}));
@@ -274,7 +274,7 @@ TEST(Config, a_key_outside_a_section_is_refused) {
     EXPECT_TRUE(says(error_of("period_us = 1000\n"), {".toml:1", "no section"}));
 }
 
-TEST(Config, broken_toml_and_a_missing_file_are_refused_in_words) {
+TEST(Config, broken_toml_and_a_missing_file_are_refused_with_a_message) {
     EXPECT_TRUE(says(error_of("[servo\n"), {".toml:1", "fix:"}));
     EXPECT_TRUE(says(error_of("[servo]\nperiod_us = = 3\n"), {".toml:2"}));
     RtConfig config;
@@ -293,7 +293,7 @@ TEST(Config, values_of_the_file_reach_the_servo_in_si_units) {
     EXPECT_FALSE(s.watchdogs.timing_latches);  // emulated
 }
 
-TEST(Config, only_where_nobodys_hand_is_on_the_device_may_its_own_watchdog_latch_nothing) {
+TEST(Config, only_for_emulated_devices_the_device_watchdog_may_not_latch) {
     RtConfig config;
     for (const char* const word : {"real", "always", "never"}) {
         config.safety.timing_latches = word;
@@ -304,7 +304,7 @@ TEST(Config, only_where_nobodys_hand_is_on_the_device_may_its_own_watchdog_latch
     }
 }
 
-TEST(Config, a_foot_pedal_needs_a_line) {
+TEST(Config, a_foot_pedal_needs_an_input_line) {
     RtConfig config;
     config.drilling.pedal = "line";
     const auto refused = [&config](const char* key) {
@@ -340,14 +340,42 @@ TEST(Config, the_second_emulated_hand_has_a_script_of_its_own) {
     EXPECT_TRUE(device2_settings_from(config).sim.hand.at_m.isApprox(Vec3(-8e-3, 2e-3, 0.0)));
 }
 
-TEST(Config, a_fast_loop_spins_no_more_than_leaves_it_time_to_sleep) {
+TEST(Config, the_deadline_of_the_model_follows_the_period) {
+    RtConfig config;
+    for (const double period_us : {2000.0, 1000.0, 500.0, 125.0}) {
+        config.servo.period_us = period_us;
+        EXPECT_EQ(settings_from(config, true).model_max, duration_us(0.7 * period_us));
+    }
+    config.servo.model_us_max = 40.0;
+    EXPECT_EQ(settings_from(config, true).model_max, duration_us(40.0));
+    config.servo.model_us_max = 0.0;
+    config.servo.free_running = true;  // no period: the goal replaces it
+    config.governor.goal_hz = 4000.0;
+    EXPECT_EQ(settings_from(config, true).model_max, duration_us(175.0));
+}
+
+TEST(Config, a_deadline_that_leaves_no_time_for_the_rest_of_the_cycle_is_refused) {
+    const auto problems = [](const char* text) {
+        const TempFile file(text);
+        RtConfig config;
+        std::string all;
+        for (const ConfigError& e : config_errors(file.path(), config)) all += e.what();
+        return all;
+    };
+    EXPECT_TRUE(says(problems("[servo]\nperiod_us = 500\nmodel_us_max = 600\n"),
+                     {"servo.model_us_max", "600 us", "500 us", "at most 450", "0"}));
+    EXPECT_EQ(problems("[servo]\nperiod_us = 500\nmodel_us_max = 450\n"), "");
+    EXPECT_EQ(problems("[servo]\nfree_running = true\nmodel_us_max = 5000\n"), "");
+}
+
+TEST(Config, a_fast_loop_keeps_time_to_sleep) {
     RtConfig::Servo servo;
     EXPECT_EQ(spin_tail(servo), duration_us(100.0));
     EXPECT_TRUE(sleeps(servo));
     servo.period_us = 125.0;
     EXPECT_EQ(spin_tail(servo), duration_us(50.0));
     EXPECT_TRUE(sleeps(servo));
-    servo.spin_us = 125.0;  // all of it, as asked
+    servo.spin_us = 125.0;  // all of it, as requested
     EXPECT_EQ(spin_tail(servo), duration_us(125.0));
     EXPECT_FALSE(sleeps(servo));
     servo.spin_us = 10.0;

@@ -53,13 +53,13 @@ set_tests_properties(shared_core_test PROPERTIES TIMEOUT 300 SKIP_RETURN_CODE 77
 add_test(NAME monitoring_test COMMAND Python3::Interpreter ${CMAKE_CURRENT_SOURCE_DIR}/e2e/monitoring_test.py $<TARGET_FILE_DIR:tact>
     $<TARGET_FILE:write_small_scene> WORKING_DIRECTORY ${CMAKE_SOURCE_DIR})
 set_tests_properties(monitoring_test PROPERTIES LABELS e2e TIMEOUT 120 SKIP_RETURN_CODE 77)
-# h5py comes from the system's packages, and is seen by the system's Python alone.
+# h5py comes from the system's packages and is available only in the system's Python.
 find_program(TACT_SYSTEM_PYTHON3 python3 PATHS /usr/bin NO_DEFAULT_PATH)
 if(TACT_SYSTEM_PYTHON3)
     add_test(NAME record_kill_test COMMAND ${TACT_SYSTEM_PYTHON3} ${CMAKE_CURRENT_SOURCE_DIR}/unit/record_kill_test.py
         $<TARGET_FILE_DIR:tact-record> $<TARGET_FILE:write_small_scene>)
     set_tests_properties(record_kill_test PROPERTIES TIMEOUT 600 SKIP_RETURN_CODE 77)
-    if(TACT_GUI AND NOT TACT_SANITIZE)  # whose allocators keep what is freed
+    if(TACT_GUI AND NOT TACT_SANITIZE)  # not with sanitizers, whose allocators keep freed memory
         add_test(NAME soak_test COMMAND ${TACT_SYSTEM_PYTHON3} ${CMAKE_CURRENT_SOURCE_DIR}/e2e/soak_test.py
             $<TARGET_FILE_DIR:tact> synthetic --seconds 20 --rate 2000)
         set_tests_properties(soak_test PROPERTIES LABELS e2e TIMEOUT 300 SKIP_RETURN_CODE 77 RUN_SERIAL ON)
@@ -67,7 +67,7 @@ if(TACT_SYSTEM_PYTHON3)
 endif()
 add_test(NAME replay_test COMMAND Python3::Interpreter ${CMAKE_CURRENT_SOURCE_DIR}/unit/replay_test.py $<TARGET_FILE_DIR:tact>)
 set_tests_properties(replay_test PROPERTIES TIMEOUT 900)
-if(NOT TACT_SANITIZE)  # whose runtimes make system calls of their own, and refuse strace
+if(NOT TACT_SANITIZE)  # not with sanitizers, whose runtimes make system calls of their own and refuse strace
     add_test(NAME deploy_units_test COMMAND Python3::Interpreter ${CMAKE_CURRENT_SOURCE_DIR}/unit/deploy_units_test.py ${CMAKE_SOURCE_DIR}
         $<TARGET_FILE_DIR:tact> $<TARGET_FILE:write_small_scene>)
     set_tests_properties(deploy_units_test PROPERTIES TIMEOUT 600)

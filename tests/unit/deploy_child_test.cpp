@@ -16,7 +16,7 @@ namespace {
 using std::chrono::milliseconds;
 using std::chrono::seconds;
 
-// Long, as a machine may stand still for seconds; reached only when something is wrong.
+// Long, because a machine may pause for seconds; reached only in case of an error.
 constexpr seconds kPatience(60);
 
 ChildSettings shell(const std::string& script) {
@@ -40,7 +40,7 @@ bool wait_for(F&& happened) {
     return happened();
 }
 
-// The letter of /proc/PID/stat: T stopped, t stopped by a tracer, Z dead.
+// The state letter of /proc/PID/stat: T stopped, t stopped by a tracer, Z dead.
 char state_of(pid_t pid) {
     std::ifstream in("/proc/" + std::to_string(pid) + "/stat");
     std::string text;
@@ -49,7 +49,7 @@ char state_of(pid_t pid) {
     return name_end == std::string::npos ? '?' : text.at(name_end + 2);
 }
 
-TEST(Child, an_exit_code_is_told_as_it_was) {
+TEST(Child, an_exit_code_is_reported) {
     Child child("sh", "/bin/sh", shell("exit 7"));
     const auto& ending = child.wait(kPatience);
     ASSERT_TRUE(ending);
@@ -59,7 +59,7 @@ TEST(Child, an_exit_code_is_told_as_it_was) {
     EXPECT_EQ(ending->text(), "ended with exit code 7");
 }
 
-TEST(Child, a_child_that_is_killed_is_told_by_its_signal) {
+TEST(Child, a_killed_child_is_reported_with_its_signal) {
     Child child("sh", "/bin/sh", shell("kill -9 $$"));
     const auto& ending = child.wait(kPatience);
     ASSERT_TRUE(ending);
@@ -69,7 +69,7 @@ TEST(Child, a_child_that_is_killed_is_told_by_its_signal) {
     EXPECT_NE(ending->text().find("signal 9"), std::string::npos);
 }
 
-TEST(Child, stop_ends_a_child_that_would_run_on) {
+TEST(Child, stop_ends_a_running_child) {
     Child child("sleep", "/bin/sleep", long_sleep());
     EXPECT_FALSE(child.poll());
     child.stop();
@@ -80,7 +80,7 @@ TEST(Child, stop_ends_a_child_that_would_run_on) {
     EXPECT_FALSE(ending->forced);
 }
 
-TEST(Child, stop_reaches_a_child_that_was_halted) {
+TEST(Child, stop_ends_a_stopped_child) {
     Child child("sleep", "/bin/sleep", long_sleep());
     kill(child.pid(), SIGSTOP);
     ASSERT_TRUE(wait_for([&] { return state_of(child.pid()) == 'T'; }));
@@ -90,10 +90,10 @@ TEST(Child, stop_reaches_a_child_that_was_halted) {
     EXPECT_EQ(ending->number, SIGTERM);
 }
 
-TEST(Child, stop_reaches_a_child_that_is_halted_only_afterwards) {
+TEST(Child, stop_ends_a_child_that_stops_itself_afterwards) {
     ScratchFolder scratch;
     const auto mark = scratch.path() / "ready";
-    // It halts itself where it was asked to end, and ends once it is woken.
+    // Stops itself on the request to end, and ends once it is continued.
     Child child(
         "sh", "/bin/sh",
         shell("trap 'kill -STOP $$; exit 5' TERM; : > " + mark.string() + "; while :; do sleep 0.01; done"));
@@ -105,8 +105,8 @@ TEST(Child, stop_reaches_a_child_that_is_halted_only_afterwards) {
     EXPECT_FALSE(ending->forced);
 }
 
-// A leak checker stops its own process at exit to look at it; SIGCONT would take that stop back.
-TEST(Child, stop_sends_nothing_but_the_request_to_a_child_that_runs) {
+// A leak checker stops its own process at exit to inspect it; SIGCONT would undo that stop.
+TEST(Child, stop_sends_only_the_request_to_a_running_child) {
     ScratchFolder scratch;
     const auto ready = scratch.path() / "ready", woken = scratch.path() / "woken";
     Child child("sh", "/bin/sh",
@@ -120,7 +120,7 @@ TEST(Child, stop_sends_nothing_but_the_request_to_a_child_that_runs) {
     EXPECT_FALSE(std::filesystem::exists(woken));
 }
 
-TEST(Child, a_child_that_ignores_the_request_is_killed_after_the_grace) {
+TEST(Child, a_child_that_ignores_the_request_is_killed_after_the_grace_time) {
     ScratchFolder scratch;
     const auto mark = scratch.path() / "ready";
     auto settings = shell("trap '' TERM; : > " + mark.string() + "; while :; do sleep 0.05; done");
@@ -132,10 +132,10 @@ TEST(Child, a_child_that_ignores_the_request_is_killed_after_the_grace) {
     ASSERT_TRUE(ending);
     EXPECT_TRUE(ending->forced);
     EXPECT_EQ(ending->number, SIGKILL);
-    EXPECT_NE(ending->text().find("ignored the request"), std::string::npos);
+    EXPECT_NE(ending->text().find("did not end on request"), std::string::npos);
 }
 
-TEST(Child, a_program_that_does_not_exist_is_refused_with_its_path) {
+TEST(Child, a_missing_program_is_refused_with_its_path) {
     try {
         Child child("nothing", "/nonexistent/program", {});
         FAIL() << "no error";
@@ -145,7 +145,7 @@ TEST(Child, a_program_that_does_not_exist_is_refused_with_its_path) {
     }
 }
 
-TEST(Child, gets_the_environment_it_was_given_and_loses_what_is_emptied) {
+TEST(Child, gets_the_given_environment_without_empty_variables) {
     ScratchFolder scratch;
     const auto out = scratch.path() / "out";
     setenv("TACT_TEST_GONE", "1", 1);
@@ -165,7 +165,7 @@ TEST(Child, does_not_inherit_the_signals_that_tact_blocks) {
     EXPECT_EQ(ending->number, SIGINT);
 }
 
-TEST(Child, is_gone_when_its_object_is) {
+TEST(Child, ends_with_its_object) {
     pid_t pid = 0;
     {
         Child child("sleep", "/bin/sleep", long_sleep());
@@ -174,7 +174,7 @@ TEST(Child, is_gone_when_its_object_is) {
     EXPECT_EQ(kill(pid, 0), -1);
 }
 
-TEST(Signals, a_request_to_end_is_taken_and_a_dead_child_only_wakes) {
+TEST(Signals, a_request_to_end_is_returned_and_a_dead_child_only_wakes) {
     Signals signals;
     Child child("true", "/bin/true", {});
     ASSERT_TRUE(child.wait(kPatience));
@@ -184,7 +184,7 @@ TEST(Signals, a_request_to_end_is_taken_and_a_dead_child_only_wakes) {
     EXPECT_EQ(signals.wait(0), 0);
 }
 
-TEST(Files, a_file_is_written_whole_and_no_remainder_stays) {
+TEST(Files, a_file_is_written_completely_without_leftovers) {
     ScratchFolder scratch;
     const auto path = scratch.path() / "a" / "b.json";
     write_whole(path, "one");
@@ -195,7 +195,7 @@ TEST(Files, a_file_is_written_whole_and_no_remainder_stays) {
     EXPECT_EQ(files, 1U);
 }
 
-TEST(Files, a_folder_that_cannot_be_written_is_said_with_its_path) {
+TEST(Files, an_unwritable_folder_is_reported_with_its_path) {
     ScratchFolder scratch;
     std::ofstream(scratch.path() / "file") << "x";
     try {
@@ -206,7 +206,7 @@ TEST(Files, a_folder_that_cannot_be_written_is_said_with_its_path) {
     }
 }
 
-TEST(ContentHash, differs_where_the_same_letters_are_cut_otherwise) {
+TEST(ContentHash, differs_for_different_splits_of_the_same_text) {
     ContentHash a, b, c;
     a.add("ab");
     a.add("c");

@@ -14,7 +14,7 @@
 namespace tact::launch {
 namespace {
 
-// A PC set up for a device: Debian 12, linux-image-rt-amd64, core 3 isolated.
+// A PC set up for a haptic device: Debian 12, linux-image-rt-amd64, core 3 isolated.
 Machine tuned() {
     Machine m;
     m.kernel_version = "6.1.0-18-rt-amd64 #1 SMP PREEMPT_RT Debian 6.1.76-1 (2024-02-01)";
@@ -40,14 +40,14 @@ Finding one(const Machine& m, const std::string& name) {
     return at == all.end() ? Finding{} : *at;
 }
 
-TEST(Doctor, a_tuned_machine_has_nothing_to_mend) {
+TEST(Doctor, a_tuned_machine_needs_no_fix) {
     for (const Finding& f : judge(tuned())) {
         EXPECT_EQ(f.level, FindingLevel::ok) << f.name << ": " << f.says;
         EXPECT_EQ(f.fix, "") << f.name;
     }
 }
 
-TEST(Doctor, every_warning_says_how_to_mend_it) {
+TEST(Doctor, every_warning_has_a_fix) {
     Machine m = tuned();
     m.kernel_version = "6.1.0-18-amd64 #1 SMP PREEMPT_DYNAMIC Debian 6.1.76-1 (2024-02-01)";
     m.realtime = m.isolated = m.nohz_full = "";
@@ -68,7 +68,7 @@ TEST(Doctor, every_warning_says_how_to_mend_it) {
         ++warnings;
         EXPECT_NE(f.fix, "") << f.name;
     }
-    EXPECT_EQ(warnings, 12);  // all but the throttling, which is only told
+    EXPECT_EQ(warnings, 12);  // all except the throttling, which is only reported
 }
 
 TEST(Doctor, a_refused_priority_names_the_limit_that_refuses_it) {
@@ -88,7 +88,7 @@ TEST(Doctor, controllers_on_one_core_are_warned_about) {
     m.servos = {{100, 3, "default"}, {200, 2, "lab2"}};
     EXPECT_EQ(one(m, "servo_cores").level, FindingLevel::ok);
     EXPECT_EQ(one(m, "servo_cores").says,
-              "controllers that run: session default on core 3, session lab2 on core 2");
+              "running controllers: session default on core 3, session lab2 on core 2");
     m.servos.push_back({300, 3, "lab3"});
     EXPECT_EQ(one(m, "servo_cores").level, FindingLevel::warn);
     EXPECT_NE(
@@ -97,7 +97,7 @@ TEST(Doctor, controllers_on_one_core_are_warned_about) {
     EXPECT_EQ(one(m, "servo_cores").fix, kSharedCoreFix);
 }
 
-TEST(Doctor, the_step_that_is_missing_is_told_with_its_own_fix) {
+TEST(Doctor, the_missing_step_is_reported_with_its_own_fix) {
     Machine m = tuned();
     m.fifo_error = EPERM;
     m.rtprio_max = 0;
@@ -114,30 +114,30 @@ TEST(Doctor, the_step_that_is_missing_is_told_with_its_own_fix) {
     expect("not a member of the group realtime", kRightsFix);
     EXPECT_EQ(one(m, "dma_latency").fix, kRightsFix);
     m.person.listed = {"users", "realtime"};
-    expect("this session is older than that", kLoginFix);
+    expect("this session began before that", kLoginFix);
     EXPECT_EQ(one(m, "dma_latency").fix, kLoginFix);
     m.person.groups = {"users", "realtime"};
     expect("tact.conf is missing", kRightsFix);
     m.person.limits = "# @realtime - rtprio 95\n@audio - rtprio 95\n@audio - memlock unlimited\n";
-    expect("tact.conf is missing or does not grant it", kRightsFix);
+    expect("tact.conf is missing or does not grant this limit", kRightsFix);
     std::ifstream shipped("deploy/limits.conf");
     m.person.limits = {std::istreambuf_iterator<char>(shipped), {}};
-    expect("the limits of this session are not those", kSessionLimitsFix);
+    expect("this session does not have it", kSessionLimitsFix);
     m.person.limits = "@realtime - rtprio 95\n";  // one of the two
     EXPECT_EQ(one(m, "rtprio").fix, kSessionLimitsFix);
     EXPECT_EQ(one(m, "memlock").fix, kRightsFix);
     m.person = {true, {}, {}, ""};  // root without the capability, in a container
-    expect("root has no capability", kCapabilityFix);
+    expect("root lacks the capability", kCapabilityFix);
 }
 
 TEST(Doctor, a_person_is_read_with_the_groups_of_the_process_and_of_the_database) {
     const Person p = read_person("/nowhere");
     EXPECT_EQ(p.root, geteuid() == 0);
-    EXPECT_FALSE(p.listed.empty());  // at least the own group
+    EXPECT_FALSE(p.listed.empty());  // at least the process's own group
     EXPECT_EQ(p.limits, "");
 }
 
-TEST(Doctor, the_fixes_for_rights_are_written_down_once) {
+TEST(Doctor, the_fixes_for_rights_are_defined_once) {
     std::string all;
     for (const char* const path :
          {"deploy/tact/doctor.cpp", "deploy/tact/probe.cpp", "deploy/tact/probe_request.cpp",
@@ -170,7 +170,7 @@ TEST(Doctor, the_file_of_limits_grants_the_highest_priority_there_is) {
     EXPECT_EQ(granted, kSupervisorPriority);
 }
 
-TEST(Doctor, an_isolated_core_that_still_ticks_is_not_good_enough) {
+TEST(Doctor, an_isolated_core_with_a_tick_is_a_warning) {
     Machine m = tuned();
     m.nohz_full = "";
     EXPECT_EQ(one(m, "isolation").level, FindingLevel::warn);

@@ -1,18 +1,18 @@
 #!/usr/bin/env bash
 # End to end: the drilling demo without a display, with the programs of one build. deploy_drill_e2e_test.sh BIN
-# The emulated surgeon takes bone, and window and controller agree on how much; exit code 77: cannot be tried here.
+# The emulated surgeon removes bone, and window and controller agree on the volume; exit code 77: cannot run here.
 set -u
 bin=$1
-command -v Xvfb >/dev/null || { echo "there is no Xvfb"; exit 77; }
-[ -x "$bin/tact-gui" ] || { echo "there is no tact-gui in this build"; exit 77; }
+command -v Xvfb >/dev/null || { echo "skipped: Xvfb is missing"; exit 77; }
+[ -x "$bin/tact-gui" ] || { echo "skipped: this build has no tact-gui"; exit 77; }
 scratch=$(mktemp -d) || exit 1
 trap 'rm -rf "$scratch"' EXIT
 export TACT_RUNTIME_DIR=$scratch XDG_CACHE_HOME=$scratch/cache
 unset DISPLAY WAYLAND_DISPLAY
-# The software renderer never frees some of its own, and is unloaded before the leak checker looks for names.
+# The software renderer leaks memory, and is unloaded before the leak checker resolves symbols.
 export ASAN_OPTIONS=${ASAN_OPTIONS:+$ASAN_OPTIONS:}detect_leaks=0
 
-# The hand is armed when the window has drawn; a busy machine, or one with sanitizers, may need longer for that.
+# The controller arms after the first frame, which takes longer on a busy machine or with sanitizers.
 for seconds in 10 30 120; do
     "$bin/tact" demo drill --voxels 80 --headless --seconds "$seconds" --session e2e --size 960x600 \
         --out "$scratch/out" --quiet >"$scratch/said" 2>&1
@@ -31,7 +31,7 @@ assert abs(drilling["burr"]["diameter_mm"] - 6) < 1e-3 and abs(drilling["suction
 trainee = drilling["trainee"]
 assert trainee["drilling_s"] >= trainee["cutting_s"] >= 1, trainee
 assert trainee["strokes"]["count"] >= 1 and trainee["force"]["max_n"] > 0.1, trainee
-# What the bricks lost and what the controller counted; the window ends a little before it.
+# Volume lost by the bricks and volume counted by the controller; the window ends a little earlier.
 assert drilling["removed_mm3"] > 5, drilling
 assert 0.8 * drilling["removed_mm3"] < trainee["removed_mm3"] <= drilling["removed_mm3"] + 1e-9, (drilling, trainee)
 by_structure = trainee["removed_bone_mm3"] + sum(s["removed_mm3"] for s in trainee["structures"])

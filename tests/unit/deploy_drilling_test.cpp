@@ -1,4 +1,4 @@
-// What a run says of drilling, and which files a scan is made of.
+// The drilling part of a run's report, and the files of a scan.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -34,7 +34,7 @@ DrillTopic two_tools() {
     return t;
 }
 
-TEST(DrillingReport, tells_tools_in_peoples_units_and_what_they_took) {
+TEST(DrillingReport, has_tools_in_common_units_and_the_removed_volume) {
     const auto region = std::make_unique<RtRegion>();
     EXPECT_TRUE(drilling_report(*region, {}).is_null());
     region->drill.publish(two_tools());
@@ -52,7 +52,7 @@ TEST(DrillingReport, tells_tools_in_peoples_units_and_what_they_took) {
     EXPECT_EQ(drilling_summary(nullptr), "");
 }
 
-TEST(DrillingReport, a_trainees_figures_are_taken_over_and_said_in_lines) {
+TEST(DrillingReport, a_trainees_metrics_are_copied_and_printed) {
     const ScratchFolder scratch;
     const auto file = scratch.path() / "trainee.json";
     const nlohmann::json trainee = {
@@ -92,7 +92,7 @@ TEST(DrillingReport, a_trainees_figures_are_taken_over_and_said_in_lines) {
     EXPECT_EQ(said.find("facial nerve"), std::string::npos);  // never near
 }
 
-TEST(DrillingReport, what_makes_no_sense_is_left_out) {
+TEST(DrillingReport, impossible_values_are_left_out) {
     const ScratchFolder scratch;
     const auto file = scratch.path() / "trainee.json";
     const auto region = std::make_unique<RtRegion>();
@@ -109,7 +109,7 @@ TEST(DrillingReport, what_makes_no_sense_is_left_out) {
     }
 }
 
-TEST(ScanFiles, are_a_file_a_folder_or_a_header_with_what_lies_beside_it) {
+TEST(ScanFiles, are_a_file_a_folder_or_a_header_with_its_data_file) {
     const ScratchFolder scratch;
     const auto touch = [&](const char* name) {
         std::ofstream(scratch.path() / name) << name;
@@ -125,7 +125,7 @@ TEST(ScanFiles, are_a_file_a_folder_or_a_header_with_what_lies_beside_it) {
     EXPECT_EQ(scan_files(scratch.path() / "series"), (std::vector{first, second}));
 }
 
-TEST(LetTheHandsDrill, where_nobody_asked_for_another_hand_or_device) {
+TEST(LetTheHandsDrill, unless_another_hand_or_device_is_requested) {
     RunOptions o;
     let_the_hands_drill(o);
     EXPECT_EQ(o.controller, (std::vector<std::string>{"--hand", "surgeon", "--hand2", "suction-tube"}));

@@ -1,18 +1,18 @@
 #!/usr/bin/env bash
 # End to end: the docking demo without a display, with the programs of one build. deploy_e2e_test.sh BIN
-# The hand is drawn from 15 A and 30 degrees towards the place of the file; exit code 77: cannot be tried here.
+# The force moves the hand from 15 A and 30 degrees away towards the pose of the file; exit code 77: cannot run here.
 set -u
 bin=$1
-command -v Xvfb >/dev/null || { echo "there is no Xvfb"; exit 77; }
-[ -x "$bin/tact-gui" ] || { echo "there is no tact-gui in this build"; exit 77; }
+command -v Xvfb >/dev/null || { echo "skipped: Xvfb is missing"; exit 77; }
+[ -x "$bin/tact-gui" ] || { echo "skipped: this build has no tact-gui"; exit 77; }
 scratch=$(mktemp -d) || exit 1
 trap 'rm -rf "$scratch"' EXIT
 export TACT_RUNTIME_DIR=$scratch XDG_CACHE_HOME=$scratch/cache
 unset DISPLAY WAYLAND_DISPLAY
-# The software renderer never frees some of its own, and is unloaded before the leak checker looks for names.
+# The software renderer leaks memory, and is unloaded before the leak checker resolves symbols.
 export ASAN_OPTIONS=${ASAN_OPTIONS:+$ASAN_OPTIONS:}detect_leaks=0
 
-# The hand is armed when the window has drawn; a busy machine, or one with sanitizers, may need longer for that.
+# The controller arms after the first frame, which takes longer on a busy machine or with sanitizers.
 for seconds in 4 15 60 150; do
     "$bin/tact" demo dock --headless --seconds "$seconds" --session e2e --size 960x600 --out "$scratch/out" \
         >"$scratch/said" 2>&1
@@ -39,11 +39,11 @@ rows = list(csv.DictReader(open(os.path.join(folder, "run.csv"))))
 assert len(rows) > 10 and rows[0]["state"] == "ready" and any(r["state"] == "active" for r in rows), rows[-1:]
 print("from %.1f A to %.2f A, cc about zero %.3f" % (fit["at_start"]["offset_a"], fit["offset_a"], fit["cc_zero"]))
 PY
-# Nothing stays behind.
+# No process is left.
 for name in tact-rt tact-gui Xvfb; do
     for pid in $(pgrep -x "$name"); do
         if tr '\0' '\n' <"/proc/$pid/environ" 2>/dev/null | grep -qx "TACT_RUNTIME_DIR=$scratch"; then
-            echo "$name $pid is left over"
+            echo "$name $pid is still running"
             exit 1
         fi
     done

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Man pages and bash completion of all programs hold what --help prints, no less and no more.
+"""Man pages and bash completion of all programs have the same content as --help.
 
 deploy_manual_test.py BIN: generates both with the programs in BIN, reads --help of every program and command, and presses TAB in
 bash. Pages are set by groff, where it is installed, without a warning.
@@ -15,7 +15,7 @@ import unittest
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
 PROGRAMS = ["tact", "tact-bench", "tact-gui", "tact-prep", "tact-record", "tact-replay", "tact-reproduce", "tact-rt"]
-# Commands of tact that start a program of that name, which answers --help itself.
+# Programs started by a command of tact, which print their own --help.
 OWN_PROGRAMS = {"tact-bench", "tact-record", "tact-reproduce"}
 BIN = pathlib.Path(".")
 HELPERS = pathlib.Path("/usr/share/bash-completion/bash_completion")
@@ -37,7 +37,7 @@ def generate(folder, **environment):
 
 
 def read_help(words):
-    """Options and commands that --help prints."""
+    """Returns the options and commands printed by --help."""
     text = subprocess.run([BIN / words[0], *words[1:], "--help"], check=True, capture_output=True, text=True).stdout
     options = set()
     for names in re.findall(r"^ {2,6}(-[^\s{]+)", text, re.M):
@@ -50,7 +50,7 @@ def read_help(words):
 
 
 def all_commands():
-    """(words, options, commands) of every program and command; a command that another program answers is left out."""
+    """Returns (words, options, commands) of every program and command, except commands executed by another program."""
     todo = [[p] for p in PROGRAMS]
     while todo:
         words = todo.pop()
@@ -59,14 +59,14 @@ def all_commands():
         todo += [words + [c] for c in commands if "-".join(words + [c]) not in OWN_PROGRAMS]
 
 
-# Beginnings of texts that need another line to be understood.
+# Beginnings of help texts that are not self-contained.
 FRAGMENTS = ("of ", "its ", "what ", "who ", "where ", "which ", "their ", "so many ")
-# Programs whose texts are checked by their own tests.
+# Programs with their own tests of help texts.
 NOT_READ = {"tact-gui"}
 
 
 def help_texts(words):
-    """Texts of options, commands and the program that --help prints, each on one line."""
+    """Returns the texts of options, commands and the program from --help, each on one line."""
     text = subprocess.run([BIN / words[0], *words[1:], "--help"], check=True, capture_output=True, text=True).stdout
     lines = re.sub(r"\n {20,}", " ", re.sub(r"(?m)^( {2,6}\S.*)\n {20,}", r"\1  ", text)).splitlines()
     rows = [re.split(r" {2,}", line.strip(), maxsplit=1) for line in lines if line.startswith("  ")]
@@ -74,7 +74,7 @@ def help_texts(words):
 
 
 def section_of(folder, words):
-    """The part of a page that describes a command, with - as it is shown."""
+    """Returns the part of a man page that describes a command, with unescaped '-'."""
     name = "-".join(words)
     if len(words) > 1 and name in PROGRAMS:
         text = (folder / "man1" / f"{words[0]}.1").read_text()
@@ -84,7 +84,7 @@ def section_of(folder, words):
 
 
 def press_tab(completion, lines, folder, before=""):
-    """What bash offers for the last word of each line."""
+    """Returns bash's completions for the last word of each line."""
     done = subprocess.run(["bash", "--norc", "--noprofile", "-c", f"{before}\n. {completion} || exit\n{PRESS}"], check=True,
                           input="\n".join(lines) + "\n", capture_output=True, text=True, cwd=folder)
     if done.stderr:
@@ -102,14 +102,14 @@ class Manual(unittest.TestCase):
         cls.completion = cls.folder / "completions/tact"
         cls.commands = list(all_commands())
 
-    def test_pages_hold_the_options_of_help_and_no_others(self):
+    def test_pages_have_exactly_the_options_of_help(self):
         self.assertGreater(len(self.commands), 30)
         for words, options, _ in self.commands:
             heads = re.findall(r"^\.TP\n(\\fB-.*)$", section_of(self.folder, words), re.M)
             shown = {name for head in heads for name in re.findall(r"\\fB(--?\w[\w-]*)\\fR", head)}
             self.assertEqual(shown, options, words)
 
-    def test_pages_hold_the_commands_of_help(self):
+    def test_pages_have_the_commands_of_help(self):
         for words, _, commands in self.commands:
             section = section_of(self.folder, words).partition("\n.SH COMMANDS\n")[2].partition("\n.SH ")[0]
             self.assertEqual(re.findall(r"\.TP\n\\fB([\w-]+)\\fR\n", section), commands, words)
@@ -118,7 +118,7 @@ class Manual(unittest.TestCase):
         wanted = {"-".join(words) for words, _, _ in self.commands} | OWN_PROGRAMS
         self.assertEqual({p.stem for p in self.pages}, wanted)
 
-    def test_completion_holds_the_options_and_commands_of_help_and_no_others(self):
+    def test_completion_has_exactly_the_options_and_commands_of_help(self):
         lines = [" ".join(words) + " -" for words, _, _ in self.commands]
         for (words, options, _), offered in zip(self.commands, press_tab(self.completion, lines, self.folder)):
             self.assertEqual(offered, options, words)

@@ -1,4 +1,4 @@
-// A region as a controller with everything writes it: two devices, tracker, window. For tests of the metrics.
+// A region as written by a controller with two devices, a tracker and a window. For tests of the metrics.
 #pragma once
 
 #include <cstring>

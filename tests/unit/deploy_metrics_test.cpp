@@ -1,4 +1,4 @@
-// The figures for Prometheus: what they say of a region, of none, of a hostile one; over HTTP and as a file.
+// The metrics for Prometheus: from a region, without one, from a hostile one; over HTTP and as a file.
 #include "deploy/tact/metrics.hpp"
 
 #include <gtest/gtest.h>
@@ -22,13 +22,13 @@
 namespace tact::launch {
 namespace {
 
-// The value of a line that begins with this and a space; NaN: there is none.
+// The value of a line that begins with this text and a space; NaN: no such line.
 double value_of(const std::string& text, const std::string& line) {
     const std::size_t at = text.find("\n" + line + " ");
     return at == std::string::npos ? NAN : std::stod(text.substr(at + line.size() + 2));
 }
 
-TEST(Metrics, tell_rate_lateness_levels_and_faults_by_cause) {
+TEST(Metrics, report_rate_lateness_levels_and_faults_by_cause) {
     const auto region = a_region();
     Metrics metrics("lab");
     fault(*region, RunReason::device_lost);
@@ -61,7 +61,7 @@ TEST(Metrics, tell_rate_lateness_levels_and_faults_by_cause) {
     EXPECT_EQ(value_of(text, "tact_pass_drawn_seconds" + bone), 0.5);
     EXPECT_EQ(value_of(text, "tact_path_work_seconds{session=\"lab\",path=\"gui.volume\",quantile=\"0.5\"}"),
               0.0625);
-    // What is not known is not told.
+    // Unknown values are not exported.
     EXPECT_EQ(text.find("tact_pass_drawn_seconds{session=\"lab\",pass=\"swap\""), std::string::npos);
     const auto cause = [&](RunReason reason) {
         return value_of(text, std::string("tact_faults_total{session=\"lab\",cause=\"") +
@@ -82,7 +82,7 @@ TEST(Metrics, tell_rate_lateness_levels_and_faults_by_cause) {
     EXPECT_NEAR(value_of(text, "tact_servo_lateness_seconds_sum{session=\"lab\"}"), 0.04, 0.003);
 }
 
-TEST(Metrics, a_controller_that_is_gone_is_down_and_its_figures_are_not_told) {
+TEST(Metrics, an_exited_controller_is_down_and_has_no_metrics) {
     const auto region = a_region();
     Metrics metrics("lab");
     fault(*region, RunReason::device_lost);
@@ -90,7 +90,7 @@ TEST(Metrics, a_controller_that_is_gone_is_down_and_its_figures_are_not_told) {
     const std::string text = metrics.text(nullptr);
     EXPECT_EQ(value_of(text, "tact_up{session=\"lab\"}"), 0.0);
     EXPECT_EQ(text.find("tact_force_rate_hertz"), std::string::npos);
-    EXPECT_NE(text.find("tact_faults_total{"), std::string::npos);  // a counter does not go back
+    EXPECT_NE(text.find("tact_faults_total{"), std::string::npos);  // a counter does not decrease
 }
 
 // The counts by cause.
@@ -117,7 +117,7 @@ TEST(Metrics, every_cause_is_exported_at_zero_before_its_first_fault) {
     const auto region = a_region();
     metrics.follow(*region, 1);
     EXPECT_EQ(causes_of(metrics.text(region.get())), wanted);
-    for (int r = -1; r <= 256; ++r) {  // whatever a controller writes, the causes stay those
+    for (int r = -1; r <= 256; ++r) {  // for any value of a controller, the set of causes stays the same
         EventTopic e{};
         e.code = static_cast<std::uint16_t>(EventCode::fault_latched);
         e.a = r;
@@ -130,7 +130,7 @@ TEST(Metrics, every_cause_is_exported_at_zero_before_its_first_fault) {
     EXPECT_EQ(causes_of(metrics.text(nullptr)), wanted);
 }
 
-TEST(Metrics, faults_add_up_across_controllers_and_a_new_connection_counts_none_twice) {
+TEST(Metrics, faults_add_up_across_controllers_and_are_never_counted_twice) {
     Metrics metrics("lab");
     const auto first = a_region(), second = a_region();
     fault(*first, RunReason::device_lost);
@@ -153,13 +153,13 @@ TEST(Metrics, faults_add_up_across_controllers_and_a_new_connection_counts_none_
     EXPECT_GT(value_of(metrics.text(nullptr), "tact_events_missed_total{session=\"lab\"}"), 1000.0);
 }
 
-TEST(Metrics, a_controller_that_was_killed_is_told_from_one_that_ended_in_order) {
+TEST(Metrics, a_killed_controller_differs_from_one_that_ended_in_order) {
     Metrics metrics("lab");
     const std::string name = "tact_controller_ended_in_order{session=\"lab\"}";
-    EXPECT_TRUE(std::isnan(value_of(metrics.text(nullptr), name)));  // none was seen
+    EXPECT_TRUE(std::isnan(value_of(metrics.text(nullptr), name)));  // no controller seen
     const auto region = a_region();
     metrics.follow(*region, 1);
-    metrics.left(*region, 1);  // active to the last
+    metrics.left(*region, 1);  // active until the end
     EXPECT_EQ(value_of(metrics.text(nullptr), name), 0.0);
     HealthTopic h{};
     h.state = static_cast<std::uint8_t>(RunState::off);
@@ -170,7 +170,7 @@ TEST(Metrics, a_controller_that_was_killed_is_told_from_one_that_ended_in_order)
     EXPECT_EQ(value_of(metrics.text(nullptr), name), 1.0);
 }
 
-TEST(Metrics, a_hostile_region_leaves_a_page_that_can_be_read) {
+TEST(Metrics, a_hostile_region_still_gives_a_readable_page) {
     const auto region = std::make_unique<RtRegion>();
     HealthTopic h{};
     std::memset(static_cast<void*>(&h), 0xFF, sizeof h);
@@ -201,7 +201,7 @@ TEST(Metrics, are_answered_over_http_on_the_loopback) {
     MetricsServer server("127.0.0.1", 0);
     ASSERT_GT(server.port(), 0);
     httplib::Client client("127.0.0.1", server.port());
-    EXPECT_EQ(client.Get("/metrics")->status, 503);  // nothing was offered yet
+    EXPECT_EQ(client.Get("/metrics")->status, 503);  // nothing offered yet
     for (const char* const text : {"tact_up 1\n", "tact_up 0\n"}) {
         server.offer(text);
         const auto answer = client.Get("/metrics");
@@ -215,7 +215,7 @@ TEST(Metrics, are_answered_over_http_on_the_loopback) {
     EXPECT_THROW(MetricsServer("203.0.113.7", 0), StartupError);
 }
 
-TEST(Metrics, a_file_is_replaced_whole) {
+TEST(Metrics, a_file_is_replaced_atomically) {
     const ScratchFolder folder;
     const auto path = folder.path() / "tact.prom";
     for (const char* const text : {"long text\n", "short\n"}) {
@@ -227,7 +227,7 @@ TEST(Metrics, a_file_is_replaced_whole) {
     EXPECT_THROW(write_textfile(folder.path() / "none" / "tact.prom", "x"), StartupError);
 }
 
-TEST(Metrics, promtool_takes_the_page_and_the_rules) {
+TEST(Metrics, promtool_accepts_the_page_and_the_rules) {
     const std::filesystem::path promtool = find_in_path("promtool");
     if (promtool.empty()) GTEST_SKIP() << "there is no promtool in PATH (./deploy/test fetches one)";
     const ScratchFolder folder;

@@ -1,5 +1,5 @@
-// The files of deploy/monitoring against what the exporter really writes: every series that a rule, a test of a rule
-// or the dashboard names is one that Metrics::text() exports, with its labels and their values.
+// Compares the files of deploy/monitoring with the exporter's output: every series named in a rule, in a test of a rule
+// or in the dashboard is exported by Metrics::text(), with its labels and their values.
 #include <gtest/gtest.h>
 
 #include <fstream>
@@ -38,10 +38,10 @@ Labels labels_of(const std::string& inside) {
     return labels;
 }
 
-// Of another exporter: Prometheus itself and node_exporter.
+// Series of other exporters: Prometheus itself and node_exporter.
 const Series kOthers{{"up", {{"job", "tact"}}}, {"node_textfile_mtime_seconds", {{"file", "tact.prom"}}}};
 
-// Everything that the exporter writes: of a full region, and of a controller that is gone.
+// All series of the exporter: of a complete region, and of a controller that is gone.
 Series exported() {
     const auto region = a_region();
     Metrics metrics("default");
@@ -59,14 +59,14 @@ Series exported() {
     return all;
 }
 
-// What the scrape adds.
+// Labels added by the scrape.
 bool from_scrape(const std::string& label) { return label == "instance" || label == "job"; }
-// Labels whose values are a fixed set.
+// Labels with a fixed set of values.
 bool fixed_values(const std::string& label) {
     return label == "cause" || label == "state" || label == "kind" || label == "le" || label == "quantile";
 }
 
-// "" where a series of this name has these labels, with such values; whole: and no others.
+// "" if a series of this name has these labels with such values; whole: and no other labels.
 std::string wrong(const Series& all, const std::string& name, const Labels& labels, bool whole) {
     const auto [first, last] = all.equal_range(name);
     if (first == last) return name + " is not exported";
@@ -86,7 +86,7 @@ std::string wrong(const Series& all, const std::string& name, const Labels& labe
     return text;
 }
 
-// Of PromQL: each name, with the labels in braces behind it.
+// Checks each name in a PromQL expression, with the labels in the braces after it.
 std::string wrong_in_expression(const Series& all, const std::string& expression) {
     static const std::regex name(R"(\b((?:tact|node)_\w+|up(?=\{))(?:\{([^}]*)\})?)");
     std::string bad;
@@ -118,7 +118,7 @@ TEST(Monitoring, every_rule_uses_series_that_are_exported) {
     for (const std::smatch& m : found) EXPECT_EQ(wrong_in_expression(all, m[1]), "") << m[1];
 }
 
-TEST(Monitoring, every_series_of_the_rules_test_is_one_that_is_exported) {
+TEST(Monitoring, every_series_of_the_rules_test_is_exported) {
     const Series all = exported();
     const std::string text = file_text(kFolder + "tact_rules_test.yml");
     static const std::regex series(R"(series: '(\w+)\{([^}]*)\}')");

@@ -1,4 +1,4 @@
-// What tact probe says of made-up machines: trees of files as the kernel shows them.
+// tact probe on synthetic machines: trees of files in the kernel's layout.
 #include "deploy/tact/probe.hpp"
 
 #include <gtest/gtest.h>
@@ -55,7 +55,7 @@ public:
         file(at + "flags", flags);
         file(at + "mtu", std::to_string(mtu) + "\n");
     }
-    // As the kernel lays them out: the chip below its device, the older class beside it, the bus links to it.
+    // The kernel's layout: the chip below its device, the older class beside it, links from the bus.
     void gpio(const std::string& name, const std::string& label) const {
         const fs::path device = root() / "sys/devices/pci/usb1" / name;
         file("sys/devices/pci/usb1/" + name + "/" + name + "/dev", "254:0\n");
@@ -96,17 +96,17 @@ DeviceRequest phantom_request() {
     return w;
 }
 
-TEST(Probe, a_machine_that_shows_nothing_says_so_and_an_emulated_run_is_all_right) {
+TEST(Probe, a_machine_without_devices_is_reported_and_an_emulated_run_is_ok) {
     const Tree tree;
     const Answer a = ask(tree, {});
     EXPECT_FALSE(a.fails());
     EXPECT_EQ(a.one("usb").level, FindingLevel::warn);
-    EXPECT_TRUE(says(a.one("usb").says, {"no /sys/bus/usb", "nothing on it can be seen"}));
+    EXPECT_TRUE(says(a.one("usb").says, {"no /sys/bus/usb", "no device can be detected"}));
     EXPECT_TRUE(says(a.one("can").says, {"no CAN"}));
     EXPECT_TRUE(says(a.one("gpio").says, {"no GPIO"}));
 }
 
-TEST(Probe, what_the_configuration_asks_for_and_cannot_be_seen_fails_with_a_mend) {
+TEST(Probe, a_configured_but_missing_device_fails_with_a_fix) {
     const Tree tree;
     DeviceRequest request = phantom_request();
     request.tracker = "can";
@@ -119,7 +119,7 @@ TEST(Probe, what_the_configuration_asks_for_and_cannot_be_seen_fails_with_a_mend
     EXPECT_TRUE(says(a.one("device").says, {"USB is not visible", "cannot be detected"}));
 }
 
-TEST(Probe, an_arm_is_known_by_the_class_of_its_interface_and_told_with_its_serial) {
+TEST(Probe, an_arm_is_identified_by_its_interface_class_and_reported_with_its_serial) {
     const Tree tree;
     tree.usb("usb1", "1d6b", "0002", "0000:00", 1);
     tree.phantom("1-1", "P15-7", 4);
@@ -127,11 +127,11 @@ TEST(Probe, an_arm_is_known_by_the_class_of_its_interface_and_told_with_its_seri
     EXPECT_FALSE(a.fails());
     EXPECT_EQ(a.one("device").level, FindingLevel::ok);
     EXPECT_TRUE(says(a.one("usb").says, {"2 devices", "1 arm "}));
-    EXPECT_TRUE(says(a.one("arm").says,
-                     {"Phantom arm", "1209:0001", "P15-7", "driver phantom-usb", "may be opened"}));
+    EXPECT_TRUE(
+        says(a.one("arm").says, {"Phantom arm", "1209:0001", "P15-7", "driver phantom-usb", "accessible"}));
 }
 
-TEST(Probe, several_arms_need_a_serial_and_the_wrong_one_is_none) {
+TEST(Probe, several_arms_need_a_serial_and_a_wrong_serial_fails) {
     const Tree tree;
     tree.phantom("1-1", "LEFT", 4);
     tree.phantom("1-2", "RIGHT", 5);
@@ -144,7 +144,7 @@ TEST(Probe, several_arms_need_a_serial_and_the_wrong_one_is_none) {
     EXPECT_TRUE(says(ask(tree, request).one("device").says, {"no such device with serial MIDDLE"}));
 }
 
-TEST(Probe, a_node_that_may_not_be_opened_fails_for_the_wanted_arm_and_warns_for_another) {
+TEST(Probe, a_node_without_rights_fails_for_the_configured_arm_and_warns_for_another) {
     const Tree tree;
     tree.phantom("1-1", "P", 4);
     probe::Buses buses = probe::read_buses(tree.root());
@@ -155,12 +155,12 @@ TEST(Probe, a_node_that_may_not_be_opened_fails_for_the_wanted_arm_and_warns_for
     node.mode = 0664;
     const Answer wanted{judge_devices(buses, phantom_request(), kMember, "")};
     EXPECT_EQ(wanted.one("arm").level, FindingLevel::fail);
-    EXPECT_TRUE(says(wanted.one("arm").says, {"may not open", "group root, mode 664"}));
+    EXPECT_TRUE(says(wanted.one("arm").says, {"no permission to open", "group root, mode 664"}));
     EXPECT_TRUE(says(wanted.one("arm").fix, {"deploy/install.sh --rights"}));
     const Answer other{judge_devices(buses, {}, kMember, "")};
     EXPECT_EQ(other.one("arm").level, FindingLevel::warn);
     fs::remove(tree.root() / "dev/bus/usb/001/004");
-    EXPECT_TRUE(says(ask(tree, phantom_request()).one("arm").says, {"is not there", "container"}));
+    EXPECT_TRUE(says(ask(tree, phantom_request()).one("arm").says, {"does not exist", "container"}));
 }
 
 TEST(Probe, a_slow_port_is_warned_about) {
@@ -173,7 +173,7 @@ TEST(Probe, a_slow_port_is_warned_about) {
     EXPECT_NE(a.one("arm").fix, "");
 }
 
-TEST(Probe, devices_without_a_driver_here_are_seen_as_such) {
+TEST(Probe, devices_without_a_driver_are_reported_as_such) {
     for (const probe::KnownDevice& k : probe::kKnownDevices) {
         if (k.interface != 0) continue;
         const Tree tree;
@@ -206,25 +206,25 @@ TEST(Probe, hidraw_nodes_and_serial_ports_of_a_device_are_found) {
     DeviceRequest request;
     request.driver = "polhem";
     EXPECT_FALSE(ask(tree, request).fails());
-    EXPECT_TRUE(says(ask(tree, request).one("arm").says, {"driver polhem, may be opened"}));
+    EXPECT_TRUE(says(ask(tree, request).one("arm").says, {"driver polhem, accessible"}));
     fs::remove(tree.root() / "dev/hidraw2");
-    EXPECT_TRUE(says(ask(tree, request).one("arm").says, {"hidraw2 is not there"}));
+    EXPECT_TRUE(says(ask(tree, request).one("arm").says, {"hidraw2 does not exist"}));
     ASSERT_EQ(usb.there[1].nodes.size(), 1U);
     EXPECT_EQ(usb.there[1].nodes[0].path, (tree.root() / "dev/ttyUSB5").string());
     EXPECT_FALSE(usb.there[1].nodes[0].usable);
 }
 
-TEST(Probe, a_falcon_is_told_with_the_firmware_that_it_needs) {
+TEST(Probe, a_falcon_is_reported_with_the_firmware_that_it_needs) {
     const Tree tree;
     tree.usb("1-4", "0403", "cb48", "FA-1", 8);
     tree.file("sys/bus/usb/devices/1-4/speed", "12\n");
     DeviceRequest request;
-    EXPECT_EQ(ask(tree, request).one("firmware").says, "");  // nobody asked for one
+    EXPECT_EQ(ask(tree, request).one("firmware").says, "");  // none configured
     request.driver = "falcon";
     Answer a = ask(tree, request);
-    EXPECT_TRUE(says(a.one("arm").says, {"Novint Falcon", "FA-1", "driver falcon, may be opened"}));
+    EXPECT_TRUE(says(a.one("arm").says, {"Novint Falcon", "FA-1", "driver falcon, accessible"}));
     EXPECT_EQ(a.one("firmware").level, FindingLevel::warn);
-    EXPECT_TRUE(says(a.one("firmware").fix, {"the file that came with the device"}));
+    EXPECT_TRUE(says(a.one("firmware").fix, {"the firmware file of the manufacturer"}));
     const auto read_again = [&] {
         return device_request_from(
             {{"ok", true},
@@ -233,7 +233,7 @@ TEST(Probe, a_falcon_is_told_with_the_firmware_that_it_needs) {
     };
     a = ask(tree, read_again());
     EXPECT_EQ(a.one("firmware").level, FindingLevel::fail);
-    EXPECT_TRUE(says(a.one("firmware").says, {"fw.bin", "no such file"}));
+    EXPECT_TRUE(says(a.one("firmware").says, {"fw.bin", "the file does not exist"}));
     tree.file("fw.bin", "");
     a = ask(tree, read_again());
     EXPECT_EQ(a.one("firmware").level, FindingLevel::fail);
@@ -243,7 +243,7 @@ TEST(Probe, a_falcon_is_told_with_the_firmware_that_it_needs) {
     EXPECT_TRUE(says(a.one("firmware").says, {"fw.bin", "5 bytes"}));
 }
 
-TEST(Probe, a_can_interface_has_to_be_there_up_and_wide_enough) {
+TEST(Probe, a_can_interface_must_exist_be_up_and_have_the_frame_size) {
     const Tree tree;
     tree.can("eth0", "0x1003\n", 1500, 1);
     tree.can("can0", "0x40080\n", 16);
@@ -253,7 +253,7 @@ TEST(Probe, a_can_interface_has_to_be_there_up_and_wide_enough) {
     EXPECT_EQ(ask(tree, request).one("can").says.find("eth0"), std::string::npos);
     EXPECT_FALSE(ask(tree, request).fails());
     request.tracker = "can";
-    EXPECT_TRUE(says(ask(tree, request).one("can").says, {"it is down"}));
+    EXPECT_TRUE(says(ask(tree, request).one("can").says, {"the interface is down"}));
     EXPECT_TRUE(says(ask(tree, request).one("can").fix, {"deploy/can-up can0"}));
     tree.can("can0", "0x400c1\n", 16);
     EXPECT_FALSE(ask(tree, request).fails());
@@ -265,7 +265,7 @@ TEST(Probe, a_can_interface_has_to_be_there_up_and_wide_enough) {
     EXPECT_TRUE(says(ask(tree, request).one("can").says, {"no interface has this name", "can0 (up, FD)"}));
 }
 
-TEST(Probe, a_gpio_chip_is_found_by_label_name_or_path_and_twins_are_refused) {
+TEST(Probe, a_gpio_chip_is_found_by_label_name_or_path_and_duplicates_are_refused) {
     const Tree tree;
     tree.gpio("gpiochip0", "INT34C5:00");
     tree.gpio("gpiochip1", "cp2112_gpio");
@@ -284,22 +284,22 @@ TEST(Probe, a_gpio_chip_is_found_by_label_name_or_path_and_twins_are_refused) {
     EXPECT_TRUE(says(ask(tree, request).one("gpio").says, {"several chips"}));
     request.lines_chip = "gpiochip2";
     fs::remove(tree.root() / "dev/gpiochip2");
-    EXPECT_TRUE(says(ask(tree, request).one("gpio").says, {"is not there"}));
+    EXPECT_TRUE(says(ask(tree, request).one("gpio").says, {"does not exist"}));
 }
 
-TEST(Probe, the_makers_library_is_found_where_it_is_put_or_named) {
+TEST(Probe, the_vendors_library_is_found_in_its_place_or_by_path) {
     const Tree tree;
     DeviceRequest request;
     request.driver = "openhaptics";
     EXPECT_TRUE(says(ask(tree, request).one("device").says, {"libHD.so"}));
     EXPECT_TRUE(ask(tree, request).fails());
     tree.file("usr/lib/libHD.so", "");
-    EXPECT_TRUE(says(ask(tree, request).one("device").says, {"/usr/lib/libHD.so", "only seen when"}));
+    EXPECT_TRUE(says(ask(tree, request).one("device").says, {"/usr/lib/libHD.so", "known only when"}));
     request.hd_library = "/nowhere/libHD.so";
     EXPECT_TRUE(ask(tree, request).fails());
 }
 
-TEST(Probe, groups_are_told_by_what_they_are_for) {
+TEST(Probe, groups_are_reported_by_purpose) {
     const Tree tree;
     EXPECT_EQ(ask(tree, {}, kMember).one("groups").level, FindingLevel::ok);
     EXPECT_EQ(ask(tree, {}, {true, {}}).one("groups").level, FindingLevel::ok);
@@ -309,14 +309,14 @@ TEST(Probe, groups_are_told_by_what_they_are_for) {
     EXPECT_TRUE(says(f.fix, {"--rights"}));
     const Finding later = ask(tree, {}, {false, {"users"}, {"users", "tact", "realtime"}, ""}).one("groups");
     EXPECT_EQ(later.level, FindingLevel::warn);
-    EXPECT_TRUE(says(later.says, {"a member of the group tact, but this session is older"}));
+    EXPECT_TRUE(says(later.says, {"a member of the group tact, but this session began before that"}));
     EXPECT_EQ(later.fix, kLoginFix);
-    // Of one missing membership and one missing login, the former: logging in alone would not do.
+    // With one missing membership and one missing login, the fix is the former: a login alone would not suffice.
     EXPECT_EQ(ask(tree, {}, {false, {"users"}, {"users", "tact"}, ""}).one("groups").fix, kRightsFix);
     EXPECT_EQ(ask(tree, {}, {false, {"users"}, {"users", "realtime"}, ""}).one("groups").fix, kRightsFix);
 }
 
-TEST(Probe, hostile_texts_numbers_and_crowds_are_bounded) {
+TEST(Probe, hostile_texts_numbers_and_long_lists_are_bounded) {
     const Tree tree;
     tree.phantom("1-1", std::string(5000, 'x') + "\x1b[2J", 4);
     tree.file("sys/bus/usb/devices/1-1/product", "\x1b]0;evil\x07 name\n");
@@ -339,22 +339,22 @@ TEST(Probe, hostile_texts_numbers_and_crowds_are_bounded) {
     EXPECT_EQ(gpio.there.size(), probe::kEntriesMax);
     EXPECT_TRUE(gpio.more);
 
-    // A pipe in place of a file is not waited for.
+    // A pipe in place of a file does not block.
     const Tree pipes;
     fs::create_directories(pipes.root() / "sys/class/net/can0");
     ASSERT_EQ(mkfifo((pipes.root() / "sys/class/net/can0/type").c_str(), 0600), 0);
     EXPECT_TRUE(probe::can_interfaces(pipes.root()).there.empty());
 }
 
-TEST(Probe, the_second_device_is_looked_for_too) {
+TEST(Probe, the_second_device_is_probed_too) {
     const Tree tree;
     tree.phantom("1-1", "LEFT", 4);
     DeviceRequest request;
-    EXPECT_EQ(ask(tree, request).one("device2").says, "");  // none is asked for
+    EXPECT_EQ(ask(tree, request).one("device2").says, "");  // none configured
     request.driver2 = "phantom-usb";
     EXPECT_FALSE(ask(tree, request).fails());
     EXPECT_TRUE(
-        says(ask(tree, request).one("device2").says, {"device2.driver = \"phantom-usb\": there is one"}));
+        says(ask(tree, request).one("device2").says, {"device2.driver = \"phantom-usb\": one device found"}));
     request.serial2 = "RIGHT";
     EXPECT_TRUE(ask(tree, request).fails());
     EXPECT_TRUE(says(ask(tree, request).one("device2").says, {"no such device with serial RIGHT"}));
@@ -363,7 +363,7 @@ TEST(Probe, the_second_device_is_looked_for_too) {
     request.driver = "phantom-usb";
     request.serial = "LEFT";
     EXPECT_FALSE(ask(tree, request).fails());
-    // The second arm's node counts as asked for.
+    // The second arm's node counts as configured.
     probe::Buses buses = probe::read_buses(tree.root());
     for (probe::UsbDevice& d : buses.usb.there) d.node.usable = d.serial != "RIGHT";
     const Answer refused{judge_devices(buses, request, kMember, "")};
@@ -374,7 +374,7 @@ TEST(Probe, the_second_device_is_looked_for_too) {
     EXPECT_EQ(ask(tree, request).one("device2").level, FindingLevel::fail);
 }
 
-TEST(Probe, what_the_controller_says_of_the_configuration_is_what_is_probed_for) {
+TEST(Probe, the_controllers_reading_of_the_configuration_decides_what_is_probed) {
     const Tree tree;
     const nlohmann::json answer = {{"ok", false},
                                    {"values",

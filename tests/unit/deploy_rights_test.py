@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""The udev rules, held to the devices that the code knows; what --rights installs; how can-up brings a bus up.
+"""The udev rules cover the devices in the code; files installed by --rights; can-up brings a bus up.
 
 usage: deploy_rights_test.py ROOT_OF_THE_PROJECT
 """
@@ -24,7 +24,7 @@ def text(path):
 
 
 def rules():
-    """[{key: [(operator, value)]}] of each line; a line that does not parse is an error."""
+    """Returns [{key: [(operator, value)]}] of each line; a line that does not parse is an error."""
     out = []
     for line in text("deploy/60-tact.rules").splitlines():
         if not line.strip() or line.startswith("#"):
@@ -47,7 +47,7 @@ def value(rule, *keys):
 
 
 class Rules(unittest.TestCase):
-    def test_every_line_is_of_keys_and_operators_that_udev_knows(self):
+    def test_every_line_has_only_keys_and_operators_of_udev(self):
         labels = {value(r, "LABEL") for r in rules()}
         for rule in rules():
             for key, uses in rule.items():
@@ -60,15 +60,15 @@ class Rules(unittest.TestCase):
             if "GOTO" in rule:
                 self.assertIn(value(rule, "GOTO"), labels)
 
-    def test_nobody_outside_the_two_groups_gets_anything(self):
+    def test_only_the_two_groups_get_access(self):
         granting = [r for r in rules() if "MODE" in r or "GROUP" in r]
         self.assertGreater(len(granting), 5)
         for rule in granting:
             self.assertEqual(value(rule, "MODE"), "0660", rule)
             self.assertIn(value(rule, "GROUP"), ("tact", "realtime"), rule)
-            self.assertIn("SUBSYSTEM", rule)  # never a rule for whatever comes
+            self.assertIn("SUBSYSTEM", rule)  # no rule without a subsystem
 
-    def test_the_devices_are_those_that_the_code_knows(self):
+    def test_the_devices_are_those_of_the_code(self):
         table = re.findall(r'KnownDevice\{Use::(\w+), "[^"]*", "[^"]*", (\w+), (\w+)', text("hal/probe/known_devices.hpp"))
         arms = {(v[2:], p[2:]) for use, v, p in table if use == "arm" and v != "0"}
         adapters = {(v[2:], p[2:]) for use, v, p in table if use == "lines"}
@@ -82,17 +82,17 @@ class Rules(unittest.TestCase):
         self.assertEqual(seen["gpio"], adapters)
         self.assertLessEqual(seen["hidraw"] | seen["tty"], arms)
 
-    def test_a_board_is_known_by_the_interface_of_its_protocol(self):
+    def test_a_board_is_matched_by_the_interface_of_its_protocol(self):
         row = re.search(r"class 0x(\w\w), subclass 0x(\w\w), protocol 0x(\w\w)", text("hal/phantom/PROTOCOL.md"))
         triple = "".join(row.groups()).lower()
         self.assertIn(f"kPhantomInterface = 0x{triple.upper()};", text("hal/probe/known_devices.hpp"))
         self.assertIn(f"*:{triple}:*", [value(r, "ENV{ID_USB_INTERFACES}") for r in rules()])
 
-    def test_udev_itself_finds_nothing_wrong_where_it_can_say(self):
+    def test_udevadm_verify_accepts_the_rules(self):
         udevadm = shutil.which("udevadm")
         if not udevadm or subprocess.run([udevadm, "verify", "--help"], capture_output=True, check=False).returncode:
-            self.skipTest("no udevadm verify here")
-        # A group that is not on this machine is not the rules' mistake.
+            self.skipTest("udevadm verify is missing")
+        # A group missing on this machine is not an error of the rules.
         done = subprocess.run([udevadm, "verify", "--resolve-names=never", RULES], capture_output=True, text=True,
                               check=False)
         self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
@@ -103,7 +103,7 @@ class Install(unittest.TestCase):
         self.into = tempfile.mkdtemp()
         self.addCleanup(shutil.rmtree, self.into)
 
-    def test_the_files_go_where_their_readers_look(self):
+    def test_the_files_are_installed_where_they_are_read(self):
         subprocess.run([os.path.join(ROOT, "deploy/install.sh"), "--rights", "--into", self.into], check=True)
         for source, target in (("60-tact.rules", "etc/udev/rules.d/60-tact.rules"),
                                ("limits.conf", "etc/security/limits.d/tact.conf"),
@@ -126,7 +126,7 @@ class Install(unittest.TestCase):
 
 
 class CanUp(unittest.TestCase):
-    """With an `ip` that writes down what it is asked, and refuses what FAILS says."""
+    """can-up with a stub of `ip` that records its arguments, and fails for those in FAILS."""
 
     def setUp(self):
         self.folder = tempfile.mkdtemp()
@@ -153,13 +153,13 @@ class CanUp(unittest.TestCase):
             asked = ""
         return done, asked
 
-    def test_the_rates_are_those_of_the_tracker_and_bus_off_is_left_by_itself(self):
+    def test_the_rates_are_those_of_the_tracker_and_bus_off_ends_by_itself(self):
         done, asked = self.run_it("can0")
         self.assertEqual((done.returncode, done.stdout), (0, "can0: up, 1 Mbit/s, CAN FD at 5 Mbit/s\n"))
         self.assertIn("type can bitrate 1000000 dbitrate 5000000 fd on restart-ms 100", asked)
         self.assertTrue(asked.startswith("link set can0 down\n") and asked.endswith("link set can0 up\n"))
 
-    def test_a_controller_without_fd_or_one_that_shall_not_runs_classic(self):
+    def test_without_fd_or_on_request_the_bus_runs_classic(self):
         for words, fails in ((("can0",), "fd on"), (("can0", "--classic"), "")):
             done, asked = self.run_it(*words, fails=fails)
             self.assertEqual((done.returncode, done.stdout), (0, "can0: up, 1 Mbit/s, classic\n"))
@@ -171,7 +171,7 @@ class CanUp(unittest.TestCase):
         self.assertIn("mtu 72", asked)
         self.assertNotIn("bitrate", asked)
 
-    def test_failures_and_wrong_names_are_said(self):
+    def test_failures_and_wrong_names_are_reported(self):
         self.assertEqual(self.run_it("can0", fails="up")[0].returncode, 2)
         self.assertEqual(self.run_it("can0", fails="bitrate")[0].returncode, 1)
         done, _ = self.run_it("eth0")

@@ -1,4 +1,4 @@
-// --save: what the hand placed is saved when the run is over, or said why not.
+// --save: the bodies placed by the hand are saved at the end of a run, or the failure is reported.
 #include "deploy/tact/docking/save_fit.hpp"
 
 #include <cmath>
@@ -9,14 +9,14 @@
 namespace tact::launch {
 namespace {
 
-// A scene that says which files its structures came from.
+// A scene that names the files of its structures.
 void write_scene_of_files(const std::filesystem::path& path) {
     sample::scene(sample::meta(), sample::structure(), sample::codebook(), sample::grid(),
                   "map: sample\nstructure: /a.pdb\nstructure check: 1 bytes, crc32 00000000\n")
         .write(path);
 }
 
-TEST_F(DeployRun, at_the_end_tact_prep_is_asked_to_save_the_last_places) {
+TEST_F(DeployRun, at_the_end_tact_prep_saves_the_last_poses) {
     write_scene_of_files(scene_);
     options_.gui = false;
     options_.save = scratch_.path() / "fit";
@@ -35,10 +35,10 @@ TEST_F(DeployRun, at_the_end_tact_prep_is_asked_to_save_the_last_places) {
                                                            "\n-o\n" + options_.save.string() + "\n");
 }
 
-TEST_F(DeployRun, what_could_not_be_saved_is_said_before_the_run) {
+TEST_F(DeployRun, an_impossible_save_is_refused_before_the_run) {
     options_.gui = false;
     options_.save = scratch_.path() / "fit";
-    EXPECT_NE(sample::error_of([&] { run_scene(scene_, options_); }).find("made in code"), std::string::npos);
+    EXPECT_NE(sample::error_of([&] { run_scene(scene_, options_); }).find("is synthetic"), std::string::npos);
     write_scene_of_files(scene_);
     std::filesystem::create_directory(options_.save);
     std::ofstream(options_.save / "mine") << "x";
@@ -48,7 +48,7 @@ TEST_F(DeployRun, what_could_not_be_saved_is_said_before_the_run) {
     EXPECT_NE(sample::error_of([&] { run_scene(scene_, options_); }).find("not a folder"), std::string::npos);
 }
 
-TEST_F(DeployRun, a_save_that_fails_is_said_and_keeps_the_places) {
+TEST_F(DeployRun, a_failed_save_is_reported_and_keeps_the_poses) {
     misbehave("prep");
     write_scene_of_files(scene_);
     options_.gui = false;
@@ -58,7 +58,7 @@ TEST_F(DeployRun, a_save_that_fails_is_said_and_keeps_the_places) {
     EXPECT_TRUE(std::filesystem::exists(options_.save / "poses.json"));
 }
 
-TEST_F(DeployRun, a_save_can_be_interrupted_and_keeps_the_places) {
+TEST_F(DeployRun, a_save_can_be_interrupted_and_keeps_the_poses) {
     misbehave("prep-interrupted");
     write_scene_of_files(scene_);
     options_.gui = false;

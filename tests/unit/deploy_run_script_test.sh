@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# deploy/run: which command it makes of its arguments, with and without a display. Needs no build.
+# deploy/run: the command that it makes from its arguments, with and without a display. Needs no build.
 set -u
 cd "$(dirname "$0")/../.." || exit 1
 failures=0
@@ -28,15 +28,15 @@ expect "tact demo dock --out d --headless --seconds 20" --out d
 expect "tact doctor --json" doctor --json
 expect "tact --version" --version
 
-# With one.
+# With a display.
 export DISPLAY=elsewhere:0
 expect "tact demo dock"
 expect "tact demo dock --law fixed" --law fixed
 expect "tact dock a.mrc b.pdb" dock a.mrc b.pdb
-number=4242  # set, but nobody there; a server that was killed leaves its socket
+number=4242  # set, but without a server; a killed server leaves its socket
 while [ -e "/tmp/.X11-unix/X$number" ]; do number=$((number + 1)); done
 export DISPLAY=:$number
 expect "tact demo dock $headless"
 
-[ "$failures" -eq 0 ] && echo "all routed as wanted"
+[ "$failures" -eq 0 ] && echo "all arguments give the expected commands"
 exit "$failures"

@@ -1,8 +1,8 @@
-// Whole runs of the launcher with stand-ins for the programs: the test itself under the names tact-rt,
-// tact-gui and tact-prep. The stand-in for the controller publishes a real region with known numbers, the one
-// for the window begins its time when the controller is up; MISBEHAVE tells them how to end.
+// Whole runs of the launcher with substitutes for the programs: the test itself under the names tact-rt, tact-gui and
+// tact-prep. The substitute for the controller publishes a real region with known numbers; the substitute for the
+// window starts its time when the controller is up; MISBEHAVE selects how they end.
 //
-// A test of runs ends with int main(int argc, char** argv) { return tact::launch::play(argc, argv); }
+// Such a test ends with int main(int argc, char** argv) { return tact::launch::play(argc, argv); }
 #pragma once
 
 #include <gtest/gtest.h>
@@ -41,7 +41,7 @@ inline std::string misbehaviour() {
     return m != nullptr ? m : "";
 }
 
-// One line, in the file that this variable names.
+// Writes one line to the file named by the environment variable.
 inline void log_words(const char* variable, int argc, char** argv) {
     const char* const log = std::getenv(variable);
     if (log == nullptr) return;
@@ -83,7 +83,7 @@ inline void fill(RtRegion& region, std::uint64_t cycle, double off_m = 3e-10) {
     levels.path[0].level = 0.5F;
     levels.path[0].items = 600;
     region.levels.publish(levels);
-    // 3 A off, as a rule, and turned by 90 degrees about z.
+    // By default 3 A off, and rotated by 90 degrees about z.
     BodiesTopic bodies{};
     bodies.count = 1;
     const Vec3 home = sample::structure().home_com_model_m;
@@ -106,7 +106,7 @@ inline int controller(int argc, char** argv) {
     OwnedRegion<RtRegion> region;
     std::strcpy(region->scene_path, argv[1]);
     region->scene_checksum = 0xABCD;
-    fill(*region, 0);  // whoever finds the region finds something in it
+    fill(*region, 0);  // a region that is found is never empty
     region.mark_ready();
     LinkServer link(value_of(argc, argv, "--session"), region.fd());
     const Instant start = Monotonic::now();
@@ -116,7 +116,7 @@ inline int controller(int argc, char** argv) {
         fill(*region, cycle);
         const char* const life_s = std::getenv("LIFE_S");
         if (misbehaviour() == "crash" && to_s(Monotonic::now() - start) > std::atof(life_s)) {
-            signal(SIGSEGV, SIG_DFL);  // a sanitizer would make an exit code of it
+            signal(SIGSEGV, SIG_DFL);  // a sanitizer would turn it into an exit code
             raise(SIGSEGV);
         }
     }
@@ -124,7 +124,7 @@ inline int controller(int argc, char** argv) {
     return 0;
 }
 
-// Leaves its window state file, lives as long as --seconds says from the controller's coming on, writes its "picture" and ends.
+// Writes its window state file, runs for --seconds from the start of the controller, writes its screenshot and ends.
 inline int window(int argc, char** argv) {
     log_words("WINDOWS", argc, argv);
     if (const std::string state = value_of(argc, argv, "--window-state"); !state.empty())
@@ -163,10 +163,10 @@ inline int window(int argc, char** argv) {
     return 0;
 }
 
-// Leaves what it was asked in the folder that it should write to.
+// Writes its arguments into the output folder.
 inline int prep(int argc, char** argv) {
     if (misbehaviour() == "prep") return 5;
-    if (misbehaviour() == "prep-interrupted") {  // works for ever; a person loses patience
+    if (misbehaviour() == "prep-interrupted") {  // works forever; the person interrupts it
         kill(getppid(), SIGINT);
         for (;;) pause();
     }
@@ -179,7 +179,7 @@ class DeployRun : public testing::Test {
 protected:
     void SetUp() override {
         setenv("TACT_RUNTIME_DIR", scratch_.path().c_str(), 1);
-        setenv("DISPLAY", ":0", 0);  // the stand-in opens no window
+        setenv("DISPLAY", ":0", 0);  // the substitute opens no window
         const auto self = std::filesystem::read_symlink("/proc/self/exe");
         for (const char* const name : {"tact-rt", "tact-gui", "tact-prep"})
             std::filesystem::create_symlink(self, scratch_.path() / name);
@@ -188,7 +188,7 @@ protected:
         options_.programs = scratch_.path();
         options_.json = scratch_.path() / "out" / "run.json";
         options_.seconds = 0.3;
-        options_.grace = std::chrono::minutes(1);  // a busy machine must not be taken for a hang
+        options_.grace = std::chrono::minutes(1);  // a busy machine must not look like a hang
     }
     void TearDown() override {
         for (const char* const name : {"MISBEHAVE", "ASKS_FOR", "TOLD", "CONTROLLERS", "WINDOWS"})
@@ -206,8 +206,8 @@ protected:
         return code;
     }
 
-    // Where the machine stood still, tact may not have seen the controller in so short a run: then a longer
-    // one.
+    // If the machine paused, tact may not have read the controller in such a short run; then runs
+    // longer.
     int run_until_seen() {
         int code = -1;
         for (const double seconds : {0.3, 10.0, 60.0}) {
@@ -219,7 +219,7 @@ protected:
         return code;
     }
 
-    // The same for a run with --save, which ends with an error where the controller was not seen.
+    // The same for a run with --save, which ends with an error if the controller was not read.
     std::string error_once_seen() {
         std::string error;
         for (const double seconds : {0.3, 10.0, 60.0}) {
@@ -252,7 +252,7 @@ protected:
     nlohmann::json report_;
 };
 
-// The tests, or the program of which this bears the name.
+// Runs the tests, or the program whose name this executable has.
 inline int play(int argc, char** argv) {
     const std::string name = std::filesystem::path(argv[0]).filename();
     if (name == "tact-rt") return controller(argc, argv);

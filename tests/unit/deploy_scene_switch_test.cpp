@@ -1,4 +1,4 @@
-// Another scene from the window: what is asked, what is refused, and what of a run stays.
+// A scene switch from the window: requests, refusals, and what is kept from the run.
 #include <fstream>
 #include <sstream>
 
@@ -31,7 +31,7 @@ protected:
     std::filesystem::path other_;
 };
 
-TEST_F(OtherScene, the_launcher_ends_one_and_starts_the_other_unarmed_with_the_options_that_were_typed) {
+TEST_F(OtherScene, the_launcher_switches_to_the_other_scene_unarmed_with_the_same_options) {
     options_.controller = {"--rate", "500"};
     options_.add_for_scene({"--start-offset-a", "15"});
     ASSERT_EQ(run(), 0) << said_;
@@ -41,17 +41,19 @@ TEST_F(OtherScene, the_launcher_ends_one_and_starts_the_other_unarmed_with_the_o
               scene_.string() + " --session default --arm-with-gui --rate 500 --start-offset-a 15");
     EXPECT_EQ(controllers[1], other_.string() + " --session default --rate 500");
     EXPECT_EQ(lines("told"), (std::vector<std::string>{scene_, other_}));
-    EXPECT_NE(said_.find("another scene was asked for"), std::string::npos) << said_;
+    EXPECT_NE(said_.find("another scene was requested"), std::string::npos) << said_;
 }
 
-TEST_F(OtherScene, the_next_window_is_as_a_person_left_the_one_before) {
+TEST_F(OtherScene, the_next_window_keeps_the_state_of_the_last_one) {
     ASSERT_EQ(run(), 0) << said_;
     const auto windows = lines("windows");
     ASSERT_EQ(windows.size(), 2U) << said_;
     const auto window_state_of = [](const std::string& words) {
-        const auto at = words.find("--window-state ");
-        return at == std::string::npos ? std::string()
-                                       : words.substr(at + 7, words.find(' ', at + 7) - at - 7);
+        const std::string option = "--window-state ";
+        const auto at = words.find(option);
+        if (at == std::string::npos) return std::string();
+        const auto from = at + option.size();
+        return words.substr(from, words.find(' ', from) - from);
     };
     EXPECT_NE(windows[0].find("--size 1280x800"), std::string::npos) << windows[0];
     EXPECT_EQ(windows[1].find("--size"), std::string::npos) << windows[1];
@@ -60,7 +62,7 @@ TEST_F(OtherScene, the_next_window_is_as_a_person_left_the_one_before) {
     EXPECT_FALSE(std::filesystem::exists(window_state_of(windows[0]))) << "the run is over";
 }
 
-TEST_F(OtherScene, a_size_that_was_given_is_that_of_the_first_window) {
+TEST_F(OtherScene, a_given_size_applies_to_the_first_window) {
     options_.size = "640x480";
     options_.size_given = true;
     options_.visual = {"--window-state", scratch_.path() / "mine.toml"};
@@ -74,17 +76,17 @@ TEST_F(OtherScene, a_size_that_was_given_is_that_of_the_first_window) {
     EXPECT_TRUE(std::filesystem::exists(scratch_.path() / "mine.toml"));
 }
 
-TEST_F(OtherScene, a_file_that_is_no_scene_is_refused_in_the_window_and_the_old_one_goes_on) {
+TEST_F(OtherScene, a_file_that_is_not_a_scene_is_refused_in_the_window_and_the_run_continues) {
     std::ofstream(other_) << "not a scene, but long enough for the header of one: sixty-four bytes and more";
     ASSERT_EQ(run(), 0) << said_;
     EXPECT_EQ(lines("controllers").size(), 1U);
     const auto told = lines("told");
     ASSERT_GE(told.size(), 3U);
-    EXPECT_NE(told[1].find("so it is not a scene of tact"), std::string::npos) << told[1];
+    EXPECT_NE(told[1].find("so it is not a Tact scene"), std::string::npos) << told[1];
     EXPECT_NE(told[2].find("fix:"), std::string::npos) << told[2];
 }
 
-TEST_F(OtherScene, where_the_other_cannot_be_started_the_old_one_comes_back_and_the_window_says_why) {
+TEST_F(OtherScene, if_the_other_scene_fails_to_start_the_old_one_returns_with_the_reason) {
     misbehave("refuse-other");
     ASSERT_EQ(run(), 0) << said_;
     const auto controllers = lines("controllers");
@@ -97,14 +99,14 @@ TEST_F(OtherScene, where_the_other_cannot_be_started_the_old_one_comes_back_and_
     EXPECT_NE(told[told.size() - 2].find("could not be started"), std::string::npos) << said_;
 }
 
-TEST_F(OtherScene, a_run_that_writes_of_its_scene_at_its_end_keeps_it) {
+TEST_F(OtherScene, a_run_with_a_report_of_its_scene_keeps_the_scene) {
     options_.json = scratch_.path() / "run.json";
     ASSERT_EQ(run(), 0) << said_;
     EXPECT_EQ(lines("controllers").size(), 1U);
     EXPECT_NE(lines("told")[1].find("(--json)"), std::string::npos);
 }
 
-TEST_F(OtherScene, a_request_is_one_absolute_path_and_is_gone_once_it_was_taken) {
+TEST_F(OtherScene, a_request_is_one_absolute_path_and_is_removed_when_read) {
     const auto folder = scratch_.path();
     const auto taken = [&](const std::string& text) {
         std::ofstream(folder / "open", std::ios::binary) << text;

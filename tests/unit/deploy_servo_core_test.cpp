@@ -1,4 +1,4 @@
-// Whose core the servo's is, and that others are put off it.
+// The core of the servo, and moving other processes off it.
 #include "deploy/tact/servo_core.hpp"
 
 #include <gtest/gtest.h>
@@ -28,7 +28,7 @@ int last_of(const cpu_set_t& cores) {
     return last;
 }
 
-TEST(ServoCore, is_that_of_the_pinned_thread_of_that_name) {
+TEST(ServoCore, is_the_core_of_the_pinned_servo_thread) {
     EXPECT_EQ(servo_core(getpid()), std::nullopt);
     const int core = last_of(cores_of(0));
     std::latch named(1), seen(1);
@@ -63,7 +63,7 @@ TEST(ServoCore, a_servo_that_is_not_pinned_has_none) {
     servo.join();
 }
 
-TEST(ServoCore, others_keep_what_they_had_without_it) {
+TEST(ServoCore, without_a_pinned_servo_others_keep_their_cores) {
     ChildSettings settings;
     settings.arguments = {"600"};
     const Child child("sleep", "/bin/sleep", settings);
@@ -71,7 +71,7 @@ TEST(ServoCore, others_keep_what_they_had_without_it) {
     const int core = last_of(before);
     const bool several = CPU_COUNT(&before) > 1;
     EXPECT_EQ(keep_off_core(child.pid(), core), several ? 1 : 0);
-    EXPECT_EQ(keep_off_core(child.pid(), core), 0);  // it is off already, or has nowhere else to go
+    EXPECT_EQ(keep_off_core(child.pid(), core), 0);  // it is already off, or has no other core
     const cpu_set_t after = cores_of(child.pid());
     EXPECT_EQ(CPU_COUNT(&after), several ? CPU_COUNT(&before) - 1 : 1);
     EXPECT_EQ(CPU_ISSET(static_cast<std::size_t>(core), &after) != 0, !several);

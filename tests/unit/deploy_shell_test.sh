@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# deploy/shell: every cause of a failed installation has its own message and fix; a moved checkout is configured anew;
-# shares of long work grow and end. apt-get, dpkg-query, sudo and id are stand-ins; the build is a project of one file.
+# deploy/shell: every cause of a failed installation has its own message and fix; a moved checkout is configured again;
+# progress percentages grow and end. apt-get, dpkg-query, sudo and id are stubs; the build is a project with one file.
 set -u
 root=$(cd "$(dirname "$0")/../.." && pwd) || exit 1
 work=$(mktemp -d) || exit 1
@@ -37,7 +37,7 @@ printf 'here # a remark\nlack\nheld\n' >"$work/list"
 export STUB=$work PATH=$work/bin:$PATH HELD='' TACT_LOCK_SECONDS=3
 unset TACT_NO_INSTALL
 
-# install: the output and, as its last line, the exit code.
+# install: prints the output and, as the last line, the exit code.
 install() {
     rm -f "$work/installed"
     bash -uc '. "$1/deploy/shell/progress.sh"; . "$1/deploy/shell/packages.sh"; tact_install_packages "$2" 2>&1; echo "exit $?"' \
@@ -46,7 +46,7 @@ install() {
 
 out=$(install)
 expect_text "$out" "Missing Debian packages (2): held lack"
-expect_text "$out" "With what they need: 2 packages, 13 MB to download."
+expect_text "$out" "With dependencies: 2 packages, 13 MB to download."
 expect_text "$out" "Downloading packages"
 expect_text "$out" "exit 0"
 out=$(bash -uc '. "$1/deploy/shell/packages.sh"; tact_packages_missing "$2"' _ "$root" "$work/list")
@@ -82,11 +82,11 @@ cause install "The following packages have unmet dependencies:
  lack : Depends: libbar (>= 2)" "their dependencies cannot be met: lack : Depends: libbar" "sudo apt-get --fix-broken install"
 cause install "E: dpkg was interrupted, you must manually run 'dpkg --configure -a'" "an earlier installation was interrupted" \
     "sudo dpkg --configure -a"
-cause install "E: You don't have enough free space in /var/cache/apt/archives/." "the disk is full" "make room"
-cause update "E: Failed to fetch http://a/x  Connection timed out" "the download broke off" "check the network"
+cause install "E: You don't have enough free space in /var/cache/apt/archives/." "the disk is full" "free disk space"
+cause update "E: Failed to fetch http://a/x  Connection timed out" "the download was interrupted" "check the network"
 cause install "E: something new" "apt-get failed" "as root, run: apt-get install --no-install-recommends held lack"
 
-# A lock that is let go in time; of the lists too, whose other output is not shown.
+# A lock that is released in time; also that of the package lists, whose other output is hidden.
 printf 'E: Could not get lock /var/lib/apt/lists/lock. It is held by process 42 (apt)\n' >"$work/update"
 touch "$work/update-once"
 expect_text "$(install)" "Another package manager is at work (held by process 42 (apt)); waiting up to 3 s."
@@ -111,13 +111,13 @@ out=$(STUB_UID=1000 setsid bash -uc '. "$1/deploy/shell/packages.sh"
 expect_text "$out" "sudo asks for a password, and there is no terminal to ask on"
 expect_text "$out" "run first: sudo apt-get install lack"
 
-# Shares: they grow, name the step, and end at the plan's last.
+# Percentages grow, name the step, and end with the last step of the plan.
 out=$(bash -uc '. "$1/deploy/shell/progress.sh"; tact_plan a 60 b 180; tact_step a first; tact_share 50 first
     tact_step b second; for i in 20 40 60 80 100; do tact_share $i second; done; tact_plan_end' _ "$root")
-[ "$(sed 's/ *\([0-9]*\) %.*/\1/' <<<"$out" | tr '\n' ' ')" = "0 12 25 40 55 70 85 100 " ] || fail "shares: $out"
+[ "$(sed 's/ *\([0-9]*\) %.*/\1/' <<<"$out" | tr '\n' ' ')" = "0 12 25 40 55 70 85 100 " ] || fail "percentages: $out"
 expect_text "$out" "first; about 4 min left"
 
-# A build, one more, one after the checkout was moved, one with another compiler, a broken one.
+# A build, a second one, one after the checkout was moved, one with another compiler, a broken one.
 mkdir -p "$work/project at home/deploy"
 cp -r "$root/deploy/shell" "$work/project at home/deploy/"
 cd "$work/project at home" || exit 1
@@ -135,11 +135,11 @@ out=$(build)
 mv "$work/project at home" "$work/Prüfstand"
 cd "$work/Prüfstand" || exit 1
 out=$(build)
-expect_text "$out" "This checkout was moved or copied from $work/project at home: build/release is configured anew."
+expect_text "$out" "This checkout was moved or copied from $work/project at home: build/release is configured again."
 expect_text "$out" "exit 0"
 ./build/release/p || fail "the moved checkout's program does not run"
 echo "another compiler" >build/release/toolchain.txt
-expect_text "$(build)" "The compiler or the system has changed: build/release is configured anew."
+expect_text "$(build)" "The compiler or the system has changed: build/release is configured again."
 echo 'int main() { return wrong; }' >p.cpp
 out=$(build)
 expect_text "$out" "error: "
@@ -152,7 +152,7 @@ out=$(sh -c 'true'; bash -uc '. deploy/shell/packages.sh; . deploy/shell/build.s
 expect_text "$out" "the file system is read-only"
 out=$(bash -uc '. deploy/shell/packages.sh; . deploy/shell/build.sh
     mkdir() { return 1; }; findmnt() { echo rw,noatime; }; tact_check_writable 2>&1')
-expect_text "$out" "the folder is not this user's to write"
+expect_text "$out" "the folder is not writable for this user"
 expect_text "$out" "fix: clone it into a folder of your own"
 
 [ "$failures" -eq 0 ] && echo "all causes explained"

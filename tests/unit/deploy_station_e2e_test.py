@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""tact station as a program: setup and undo on a tree, station-tune, verify, and who reads its report.
+"""tact station as a program: setup and undo on a tree, station-tune, verify, and the readers of its report.
 
 usage: deploy_station_e2e_test.py ROOT_OF_THE_PROJECT BIN_DIR WRITE_SMALL_SCENE
 """
@@ -18,7 +18,7 @@ PATIENCE_S = 200
 
 
 def snapshot(root):
-    """path -> (mode, bytes or target) of everything below root"""
+    """Returns path -> (mode, content or target) of everything below root."""
     found = {}
     for folder, names, files in os.walk(root):
         for path in (os.path.join(folder, n) for n in names + files):
@@ -65,7 +65,7 @@ class Setup(Case):
 
     def test_a_dry_run_prints_all_and_changes_nothing(self):
         out, _ = self.tact("station", "setup", "--root", self.tree, "--dry-run", "--user", "ann")
-        for text in ("core 3 for the servo, cores 0-2 for all else", "write: /etc/default/grub.d/tact.cfg", "run: update-grub",
+        for text in ("core 3 for the servo, cores 0-2 for all other work", "write: /etc/default/grub.d/tact.cfg", "run: update-grub",
                       "apt-get install", "usermod -aG tact ann"):
             self.assertIn(text, out)
         self.assertEqual(snapshot(self.tree), self.before)
@@ -85,10 +85,10 @@ class Setup(Case):
         self.assertEqual(snapshot(self.tree), self.before)
         self.assertIn("nothing to undo", self.tact("station", "undo", "--root", self.tree)[0])
 
-    def test_wrong_usage_is_told_apart(self):
+    def test_wrong_usage_has_its_own_exit_code(self):
         self.tact("station", code=2)
         self.tact("station", "setup", "--root", f"{self.dir}/absent", code=2)
-        self.assertIn("steps: kernel", self.tact("station", "setup", "--root", self.tree, "--skip", "x", code=1)[1])
+        self.assertIn("choose one of kernel", self.tact("station", "setup", "--root", self.tree, "--skip", "x", code=1)[1])
         self.assertIn("--dry-run", self.tact("station", "setup", "--help")[0])
 
 
@@ -98,7 +98,7 @@ class Tune(Case):
                               env=dict(os.environ, TACT_ROOT=self.dir, TACT_CORES=cores))
         self.assertEqual(done.returncode, code, done.stderr)
 
-    def test_start_tunes_and_stop_sets_all_as_before(self):
+    def test_start_tunes_and_stop_restores_everything(self):
         cpu = f"{self.dir}/sys/devices/system/cpu"
         put(f"{cpu}/online", "0-2\n")
         for core in range(3):
@@ -110,7 +110,7 @@ class Tune(Case):
         for irq, cores in ((9, "0-2"), (16, "0"), (17, "1")):
             put(f"{self.dir}/proc/irq/{irq}/smp_affinity_list", cores + "\n")
         before = snapshot(f"{self.dir}/sys"), snapshot(f"{self.dir}/proc")
-        for _ in range(2):  # twice is once
+        for _ in range(2):  # repeatable
             self.run_script("start")
         self.assertEqual(text_of(f"{cpu}/cpu0/cpufreq/scaling_governor"), "performance\n")
         self.assertEqual([text_of(f"{cpu}/cpu{c}/cpuidle/state{s}/disable").strip() for c in (0, 1) for s in (0, 1, 2)],
@@ -132,7 +132,7 @@ def may_be_real_time():
 
 
 class Verify(Case):
-    def test_the_report_of_a_short_run_is_whole_and_is_read_by_controller_and_metrics(self):
+    def test_the_report_of_a_short_run_is_complete_and_read_by_controller_and_metrics(self):
         scene, out = f"{self.dir}/small.tact", f"{self.dir}/report.json"
         subprocess.run([WRITER, scene], check=True)
         done = subprocess.run([f"{BIN}/tact", "station", "verify", "--minutes", "0.03", "--scene", scene, "--out", out],
@@ -151,7 +151,7 @@ class Verify(Case):
         if shutil.which("cyclictest") and may_be_real_time():
             self.assertRegex(cyclictest["text"], "after the controller|beside")
             self.assertGreater(cyclictest["max_us"], 0)
-        else:  # missing, or refused: said, and no figure is made up
+        else:  # missing or refused: reported, without a made-up value
             self.assertRegex(cyclictest["text"], "cyclictest")
             self.assertNotIn("max_us", cyclictest)
         self.assertTrue("count" in report["smi"] or report["smi"]["text"].startswith("not readable"))
@@ -163,7 +163,7 @@ class Verify(Case):
 
         self.assertIn(f"station report: {report['status']}, 0 minutes old", log())
         self.assertIn("same machine and kernel", log())
-        page, _ = self.tact("metrics", "--once", code=1, TACT_STATION_REPORT=out)  # no controller runs
+        page, _ = self.tact("metrics", "--once", code=1, TACT_STATION_REPORT=out)  # without a running controller
         self.assertIn(f'tact_station_status{{session="default",status="{report["status"]}"}} 1', page)
         self.assertIn('tact_station_applies{session="default"} 1', page)
         put(out, "{}")
@@ -178,7 +178,7 @@ class Verify(Case):
         subprocess.run([WRITER, scene], check=True)
         _, err = self.tact("station", "verify", "--scene", scene, "--config", config, "--out", f"{self.dir}/r.json", code=1)
         self.assertIn("nonsense", err)
-        # It arms by itself: never an arm that somebody may hold.
+        # verify arms by itself, so it refuses a real arm that a person may hold.
         for text in ('[device]\ndriver = "phantom"\n', '[device]\ndriver = 3\n', 'device = {driver = "falcon"}\n',
                      '[device2]\ndriver = "openhaptics"\n'):
             put(config, text)

@@ -1,4 +1,4 @@
-// tact station setup and undo on a tree of files: every promised line, and every byte back.
+// tact station setup and undo on a tree of files: setup writes every promised line, undo restores every byte.
 #include <gtest/gtest.h>
 #include <sys/stat.h>
 #include <sys/wait.h>
@@ -49,7 +49,7 @@ protected:
         put(root_ / "etc/default/grub", "GRUB_DEFAULT=0\nGRUB_CMDLINE_LINUX_DEFAULT=\"quiet\"\n");
         put(root_ / "etc/group", "root:x:0:\nusers:x:100:ann\n");
         put(root_ / "var/lib/dpkg/status", "Package: bash\nStatus: install ok installed\n\n");
-        // Files of an older set-up by hand: other bytes, other modes, bytes that are no text.
+        // Files of an older set-up by hand: other contents, other modes, contents that are not text.
         put(root_ / "etc/udev/rules.d/60-tact.rules", std::string("old\0\xff\xfe rules", 13), 0600);
         put(root_ / "etc/security/limits.d/tact.conf", "old limits", 0640);
         put(root_ / "etc/systemd/system/own.service", "[Unit]\n");
@@ -57,7 +57,7 @@ protected:
     }
     void TearDown() override { fs::remove_all(root_); }
 
-    // Every file, link and folder with mode, owner and bytes.
+    // Every file, link and folder with mode, owner and content.
     [[nodiscard]] std::map<std::string, std::string> snapshot() const {
         std::map<std::string, std::string> all;
         for (const auto& entry : fs::recursive_directory_iterator(root_)) {
@@ -87,7 +87,7 @@ protected:
                 .report = [](const std::string&) {},
                 .interrupt = &count_down};
     }
-    // setup in a process of its own that ends at the n-th interruption; true: it came to its end.
+    // Runs setup in a process of its own that ends at the n-th interruption; true: it completed.
     bool setup_killed_at(int n, bool undo = false) {
         const pid_t child = fork();
         if (child == 0) {
@@ -165,7 +165,7 @@ TEST_F(Station, undo_restores_every_byte_mode_and_folder) {
     EXPECT_FALSE(undo_station(tools(), false));
 }
 
-TEST_F(Station, undo_restores_everything_wherever_setup_was_killed) {
+TEST_F(Station, undo_restores_everything_after_a_kill_of_setup_at_any_point) {
     int at = 0;
     for (; !setup_killed_at(at); ++at) {
         undo_station(tools(), false);
@@ -174,7 +174,7 @@ TEST_F(Station, undo_restores_everything_wherever_setup_was_killed) {
     EXPECT_GT(at, 30);
 }
 
-TEST_F(Station, undo_can_be_repeated_wherever_it_was_killed) {
+TEST_F(Station, undo_can_be_repeated_after_a_kill_at_any_point) {
     for (int at = 0;; ++at) {
         ASSERT_TRUE(setup_killed_at(-1));
         const bool ended = setup_killed_at(at, true);
@@ -193,7 +193,7 @@ TEST_F(Station, a_second_setup_changes_nothing) {
     EXPECT_TRUE(commands_.empty());
 }
 
-TEST_F(Station, another_core_or_an_interrupted_setup_has_to_be_undone_first) {
+TEST_F(Station, another_core_or_an_interrupted_setup_must_be_undone_first) {
     set_up_station(plan(), tools());
     EXPECT_NE(message_of([&] { set_up_station(plan(0), tools()); }).find("with core 3"), std::string::npos);
     undo_station(tools(), false);
@@ -201,7 +201,7 @@ TEST_F(Station, another_core_or_an_interrupted_setup_has_to_be_undone_first) {
     EXPECT_NE(message_of([&] { set_up_station(plan(), tools()); }).find("interrupted"), std::string::npos);
 }
 
-TEST_F(Station, a_file_that_somebody_changed_since_is_not_touched_without_force) {
+TEST_F(Station, a_file_changed_since_setup_is_kept_without_force) {
     const struct {
         const char* path;
         void (*change)(const fs::path&);
@@ -226,7 +226,7 @@ TEST_F(Station, a_file_that_somebody_changed_since_is_not_touched_without_force)
     }
 }
 
-TEST_F(Station, a_file_that_somebody_else_put_into_a_new_folder_stays) {
+TEST_F(Station, a_foreign_file_in_a_new_folder_stays) {
     set_up_station(plan(), tools());
     put(root_ / "etc/default/grub.d/own.cfg", "# mine\n");
     undo_station(tools(), false);
@@ -234,17 +234,17 @@ TEST_F(Station, a_file_that_somebody_else_put_into_a_new_folder_stays) {
     EXPECT_FALSE(fs::exists(root_ / "etc/default/grub.d/tact.cfg"));
 }
 
-TEST_F(Station, a_step_that_fails_takes_back_what_was_done) {
+TEST_F(Station, a_failed_step_reverts_the_earlier_ones) {
     fails_ = "update-grub";
     const std::string message = message_of([&] { set_up_station(plan(), tools()); });
     EXPECT_NE(message.find("run update-grub: exit code 1"), std::string::npos) << message;
     EXPECT_EQ(snapshot(), before_);
 }
 
-TEST_F(Station, a_journal_that_others_may_write_is_refused) {
+TEST_F(Station, a_journal_writable_by_others_is_refused) {
     set_up_station(plan(), tools());
     chmod((root_ / "var/lib/tact/station.json").c_str(), 0666);
-    EXPECT_NE(message_of([&] { undo_station(tools(), true); }).find("others"), std::string::npos);
+    EXPECT_NE(message_of([&] { undo_station(tools(), true); }).find("other than you"), std::string::npos);
     EXPECT_THROW(static_cast<void>(parse_journal("{}")), StartupError);
     Journal journal;
     journal.steps = {{.name = "x",
@@ -254,7 +254,7 @@ TEST_F(Station, a_journal_that_others_may_write_is_refused) {
     EXPECT_THROW(static_cast<void>(parse_journal(journal_text(journal))), StartupError);
 }
 
-TEST_F(Station, the_plan_refuses_what_cannot_work) {
+TEST_F(Station, the_plan_refuses_impossible_requests) {
     StationMachine m = read_station_machine(root_, true);
     EXPECT_NE(message_of([&] {
                   static_cast<void>(
@@ -278,7 +278,7 @@ TEST_F(Station, the_plan_refuses_what_cannot_work) {
     EXPECT_THROW(static_cast<void>(choose_cores(m, -1)), StartupError);
 }
 
-TEST(StationCores, all_threads_of_the_core_are_kept_free_where_others_are_left) {
+TEST(StationCores, all_hardware_threads_of_the_core_are_isolated_if_others_remain) {
     StationMachine m;
     m.cores = {0, 1, 2, 3};
     m.siblings = {{0, {0, 1}}, {1, {0, 1}}, {2, {2, 3}}, {3, {2, 3}}};
@@ -292,7 +292,7 @@ TEST(StationCores, all_threads_of_the_core_are_kept_free_where_others_are_left) 
     EXPECT_EQ(core_list({0, 1, 2, 5, 7, 8}), "0-2,5,7-8");
 }
 
-TEST(StationTools, packages_to_come_are_read_from_apt_get) {
+TEST(StationTools, packages_to_install_are_read_from_apt_get) {
     EXPECT_EQ(parse_simulated_install("Reading...\nInst linux-image-6.1-rt (6.1 Debian [amd64])\nInst "
                                       "linux-image-rt-amd64 (6.1)\nConf linux-image-6.1-rt (6.1)\n"),
               (std::vector<std::string>{"linux-image-6.1-rt", "linux-image-rt-amd64"}));

@@ -1,4 +1,4 @@
-// What tact station verify makes of its measurements, and what others read of its report.
+// The grades that tact station verify derives from its measurements, and the readers of its report.
 #include <gtest/gtest.h>
 #include <unistd.h>
 
@@ -77,7 +77,7 @@ TEST(StationJudge, each_limit_counts_by_itself) {
     EXPECT_EQ(grade_of([](auto& f) { f.smi_count.reset(); }), Grade::pass);
 }
 
-TEST(StationReport, is_read_as_it_was_written_with_its_thresholds) {
+TEST(StationReport, survives_write_and_read_with_its_thresholds) {
     const nlohmann::json j = station_report_json(good(), {});
     EXPECT_EQ(j["thresholds_us"]["lateness_p999"]["pass"], 50.0);
     EXPECT_EQ(j["kernel_arguments"]["wanted"], "isolcpus=managed_irq,domain,3 nohz_full=3");
@@ -93,7 +93,7 @@ TEST(StationReport, is_read_as_it_was_written_with_its_thresholds) {
     EXPECT_EQ(r->smi_count, 0U);
 }
 
-TEST(StationReport, what_is_no_report_is_refused_with_a_reason) {
+TEST(StationReport, an_invalid_report_is_refused_with_a_reason) {
     const nlohmann::json whole = station_report_json(good(), {});
     std::vector<std::string> texts{"", "[]", "{", "{}", "null"};
     for (const char* const key :
@@ -117,7 +117,7 @@ TEST(StationReport, what_is_no_report_is_refused_with_a_reason) {
     }
     std::string refusal = "x";
     EXPECT_FALSE(read_station_report("/nonexistent/report.json", refusal));
-    EXPECT_TRUE(refusal.empty());  // there is none, which is no error
+    EXPECT_TRUE(refusal.empty());  // a missing report is not an error
     EXPECT_FALSE(read_station_report("/dev/zero", refusal));
     EXPECT_FALSE(refusal.empty());
 }
@@ -174,7 +174,7 @@ TEST(StationCyclictest, runs_beside_the_controller_only_on_another_isolated_core
     EXPECT_EQ(place_cyclictest(-1, {}, {}).core, -1);
 }
 
-TEST(StationCyclictest, its_output_is_read_and_nonsense_is_none) {
+TEST(StationCyclictest, valid_output_is_read_and_other_output_is_ignored) {
     EXPECT_EQ(
         parse_cyclictest(R"({"thread": {"0": {"cycles": 5, "max": 17}, "1": {"cycles": 5, "max": 9}}})"),
         17.0);

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""The systemd units: what systemd-analyze finds, what their command lines do, and the watchdog of a real tact-rt.
+"""The systemd units: findings of systemd-analyze, effects of their command lines, and the watchdog of a real tact-rt.
 
 usage: deploy_units_test.py ROOT_OF_THE_PROJECT BIN_DIR WRITE_SMALL_SCENE
 """
@@ -20,13 +20,13 @@ import urllib.request
 ROOT, BIN, WRITER = sys.argv[1:4]
 UNITS = os.path.join(ROOT, "deploy/units")
 NAMES = ("tact-rt@.service", "tact-metrics.service", "tact-station.service")
-PATIENCE_S = 120  # a busy machine is slow, not wrong
+PATIENCE_S = 120  # tolerates a busy machine
 ANALYZE = shutil.which("systemd-analyze")
 PTRACE_SEIZE, PTRACE_INTERRUPT, PTRACE_DETACH = 0x4206, 0x4207, 17
 
 
 def unit(name):
-    """[(key, value)] of all sections"""
+    """Returns [(key, value)] of all sections."""
     with open(os.path.join(UNITS, name), encoding="utf-8") as f:
         return [tuple(line.strip().split("=", 1)) for line in f if "=" in line and not line.startswith("#")]
 
@@ -36,7 +36,7 @@ def value(name, key):
 
 
 def system_calls(*groups):
-    """All of these groups of systemd's."""
+    """Returns the system calls of these systemd groups."""
     calls, left = set(), list(groups)
     while left:
         done = subprocess.run([ANALYZE, "syscall-filter", left.pop()], capture_output=True, text=True, check=True)
@@ -71,12 +71,12 @@ class Files(unittest.TestCase):
             self.assertIn(value("tact-rt@.service", "LimitRTPRIO"), f.read())
 
     @unittest.skipUnless(ANALYZE, "no systemd-analyze here: apt-get install systemd")
-    def test_systemd_finds_nothing_wrong(self):
+    def test_systemd_accepts_the_units(self):
         for folder in ("usr/bin", "etc/systemd/system"):
             os.makedirs(os.path.join(self.dir, folder))
         for name in NAMES:
             shutil.copy(os.path.join(UNITS, name), os.path.join(self.dir, "etc/systemd/system"))
-        # Under names without blanks: the checkout's may have some.
+        # Uses paths without blanks; the checkout's path may have some.
         os.symlink(BIN, os.path.join(self.dir, "programs"))
         os.symlink(os.path.join(ROOT, "deploy"), os.path.join(self.dir, "deploy"))
         paths = []
@@ -101,7 +101,7 @@ class Files(unittest.TestCase):
             self.assertIn("OK", done.stdout.splitlines()[-1])
 
     @unittest.skipUnless(shutil.which("systemd-sysusers"), "no systemd-sysusers here: apt-get install systemd")
-    def test_the_user_and_the_groups_come_out_of_the_sysusers_file(self):
+    def test_the_sysusers_file_creates_the_user_and_the_groups(self):
         os.makedirs(os.path.join(self.dir, "etc"))
         os.makedirs(os.path.join(self.dir, "usr/lib/sysusers.d"))
         shutil.copy(os.path.join(UNITS, "tact.sysusers"), os.path.join(self.dir, "usr/lib/sysusers.d/tact.conf"))
@@ -115,7 +115,7 @@ class Files(unittest.TestCase):
 
 
 class Service(unittest.TestCase):
-    """tact-rt with the command line of the unit, and a socket that stands for systemd's."""
+    """tact-rt with the command line of the unit, and a socket in place of systemd's."""
 
     def setUp(self):
         self.dir = tempfile.mkdtemp(prefix="tact_units_")
@@ -157,7 +157,7 @@ class Service(unittest.TestCase):
     def until(self, text_wanted):
         end, text = time.monotonic() + PATIENCE_S, ""
         while text_wanted not in text:
-            self.assertLess(time.monotonic(), end, f"{text_wanted!r} never came: {text}")
+            self.assertLess(time.monotonic(), end, f"{text_wanted!r} was not received: {text}")
             text += self.messages(0.1)
         return text
 
@@ -168,7 +168,7 @@ class Service(unittest.TestCase):
                     return int(tid)
         raise AssertionError("no servo thread")
 
-    def test_the_watchdog_is_fed_while_the_servo_runs_and_not_while_only_the_servo_stands(self):
+    def test_the_watchdog_is_fed_only_while_the_servo_runs(self):
         self.start()
         self.assertNotIn("WATCHDOG=1\nREADY", self.until("READY=1"))
         fed = self.until("WATCHDOG=1")
@@ -178,12 +178,12 @@ class Service(unittest.TestCase):
         libc.ptrace.restype = ctypes.c_long
         if libc.ptrace(PTRACE_SEIZE, tid, 0, 0) != 0:
             self.skipTest(f"ptrace: {os.strerror(ctypes.get_errno())}")
-        self.assertEqual(libc.ptrace(PTRACE_INTERRUPT, tid, 0, 0), 0)  # this thread alone
+        self.assertEqual(libc.ptrace(PTRACE_INTERRUPT, tid, 0, 0), 0)  # only this thread
         os.waitpid(tid, 0x40000000)  # __WALL
         try:
-            self.messages(0.5)  # what was under way
+            self.messages(0.5)  # messages already sent
             quiet = self.messages(2.0)  # five times the limit of systemd
-            self.assertIsNone(self.child.poll())  # it is the servo that stands, not the process
+            self.assertIsNone(self.child.poll())  # only the servo is stopped, not the process
         finally:
             self.assertEqual(libc.ptrace(PTRACE_DETACH, tid, 0, 0), 0)  # a traced thread would outlive SIGKILL
         self.assertNotIn("WATCHDOG", quiet)
@@ -192,7 +192,7 @@ class Service(unittest.TestCase):
         self.until("STOPPING=1")
         self.assertEqual(self.child.wait(PATIENCE_S), 0)
 
-    def test_killed_and_started_again_it_is_ready_and_not_armed(self):
+    def test_after_a_kill_and_restart_it_is_ready_and_not_armed(self):
         for _ in range(2):
             self.start()
             printed = self.until("READY=1") + self.messages(1.5)
@@ -245,7 +245,7 @@ class Service(unittest.TestCase):
         self.assertIn("recvmsg", calls)
         self.assertFalse(calls - allowed)
 
-    def test_in_the_journal_a_line_has_its_level_and_no_time(self):
+    def test_journal_lines_have_a_level_and_no_time(self):
         read, write = os.pipe()
         what = os.fstat(write)
         env = dict(os.environ, TACT_RUNTIME_DIR=self.dir, JOURNAL_STREAM=f"{what.st_dev}:{what.st_ino}")
@@ -262,10 +262,10 @@ class Service(unittest.TestCase):
 
 @unittest.skipUnless(os.geteuid() == 0 and shutil.which("setpriv"), "not root, or no setpriv")
 class OtherUsers(unittest.TestCase):
-    """A controller of user 61001, group 61000, as at a station; who may watch it."""
+    """A controller of user 61001, group 61000, as at a station, and the users that may watch it."""
 
     def setUp(self):
-        self.dir = tempfile.mkdtemp(prefix="tact_group_", dir="/run")  # a folder that root placed, as /run/tact
+        self.dir = tempfile.mkdtemp(prefix="tact_group_", dir="/run")  # a folder created by root, like /run/tact
         self.addCleanup(shutil.rmtree, self.dir)
         self.run_dir = f"{self.dir}/tact"
         os.chmod(self.dir, 0o755)
@@ -275,7 +275,7 @@ class OtherUsers(unittest.TestCase):
         subprocess.run([WRITER, f"{self.dir}/small.tact"], check=True)
         os.chmod(f"{self.dir}/small.tact", 0o644)
         os.mkdir(f"{self.dir}/bin")
-        for program in ("tact-rt", "tact"):  # where anybody may run them
+        for program in ("tact-rt", "tact"):  # readable and executable for all users
             shutil.copy(f"{BIN}/{program}", f"{self.dir}/bin")
 
     def start(self, **environment):
@@ -294,7 +294,7 @@ class OtherUsers(unittest.TestCase):
                               env=dict(os.environ, TACT_RUNTIME_DIR=self.run_dir, **environment))
         return done.returncode, done.stdout + done.stderr
 
-    def test_a_member_of_the_group_attaches_and_nobody_else(self):
+    def test_only_members_of_the_group_can_attach(self):
         self.start(TACT_RUNTIME_GROUP="61000")
         socket_mode = os.stat(f"{self.run_dir}/tact-default.sock")
         self.assertEqual((stat.S_IMODE(socket_mode.st_mode), socket_mode.st_gid), (0o660, 61000))
@@ -303,7 +303,7 @@ class OtherUsers(unittest.TestCase):
         self.assertIn("state ready", text)
         for user, groups, environment in ((61002, "--clear-groups", {"TACT_RUNTIME_GROUP": "61000"}),
                                           (61002, "--groups=61003", {"TACT_RUNTIME_GROUP": "61003"}),
-                                          (61002, "--groups=61000", {})):  # it has to be asked for
+                                          (61002, "--groups=61000", {})):  # must be requested
             code, text = self.status(user, groups, **environment)
             self.assertEqual(code, 1, (groups, environment, text))
 
@@ -313,7 +313,7 @@ class OtherUsers(unittest.TestCase):
         code, text = self.status(61002, "--groups=61000", TACT_RUNTIME_GROUP="61000")
         self.assertEqual(code, 1, text)
 
-    def test_the_kernels_answer_counts_even_where_the_socket_is_open_to_all(self):
+    def test_the_kernels_peer_credentials_decide_even_with_an_open_socket(self):
         self.start(TACT_RUNTIME_GROUP="61000")
         os.chmod(f"{self.run_dir}/tact-default.sock", 0o666)
         os.chmod(self.run_dir, 0o755)

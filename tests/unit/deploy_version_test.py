@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Every program names its build, the same in all: --version, and the version of the source that it was built from.
+"""--version of every program prints the same build, and the version of the source is derived from git.
 
 usage: deploy_version_test.py ROOT_OF_THE_PROJECT FOLDER_OF_THE_PROGRAMS VERSION_OF_THE_PROJECT
 """
@@ -30,7 +30,7 @@ def version_of(source, build_version=""):
 class Version(unittest.TestCase):
     def test_every_program_prints_its_name_and_one_version(self):
         programs = [p for p in PROGRAMS if os.path.exists(os.path.join(BIN, p))]
-        self.assertGreaterEqual(len(programs), 5, "hardly any program is built")
+        self.assertGreaterEqual(len(programs), 5, "too few programs are built")
         seen = {}
         for program in programs:
             run = subprocess.run([os.path.join(BIN, program), "--version"], capture_output=True, text=True, check=False)
@@ -45,7 +45,7 @@ class Version(unittest.TestCase):
         if os.path.exists(os.path.join(ROOT, ".git")):
             self.assertEqual(version.split(".dirty")[0], version_of(ROOT).split(".dirty")[0])
 
-    def test_wrong_usage_is_exit_code_2_in_all(self):
+    def test_wrong_usage_exits_with_2_in_all_programs(self):
         for program in PROGRAMS:
             path = os.path.join(BIN, program)
             if os.path.exists(path):
@@ -53,7 +53,7 @@ class Version(unittest.TestCase):
                 self.assertEqual((run.returncode, run.stdout), (2, ""), program)
                 self.assertNotEqual(run.stderr, "", program)
 
-    def test_the_version_counts_commits_names_the_last_and_says_if_that_is_not_all(self):
+    def test_the_version_has_the_commit_count_the_last_commit_and_a_mark_for_changes(self):
         with tempfile.TemporaryDirectory() as folder:
             def git(*words):
                 return subprocess.run(["git", "-c", "user.name=a", "-c", "user.email=a@b", "-C", folder, *words],

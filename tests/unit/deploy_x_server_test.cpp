@@ -7,7 +7,7 @@
 namespace tact::launch {
 namespace {
 
-TEST(XServer, several_start_at_once_each_with_a_number_of_its_own) {
+TEST(XServer, several_start_at_once_with_different_numbers) {
     if (find_in_path("Xvfb").empty()) GTEST_SKIP() << "there is no Xvfb";
     const ScratchFolder a, b, c;
     XServer one(a.path(), 640, 480), two(b.path(), 640, 480), three(c.path(), 640, 480);
@@ -23,7 +23,7 @@ TEST(XServer, several_start_at_once_each_with_a_number_of_its_own) {
     }
 }
 
-TEST(XServer, its_cookie_is_readable_by_this_user_alone) {
+TEST(XServer, its_cookie_is_readable_only_by_this_user) {
     if (find_in_path("Xvfb").empty()) GTEST_SKIP() << "there is no Xvfb";
     const ScratchFolder scratch;
     const XServer x(scratch.path(), 640, 480);

@@ -1,4 +1,4 @@
-// The emulated arm and its board, by the packets that it takes and gives.
+// The emulated arm and its board, tested through their packets.
 #include "tests/emu/board.hpp"
 
 #include <gtest/gtest.h>
@@ -23,7 +23,7 @@ protected:
         return s;
     }
     void ask() { board_.receive(encode(phantom::Query{}), now_us_); }
-    // All packets of so many milliseconds; each one with a command before it where `command` is given.
+    // Returns all packets of `ms` milliseconds. Sends `command`, if given, before each.
     std::vector<phantom::State> run(int ms, phantom::Command* command = nullptr) {
         std::vector<phantom::State> states;
         for (int i = 0; i < ms; ++i) {
@@ -63,7 +63,7 @@ protected:
         return c;
     }
 
-    std::uint32_t now_us_ = 0xFFFF'0000U;  // its clock wraps on the way
+    std::uint32_t now_us_ = 0xFFFF'0000U;  // the clock wraps during the test
     EmulatedBoard board_;
     int infos_ = 0, refused_ = 0;
 };
@@ -73,7 +73,7 @@ protected:
     BoardWithRitual() : Board(true) {}
 };
 
-TEST_F(Board, says_nothing_before_it_is_asked_and_then_states_at_its_rate) {
+TEST_F(Board, sends_nothing_before_a_query_and_then_states_at_its_rate) {
     EXPECT_TRUE(run(20).empty());
     ask();
     const auto states = run(100);
@@ -83,7 +83,7 @@ TEST_F(Board, says_nothing_before_it_is_asked_and_then_states_at_its_rate) {
     EXPECT_EQ(states.back().time_us - states.front().time_us, 99'000U);
 }
 
-TEST_F(Board, a_force_moves_the_hand_its_way_as_fast_as_the_hands_damping_lets_it) {
+TEST_F(Board, a_force_moves_the_hand_at_the_speed_that_its_damping_allows) {
     ask();
     phantom::Command off = command({}, false);
     run(2, &off);
@@ -99,13 +99,13 @@ TEST_F(Board, a_force_moves_the_hand_its_way_as_fast_as_the_hands_damping_lets_i
     EXPECT_NEAR(moved.x(), 0.0, 1e-3);
 }
 
-TEST_F(Board, with_the_amplifier_off_the_fingers_carry_the_arm) {
+TEST_F(Board, with_the_amplifier_off_the_hand_holds_the_arm) {
     ask();
     run(200);
     EXPECT_EQ(board_.tool_pose().p_m, Vec3(Vec3::Zero()));
 }
 
-TEST_F(Board, silence_of_the_pc_trips_it) {
+TEST_F(Board, silence_of_the_pc_trips_the_watchdog) {
     ask();
     phantom::Command c = command({}, false);
     run(2, &c);
@@ -116,7 +116,7 @@ TEST_F(Board, silence_of_the_pc_trips_it) {
     EXPECT_EQ(board_.shown().force_n, Vec3(Vec3::Zero()));
 }
 
-TEST_F(Board, faults_of_the_line_come_as_they_were_ordered) {
+TEST_F(Board, faults_of_the_link_occur_as_injected) {
     ask();
     run(5);
     board_.faults().corrupt = 3;
@@ -134,7 +134,7 @@ TEST_F(Board, faults_of_the_line_come_as_they_were_ordered) {
     EXPECT_TRUE(run(10).empty());
 }
 
-TEST_F(Board, faults_of_the_arm_show_in_its_states) {
+TEST_F(Board, faults_of_the_arm_appear_in_its_states) {
     ask();
     const Counts6 before = run(2).back().counts;
     board_.faults().jump[1] = 500;
@@ -146,24 +146,24 @@ TEST_F(Board, faults_of_the_arm_show_in_its_states) {
     ask();
     const phantom::State s = run(5).back();
     EXPECT_EQ(s.boot, 2);
-    EXPECT_EQ(s.status & phantom::status::kBrownOut, phantom::status::kBrownOut);  // the cause is still there
+    EXPECT_EQ(s.status & phantom::status::kBrownOut, phantom::status::kBrownOut);  // the cause persists
 }
 
-TEST_F(Board, a_stalled_motor_heats_up_and_the_board_says_so) {
+TEST_F(Board, a_stalled_motor_heats_up_and_the_board_reports_it) {
     ask();
     phantom::Command off = command({}, false);
     run(2, &off);
     phantom::Command c = off;
     c.enable = true;
     c.current_ma = {5500, 0, 0, 0, 0, 0};
-    // 5.5 A in 2.18 ohm against 3.1 K/W with 12 s: 17 K/s at the start, 75 K in a few seconds.
+    // 5.5 A in 2.18 ohm against 3.1 K/W and a time constant of 12 s: 17 K/s at first, 75 K after a few seconds.
     const auto states = run(8000, &c);
     EXPECT_NE(states.back().status & phantom::status::kOverTemperature, 0);
     EXPECT_EQ(board_.amplifier().state(), AmplifierState::fault);
     EXPECT_EQ(states[1000].status & phantom::status::kOverTemperature, 0);
 }
 
-TEST_F(BoardWithRitual, the_person_holds_the_reset_pose_confirms_and_takes_it_to_the_middle) {
+TEST_F(BoardWithRitual, the_person_holds_the_reset_pose_confirms_and_moves_to_the_centre) {
     ask();
     const auto states = run(3000);
     int pressed = 0;
@@ -177,9 +177,9 @@ TEST_F(BoardWithRitual, the_person_holds_the_reset_pose_confirms_and_takes_it_to
     EXPECT_LT(board_.tool_pose().p_m.norm(), 1e-12);
 }
 
-TEST_F(BoardWithRitual, the_person_waits_for_the_pc_and_comes_back_when_asked) {
+TEST_F(BoardWithRitual, the_person_waits_for_a_query_and_repeats_the_calibration_on_request) {
     run(5000);
-    EXPECT_FALSE(board_.hand_free()) << "nobody has asked yet";
+    EXPECT_FALSE(board_.hand_free()) << "no query yet";
     ask();
     run(3000);
     ASSERT_TRUE(board_.hand_free());
@@ -187,7 +187,7 @@ TEST_F(BoardWithRitual, the_person_waits_for_the_pc_and_comes_back_when_asked) {
     board_.calibrate_again();
     EXPECT_FALSE(board_.hand_free());
     const auto back = run(1100);
-    EXPECT_NEAR(back.front().counts[1], free[1], 2) << "it is led there and does not leap";
+    EXPECT_NEAR(back.front().counts[1], free[1], 2) << "the hand leads it there without a jump";
     EXPECT_NEAR(back.back().counts[1], -340, 1);
     int pressed = 0;
     for (const phantom::State& s : run(3000)) pressed += s.inputs & 1;

@@ -1,4 +1,4 @@
-// The emulated CP2112 without a kernel: what its reports say about its pins.
+// The emulated CP2112 without a kernel: reports about its pins.
 #include "tests/emu/cp2112.hpp"
 
 #include <gtest/gtest.h>
@@ -11,7 +11,7 @@ using Bytes = std::vector<std::uint8_t>;
 
 void send(Cp2112& chip, const Bytes& bytes) { chip.set_report(bytes); }
 
-TEST(Cp2112, inputs_read_what_is_outside_and_outputs_what_was_written_under_the_mask) {
+TEST(Cp2112, inputs_read_the_wires_and_outputs_the_masked_writes) {
     Cp2112 chip;
     chip.set(0, true);
     chip.set(7, true);
@@ -28,7 +28,7 @@ TEST(Cp2112, inputs_read_what_is_outside_and_outputs_what_was_written_under_the_
     EXPECT_EQ(chip.edges(5), 0U);
 }
 
-TEST(Cp2112, an_input_that_is_wired_to_an_output_follows_it_and_an_undriven_wire_is_low) {
+TEST(Cp2112, an_input_wired_to_an_output_follows_it_and_an_undriven_wire_is_low) {
     Cp2112 chip;
     chip.follow(3, 4);
     chip.set(3, true);
@@ -40,7 +40,7 @@ TEST(Cp2112, an_input_that_is_wired_to_an_output_follows_it_and_an_undriven_wire
     EXPECT_FALSE(chip.level(3));
 }
 
-TEST(Cp2112, reports_that_are_short_or_unknown_and_lines_that_are_not_there_change_nothing) {
+TEST(Cp2112, short_or_unknown_reports_and_invalid_pins_change_nothing) {
     Cp2112 chip;
     chip.set(1, true);
     const Bytes before = chip.get_report(kGet);

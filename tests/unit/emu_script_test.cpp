@@ -1,4 +1,4 @@
-// What tact-emu reads and what it says: orders, fault files, requests, report lines, USB descriptors.
+// The texts that tact-emu reads and writes: orders, fault files, requests, report lines, USB descriptors.
 #include <gtest/gtest.h>
 
 #include <fstream>
@@ -46,7 +46,7 @@ TEST(Orders, are_read_with_their_time_numbers_and_arm) {
     EXPECT_FALSE(parse_order("   # only a comment", "").has_value());
 }
 
-TEST(Orders, that_are_wrong_are_refused_with_where_why_and_the_mend) {
+TEST(Orders, are_refused_with_place_reason_and_fix) {
     const auto says = [](std::string_view line, const char* a, const char* b) {
         const std::string text = why_not(line);
         EXPECT_NE(text.find("here"), std::string::npos) << line;
@@ -54,7 +54,7 @@ TEST(Orders, that_are_wrong_are_refused_with_where_why_and_the_mend) {
         EXPECT_NE(text.find(b), std::string::npos) << line << ": " << text;
         EXPECT_NE(text.find("fix:"), std::string::npos) << line;
     };
-    says("explode", "no order \"explode\"", "encoder jump ENCODER COUNTS [ARM]");
+    says("explode", "unknown order \"explode\"", "encoder jump ENCODER COUNTS [ARM]");
     says("corrupt", "N is \"\"", "1 to 100000");
     says("corrupt 0", "\"0\"", "1 to 100000");
     says("corrupt 99999999999999999999", "999", "1 to 100000");
@@ -63,13 +63,13 @@ TEST(Orders, that_are_wrong_are_refused_with_where_why_and_the_mend) {
     says("encoder stuck 6", "ENCODER", "0 to 5");
     says("encoder jump 2 1e9", "COUNTS", "encoder jump");
     says("unplug left right", "too many words", "unplug [ARM]");
-    says("unplug ../../etc", "no arm is called", "serial");
+    says("unplug ../../etc", "cannot be the serial", "serial");
     says("can down left", "too many words", "can down");
     says("at noon unplug", "\"noon\"", "at 3.2 s");
     says("at nan unplug", "\"nan\"", "at 3.2 s");
     says("at -1 unplug", "\"-1\"", "at 3.2 s");
-    says("at", "comes a time", "at 3.2 s");
-    says(std::string(500, 'x'), "longer than 200", "one order a line");
+    says("at", "needs a time", "at 3.2 s");
+    says(std::string(500, 'x'), "longer than 200", "one order per line");
     says("\x1b[2J\x07", "\"?[2J?\"", "orders:");
 }
 
@@ -122,7 +122,7 @@ TEST(Requests, are_read_or_refused_with_their_form) {
     EXPECT_EQ(parse_arm("LEFT").serial, "LEFT");
     EXPECT_EQ(parse_arm("LEFT").metrics.model, "premium-1.5");
     EXPECT_EQ(parse_arm("R-2:premium-1.5").serial, "R-2");
-    EXPECT_THROW(static_cast<void>(parse_arm("R:omni")), StartupError) << "its motors are not known";
+    EXPECT_THROW(static_cast<void>(parse_arm("R:omni")), StartupError) << "its motors are unknown";
     for (const char* bad :
          {"", "a b", "../x", ":premium-1.5", "L:none", "L:premium-1.5:x", "12345678901234567"})
         EXPECT_THROW(static_cast<void>(parse_arm(bad)), StartupError) << bad;

@@ -1,4 +1,5 @@
 # Tests of force.
+tact_test(unit/force_fade_test.cpp USES force)
 tact_test(unit/force_docking_test.cpp USES force)
 tact_test(unit/force_docking_levels_test.cpp USES force)
 tact_test(unit/force_partial_sums_test.cpp USES force SYSTEM rapidcheck)

@@ -1,4 +1,4 @@
-// Octree, masses in a ball, the force of a burr that does not turn, shapes.
+// Octree, voxel sums in a ball, forces of a burr at rest and in rotation, burr shapes.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -17,7 +17,7 @@ namespace {
 
 constexpr double kPi = std::numbers::pi;
 
-// Bone below the plane through `middle`, and what is left of it.
+// Bone below the plane through `middle`; the density ramps from 1 to 0 across it.
 auto half_space(const Vec3& middle, const Vec3& up) {
     return [=](const Vec3& p) { return std::clamp(0.5 - 3.0 * (p - middle).dot(up), 0.0, 1.0); };
 }
@@ -87,11 +87,11 @@ TEST(MomentOctree, every_block_holds_the_sums_of_its_voxels) {
         expect_octree_is_right(bone, MomentOctree(bone.bricks, bone.density));
     }
     BoneBlock solid(
-        24, 1e-3, [](const Vec3&) { return 1.0; }, 1);  // the largest sums
+        24, 1e-3, [](const Vec3&) { return 1.0; }, 1);  // the largest possible sums
     expect_octree_is_right(solid, MomentOctree(solid.bricks, solid.density));
 }
 
-TEST(MomentOctree, what_a_brick_loses_goes_up_exactly) {
+TEST(MomentOctree, removed_mass_updates_every_octree_level_exactly) {
     BoneBlock bone = noise(40, 3);
     MomentOctree octree(bone.bricks, bone.density);
     SeededRandom random(1);
@@ -106,7 +106,7 @@ TEST(MomentOctree, what_a_brick_loses_goes_up_exactly) {
     expect_octree_is_right(bone, octree);
 }
 
-TEST(MomentOctree, refuses_what_does_not_fit) {
+TEST(MomentOctree, refuses_data_of_the_wrong_size) {
     BoneBlock bone = noise(16, 1);
     const auto refused = [&](const auto& spoil) {
         BoneBricks b = bone.bricks;
@@ -121,11 +121,11 @@ TEST(MomentOctree, refuses_what_does_not_fit) {
     refused([](BoneBricks& b) { b.origin_m.x() = std::nan(""); });
 }
 
-// In levels: of a cap of height h.
+// Sum of the voxel levels in a ball cap of height h.
 double cap_m0(double r, double h) { return 255.0 * kPi * h * h * (r - h / 3.0); }
 double cap_m1(double r, double h) { return 255.0 * kPi / 4.0 * h * h * (2.0 * r - h) * (2.0 * r - h); }
 
-TEST(BallMoments, are_those_of_half_space_slab_and_ball) {
+TEST(BallMoments, match_half_space_slab_and_ball) {
     const double r = 10.0;
     const auto check = [&](const BoneBlock& bone, const Vec3& at, double m0, const Vec3& m1, double part) {
         const MomentOctree octree(bone.bricks, bone.density);
@@ -138,7 +138,7 @@ TEST(BallMoments, are_those_of_half_space_slab_and_ball) {
         EXPECT_LT((fast.m1 - m1).norm(), part * moment);
     };
     const Vec3 at(23.3, 23.7, 30.0);
-    for (const double h : {1.0, 2.0, 4.5, 10.0, 17.0}) {  // the plane lies between two voxels
+    for (const double h : {1.0, 2.0, 4.5, 10.0, 17.0}) {  // the plane lies between two voxel layers
         const double top = std::floor(at.z() - r + h) + 0.5, height = top - (at.z() - r);
         const BoneBlock half(48, 1e-3, [&](const Vec3& p) { return p.z() < top ? 1.0 : 0.0; });
         check(half, at, cap_m0(r, height), Vec3(0.0, 0.0, -cap_m1(r, height)), 0.02);
@@ -163,7 +163,7 @@ struct Errors {
     double mean = 0.0, worst = 0.0, angle = 0.0;
 };
 
-// Of the elastic force against single resolution, for radii in voxels, over pressed-in depths from 0.1 R on.
+// Errors of the elastic force against single resolution, for two radii (voxels) and depths from 0.1 R.
 Errors force_errors(double level) {
     Errors e;
     int count = 0;
@@ -208,7 +208,7 @@ Errors force_errors(double level) {
     return e;
 }
 
-TEST(BallMoments, the_force_is_that_of_single_resolution_within_two_percent_at_the_default_level) {
+TEST(BallMoments, the_force_matches_single_resolution_within_two_percent_at_the_default_level) {
     const Errors fine = force_errors(0.1), usual = force_errors(0.3), coarse = force_errors(0.5);
     EXPECT_LT(fine.mean, 0.01);
     EXPECT_LT(usual.mean, 0.02);
@@ -219,7 +219,7 @@ TEST(BallMoments, the_force_is_that_of_single_resolution_within_two_percent_at_t
     EXPECT_LE(usual.mean, coarse.mean);
 }
 
-TEST(BallMoments, are_continuous_in_place_and_level) {
+TEST(BallMoments, are_continuous_in_position_and_level) {
     const double r = 14.0;
     const BoneBlock bone(64, 1e-3, half_space(Vec3(31.2, 32.3, 32.8), Vec3(0.36, 0.48, 0.8)), 2);
     const MomentOctree octree(bone.bricks, bone.density);
@@ -227,7 +227,7 @@ TEST(BallMoments, are_continuous_in_place_and_level) {
     const auto depth = [&](const Vec3& at, double level) {
         return penetration_of(ball_moments(octree, kernels, at, r, level * r).m0 / 255.0, r);
     };
-    // Steps of a thousandth of a voxel: 0.3 um at 0.3 mm. Depth can change by that much, and a little by rounding.
+    // Steps of a thousandth of a voxel: 0.3 um at 0.3 mm. The depth may change by that step plus rounding.
     const Vec3 way = Vec3(0.6, 0.0, 0.8);
     for (const double level : {0.1, 0.3, 0.5}) {
         for (int piece = 0; piece < 12; ++piece) {
@@ -306,7 +306,7 @@ TEST(BrickKernels, all_instruction_sets_give_the_same_bits) {
     }
 }
 
-TEST(BurrForces, penetration_is_the_root_of_its_equation) {
+TEST(BurrForces, penetration_solves_its_equation) {
     double before = 0.0;
     for (double x = 1e-7; x <= 2.0; x *= 1.07) {
         const double r = 3e-3, m0 = kPi * r * r * r * x * x * (1.0 - x / 3.0);
@@ -318,7 +318,7 @@ TEST(BurrForces, penetration_is_the_root_of_its_equation) {
     EXPECT_EQ(penetration_of(0.0, 1e-3), 0.0);
     EXPECT_EQ(penetration_of(std::nan(""), 1e-3), 0.0);
     EXPECT_NEAR(penetration_of(4.0 / 3.0 * kPi * 1e-9, 1e-3), 2.0, 1e-7);
-    EXPECT_LE(penetration_of(1.0, 1e-3), 2.0);  // more than full
+    EXPECT_LE(penetration_of(1.0, 1e-3), 2.0);  // more than a full ball
 }
 
 TEST(BurrForces, follow_their_equations_on_a_flat_surface) {
@@ -336,10 +336,10 @@ TEST(BurrForces, follow_their_equations_on_a_flat_surface) {
         EXPECT_EQ(still.wrench.torque_n_m, Vec3::Zero());
         const BurrForce turning = burr_force(law, r, m0, Vec3(0.0, 0.0, -m1), Vec3::Zero(), spin);
         const Vec3 rub = turning.wrench.force_n - still.wrench.force_n;
-        const Vec3 surface_m_s = spin.cross(Vec3(0.0, 0.0, -m1 / m0));  // of the burr where it touches
+        const Vec3 surface_m_s = spin.cross(Vec3(0.0, 0.0, -m1 / m0));  // burr surface at the contact
         EXPECT_NEAR(rub.norm(), law.friction_n_s_m3 * r * r * x * surface_m_s.norm(), 1e-9);
         EXPECT_LT(rub.dot(surface_m_s), 0.0);
-        EXPECT_LT(turning.wrench.torque_n_m.dot(spin), 0.0);  // it is braked
+        EXPECT_LT(turning.wrench.torque_n_m.dot(spin), 0.0);  // the torque brakes the burr
         const BurrForce moving = burr_force(law, r, m0, Vec3(0.0, 0.0, -m1), velocity, Vec3::Zero());
         EXPECT_LT(
             (moving.wrench.force_n - still.wrench.force_n + law.impact_n_s_m3 * r * r * x * velocity).norm(),
@@ -347,7 +347,7 @@ TEST(BurrForces, follow_their_equations_on_a_flat_surface) {
     }
 }
 
-TEST(BurrForces, a_burr_in_a_slot_or_all_in_bone_is_not_thrown_about) {
+TEST(BurrForces, a_burr_in_a_slot_or_fully_in_bone_gets_a_steady_force) {
     const BurrLaw law;
     const double r = 3e-3, m0 = 0.8 * kPi * r * r * r;
     double before = 0.0;
@@ -364,7 +364,7 @@ TEST(BurrForces, a_burr_in_a_slot_or_all_in_bone_is_not_thrown_about) {
         burr_force(law, r, 4.0 / 3.0 * kPi * r * r * r, Vec3::Zero(), Vec3::Zero(), Vec3::Zero());
     EXPECT_NEAR(full.depth, 2.0, 1e-6);
     EXPECT_EQ(full.wrench.force_n, Vec3::Zero());
-    // Pressed in from above it is pushed back, with a force that rises all the way.
+    // Bone pushes a burr that presses in from above back, with a force that rises with depth.
     double least = 0.0;
     for (double x = 0.05; x <= 2.0; x += 0.01) {
         const double m = kPi * r * r * r * x * x * (1.0 - x / 3.0),
@@ -377,7 +377,7 @@ TEST(BurrForces, a_burr_in_a_slot_or_all_in_bone_is_not_thrown_about) {
     }
 }
 
-TEST(BurrForces, friction_stays_below_its_share_of_the_push) {
+TEST(BurrForces, friction_stays_below_its_fraction_of_the_normal_force) {
     BurrLaw law;
     law.friction_n_s_m3 = 1e6;
     const double r = 3e-3, m0 = 0.1 * kPi * r * r * r;
@@ -392,7 +392,7 @@ TEST(BurrForces, friction_stays_below_its_share_of_the_push) {
     EXPECT_NEAR(elastic_for(5e-3, 1.25e-3) * 5e-3 * 5e-3 * std::pow(0.25, 1.5), 1.0, 1e-12);
 }
 
-TEST(BurrShapes, weights_count_every_place_once) {
+TEST(BurrShapes, weights_count_each_part_of_the_volume_once) {
     DrillToolSettings s;
     s.shape = BurrShape::cylinder;
     s.radius_m = 2e-3;
@@ -412,7 +412,7 @@ TEST(BurrShapes, weights_count_every_place_once) {
     for (std::uint32_t i = 1; i < cone.count; ++i)
         EXPECT_GT(cone.ball[i].centre_tool_m.z(), cone.ball[i - 1].centre_tool_m.z());
     EXPECT_TRUE(cone.ball[0].cuts);
-    EXPECT_FALSE(cone.ball[cone.count - 1].cuts);  // the shaft is only felt
+    EXPECT_FALSE(cone.ball[cone.count - 1].cuts);  // the shaft does not cut
     s.shape = BurrShape::sphere;
     const DrillTool ball = make_drill_tool(s);
     EXPECT_EQ(ball.ball[0].weight, 1.0);

@@ -1,4 +1,4 @@
-// The clash force against the slope of its energy, and its field against depths that are known.
+// The clash force against the gradient of its energy; the clash field against known depths.
 #include "rt/force/docking/clash_force.hpp"
 
 #include <gtest/gtest.h>
@@ -16,7 +16,7 @@ namespace {
 constexpr double kA = 1e-10, kScale = 6e6;
 const ClashGains kGains{2.0, 150.0};
 
-// Atoms some 3 A apart throughout an ellipsoid.
+// An ellipsoid filled with atoms about 3 A apart.
 Structure blob(const Vec3& radii_m, std::uint64_t seed) {
     Structure s;
     s.name = "blob";
@@ -52,7 +52,7 @@ const ClashField& rod() {
     return field;
 }
 
-// A body in the middle and two around it that touch it or nearly do.
+// One body in the middle and two around it that touch it or nearly touch it.
 struct Crowd {
     ClashBody active;
     std::array<ClashBody, 2> others;
@@ -71,11 +71,11 @@ Crowd crowd(std::uint64_t seed) {
 
 ClashResult felt(const Crowd& c) { return clash_force(c.active, c.others, kScale, kGains); }
 
-RC_GTEST_PROP(Clash, wrench_is_the_slope_of_the_energy_by_place_and_rotation, ()) {
+RC_GTEST_PROP(Clash, wrench_is_the_energy_gradient_over_position_and_rotation, ()) {
     const Crowd c = crowd(*rc::gen::arbitrary<std::uint64_t>());
     const ClashResult here = felt(c);
     for (int a = 0; a < 3; ++a) {
-        const double step_m = 3e-5, turn_rad = 3e-3;  // of the hand: 0.05 A, 0.2 degrees
+        const double step_m = 3e-5, turn_rad = 3e-3;  // motion of the hand: 0.05 A, 0.2 degrees
         Crowd fore = c, back = c;
         fore.active.T_model_body.p_m[a] += step_m / kScale;
         back.active.T_model_body.p_m[a] -= step_m / kScale;
@@ -91,7 +91,7 @@ RC_GTEST_PROP(Clash, wrench_is_the_slope_of_the_energy_by_place_and_rotation, ()
     }
 }
 
-RC_GTEST_PROP(Clash, the_force_on_one_is_minus_that_on_the_other, ()) {
+RC_GTEST_PROP(Clash, forces_on_the_two_bodies_are_opposite, ()) {
     const Crowd c = crowd(*rc::gen::arbitrary<std::uint64_t>());
     const ClashBody &a = c.active, &b = c.others[0];
     const ClashResult on_a = clash_force(a, {&b, 1}, kScale, kGains);
@@ -99,24 +99,24 @@ RC_GTEST_PROP(Clash, the_force_on_one_is_minus_that_on_the_other, ()) {
     RC_ASSERT(std::abs(on_a.energy_j - on_b.energy_j) <= 1e-9 + 1e-5 * on_a.energy_j);
     const Vec3 sum_n = on_a.wrench_world.force_n + on_b.wrench_world.force_n;
     RC_ASSERT(sum_n.norm() <= 1e-6 + 1e-4 * on_a.wrench_world.force_n.norm());
-    // About one point the torques cancel too.
+    // About a common point the torques cancel too.
     const Vec3 arm_m = kScale * (b.T_model_body.p_m - a.T_model_body.p_m);
     const Vec3 turned =
         on_a.wrench_world.torque_n_m + on_b.wrench_world.torque_n_m + arm_m.cross(on_b.wrench_world.force_n);
     RC_ASSERT(turned.norm() <= 1e-7 + 1e-3 * on_a.wrench_world.torque_n_m.norm());
 }
 
-RC_GTEST_PROP(Clash, pushes_apart, ()) {
+RC_GTEST_PROP(Clash, pushes_overlapping_bodies_apart, ()) {
     Crowd c = crowd(*rc::gen::arbitrary<std::uint64_t>());
     const ClashResult near = clash_force(c.active, {c.others.data(), 1}, kScale, kGains);
     const Vec3 away = c.active.T_model_body.p_m - c.others[0].T_model_body.p_m;
-    // Both are convex, so going straight away from the other's middle is uphill nowhere, as long as the
-    // overlap does not reach that middle: beyond it the way out is another one.
+    // Both bodies are convex: the energy never rises on a straight path away from the other's centre, unless the
+    // overlap reaches past that centre; then the shortest way out differs.
     if (near.depth_model_m < kBallRadiusM)
         RC_ASSERT(near.wrench_world.force_n.dot(away.normalized()) > -1e-6);
 }
 
-TEST(Clash, a_hand_that_goes_in_circles_gains_no_energy) {
+TEST(Clash, a_closed_path_of_the_hand_gains_no_energy) {
     const Crowd start = crowd(7);
     double work_j = 0.0, size_j = 0.0;
     constexpr int kSteps = 3000;
@@ -143,7 +143,7 @@ TEST(Clash, a_hand_that_goes_in_circles_gains_no_energy) {
     EXPECT_LT(std::abs(work_j), 1e-3 * size_j);
 }
 
-// Through contact and many voxels in steps of a hundredth of an angstrom.
+// A path through contact and many voxels in steps of 0.01 A.
 TEST(Clash, the_force_never_steps_and_its_slope_is_limited) {
     const std::vector<ClashField> fields = [] {
         std::vector<ClashField> made;
@@ -173,9 +173,9 @@ TEST(Clash, the_force_never_steps_and_its_slope_is_limited) {
         }
         EXPECT_GT(most_n, 0.1);
         EXPECT_LT(most_n, 3.0);
-        // The limit is chosen over some encounters; these are others, of bodies more even than a protein.
+        // The limit was chosen from other encounters, and these bodies are more regular than a protein.
         EXPECT_LT(slope_n_m, 1.4 * 300.0);
-        // C1: the slope itself changes gradually, by at most a few percent of its largest in a step.
+        // C1: the slope changes gradually, by a few percent of its maximum per step.
         EXPECT_LT(bend, 0.1 * 300.0 * kScale * step_m);
     }
 }
@@ -183,8 +183,7 @@ TEST(Clash, the_force_never_steps_and_its_slope_is_limited) {
 TEST(Clash, field_is_the_fourth_power_of_the_depth) {
     Vec3 gradient;
     double before = 1e300;
-    // A ball of atoms out to 15 A is closed to other atoms out to 17.8 A; its surface is uneven by an atom's
-    // width.
+    // Atoms fill a ball of 15 A, which keeps other atoms out to 17.8 A; its surface is uneven by an atom's width.
     for (const double r_a : {0.0, 5.0, 9.0, 12.0}) {
         const double v = ball().map().sample(Vec3(0.0, r_a, 0.0) * kA, gradient);
         EXPECT_LT(4.0 * std::pow(v, 0.25), 17.8 - r_a + 0.5) << r_a;
@@ -192,7 +191,7 @@ TEST(Clash, field_is_the_fourth_power_of_the_depth) {
         EXPECT_LT(v, before) << r_a;
         before = v;
     }
-    // One atom: a ball of 2.8 A, smoothed by a spline of 2 A voxels.
+    // One atom: a ball of 2.8 A, smoothed by a spline on 2 A voxels.
     Structure s;
     s.name = "atom";
     s.x_m = s.y_m = s.z_m = {0.0F};
@@ -212,7 +211,7 @@ TEST(Clash, field_is_the_fourth_power_of_the_depth) {
     }
 }
 
-TEST(Clash, nothing_is_felt_out_of_reach_or_without_a_place) {
+TEST(Clash, force_is_zero_out_of_reach_or_at_a_non_finite_pose) {
     Crowd c = crowd(1);
     for (ClashBody& b : c.others) b.T_model_body.p_m += Vec3::Constant(200.0 * kA);
     EXPECT_EQ(felt(c).wrench_world.force_n, Vec3::Zero());
@@ -225,7 +224,7 @@ TEST(Clash, nothing_is_felt_out_of_reach_or_without_a_place) {
     EXPECT_EQ(felt(c).wrench_world.force_n, Vec3::Zero());
     c = crowd(2);
     EXPECT_EQ(clash_force(c.active, c.others, kScale, {0.0, 0.0}).energy_j, 0.0);
-    // Two bodies in exactly the same place: bounded, whatever it is.
+    // Two bodies at exactly the same pose: the force stays bounded.
     const ClashBody same{&egg(), c.active.T_model_body};
     const ClashResult inside = clash_force(c.active, {&same, 1}, kScale, kGains);
     EXPECT_TRUE(inside.wrench_world.finite());

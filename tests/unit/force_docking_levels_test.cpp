@@ -1,4 +1,4 @@
-// The levels of the docking knob: what they have in common, what they err, and what they cost.
+// Levels of the docking force: their agreement, their error and their cost.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -12,7 +12,7 @@ namespace {
 
 using namespace rod;
 
-TEST(DockingLevels, force_does_not_depend_on_how_many_points_stand_for_the_body) {
+TEST(DockingLevels, force_barely_depends_on_the_number_of_codebook_points) {
     const auto model = make_model();
     const Pose body = start_pose(model->home(), 6.0 * kA, 0.2, 5);
     const Vec3 all = model->evaluate(body, at(1.0F)).wrench_world.force_n;
@@ -22,7 +22,7 @@ TEST(DockingLevels, force_does_not_depend_on_how_many_points_stand_for_the_body)
     }
 }
 
-TEST(DockingLevels, the_error_it_reports_holds_near_home) {
+TEST(DockingLevels, the_reported_error_holds_near_home) {
     const auto model = make_model();
     SeededRandom random(11);
     int above = 0;
@@ -35,17 +35,16 @@ TEST(DockingLevels, the_error_it_reports_holds_near_home) {
             if ((result.wrench_world.force_n - all).norm() > result.load.error) ++above;
         }
     }
-    EXPECT_LE(above, 30);  // 5 % of 600: an estimate over some poses, not a proof
+    EXPECT_LE(above, 30);  // 5 % of 600: an estimate over sampled poses, not a proof
     EXPECT_EQ(model->evaluate(model->home(), at(1.0F)).load.error, 0.0);
     EXPECT_GT(model->evaluate(model->home(), at(0.0F)).load.error, 0.0);
 }
 
-TEST(DockingLevels,
-     the_audit_measures_the_distance_from_all_atoms_and_the_bound_is_never_below_what_it_found) {
+TEST(DockingLevels, the_audit_measures_the_error_against_all_atoms_and_the_bound_covers_it) {
     const auto model = make_model();
     const double n_per_gradient = scene().meta.energy_j_per_sigma / scene().meta.world_per_model;
     model->reset(tool_at(kGrip));
-    for (int i = 0; i < 400; ++i) (void)model->step(tool_at(kGrip), at(0.3F));  // one pose, so one answer
+    for (int i = 0; i < 400; ++i) (void)model->step(tool_at(kGrip), at(0.3F));  // one pose, so one result
     const Pose held = model->bodies().T_model_body[0];
     const double off_n = (model->evaluate(held, at(0.3F)).wrench_world.force_n -
                           model->evaluate(held, at(1.0F)).wrench_world.force_n)
@@ -62,12 +61,12 @@ TEST(DockingLevels,
         done = model->audit().done();
         const double bound_n = model->evaluate(held, at(0.3F)).load.error;
         EXPECT_LE(n_per_gradient * model->audit().off(), bound_n * (1.0 + 1e-6));
-        EXPECT_LE(error_n, bound_n);  // it never falls
+        EXPECT_LE(error_n, bound_n);  // the bound never decreases
     }
     EXPECT_GT(done, 100U);
 }
 
-TEST(DockingLevels, cost_is_predicted_in_order_of_size) {
+TEST(DockingLevels, predicted_cost_grows_with_the_level) {
     const auto model = make_model();
     const auto predicted = [&](float level) {
         return model->evaluate(model->home(), at(level)).load.cost_predicted;
@@ -78,7 +77,7 @@ TEST(DockingLevels, cost_is_predicted_in_order_of_size) {
     EXPECT_EQ(model->items(1.0F), 1000U);
     EXPECT_EQ(std::string(model->knob().path), "docking.force");
     EXPECT_EQ(model->items(model->knob().start),
-              250U);  // the first level of 200 or more, and nothing above it
+              250U);  // the first level with 200 points or more, unblended
 }
 
 }  // namespace

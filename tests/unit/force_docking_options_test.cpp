@@ -1,4 +1,4 @@
-// What a docking force may be made of besides the density: clash, subtraction, contours; through the model.
+// Options of the docking force besides density: clash, subtraction, contours; tested through the model.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -33,7 +33,7 @@ Structure cloud(const char* name, const Vec3& home_m, std::uint64_t seed) {
     return s;
 }
 
-// Two clouds side by side, and the map that they give.
+// Two clouds of atoms side by side, and their common map.
 struct Scene {
     SceneMeta meta{};
     DensityGrid grid;
@@ -74,7 +74,7 @@ bool set_option(ForceModel& model, std::uint32_t option, bool on) {
     return dynamic_cast<DockingModel&>(model).set_options(option, on);
 }
 
-// As ordered, built aside and taken over.
+// A copy with the requested options, built separately and adopted.
 std::unique_ptr<ForceModel> rebuilt(const ForceModel& model) {
     std::unique_ptr<ForceModel> next = model.rebuild(model.bodies());
     EXPECT_TRUE(next && next->adopt(model));
@@ -90,7 +90,7 @@ Wrench force_at(const ForceModel& model, const Pose& pose) {
     return dynamic_cast<const DockingModel&>(model).evaluate(pose, Budget{}).wrench_world;
 }
 
-TEST(DockingOptions, with_subtraction_the_density_of_the_other_body_is_gone_and_the_own_one_stays) {
+TEST(DockingOptions, subtraction_removes_the_density_of_the_other_body_only) {
     const auto model = make_model();
     const Vec3 own = scene().structures[0].home_com_model_m, other = scene().structures[1].home_com_model_m;
     const double own_before = density_at(*model, own), other_before = density_at(*model, other);
@@ -102,18 +102,18 @@ TEST(DockingOptions, with_subtraction_the_density_of_the_other_body_is_gone_and_
     EXPECT_EQ(next->bodies().options, kDockingSubtraction);
     EXPECT_LT(std::abs(density_at(*next, other)), 0.05 * other_before);
     EXPECT_NEAR(density_at(*next, own), own_before, 0.05 * own_before);
-    // A body that lies where the other does is pulled home, not deeper in.
+    // A body at the other body's position is pulled home, not deeper in.
     Pose between = scene().structures[0].home();
     between.p_m.x() += 14.0 * kA;
     EXPECT_LT(force_at(*next, between).force_n.x(), -0.1);
     EXPECT_GT(force_at(*next, between).force_n.norm(), force_at(*model, between).force_n.norm());
-    // Off again: at once, without a build.
+    // Switching off takes effect at once, without a rebuild.
     ASSERT_TRUE(set_option(*next, kDockingSubtraction, false));
     EXPECT_FALSE(next->stale());
     EXPECT_NEAR(density_at(*next, other), other_before, 1e-6 * other_before);
 }
 
-TEST(DockingOptions, the_contours_are_felt_as_strongly_as_the_density) {
+TEST(DockingOptions, contours_make_forces_as_large_as_the_density) {
     const auto model = make_model();
     ASSERT_TRUE(set_option(*model, kDockingLaplacian, true));
     const auto next = rebuilt(*model);
@@ -135,13 +135,13 @@ TEST(DockingOptions, the_contours_are_felt_as_strongly_as_the_density) {
     }
     EXPECT_LT(most_n, 3.3);
     EXPECT_GT(most_n, 0.3);
-    // Alone in its place it is at rest, and pulled back from beside.
+    // At its own position the body is at rest; from beside it is pulled back.
     Pose away = left.home();
     away.p_m.z() += 6.0 * kA;
     EXPECT_LT(force_at(*next, away).force_n.z(), -0.05);
 }
 
-TEST(DockingOptions, both_together_are_the_contours_of_what_is_left) {
+TEST(DockingOptions, both_options_give_the_contours_of_the_remaining_density) {
     const auto model = make_model();
     ASSERT_TRUE(set_option(*model, kDockingLaplacian | kDockingSubtraction, true));
     const auto next = rebuilt(*model);
@@ -151,7 +151,7 @@ TEST(DockingOptions, both_together_are_the_contours_of_what_is_left) {
     EXPECT_LT(std::abs(density_at(*next, other)), 0.2 * density_at(*next, own));
 }
 
-TEST(DockingOptions, the_unit_of_the_contours_is_the_same_whichever_option_came_first) {
+TEST(DockingOptions, the_contour_scale_does_not_depend_on_the_order_of_the_options) {
     const Vec3 own = scene().structures[0].home_com_model_m;
     const auto both = make_model();
     ASSERT_TRUE(set_option(*both, kDockingLaplacian | kDockingSubtraction, true));
@@ -167,7 +167,7 @@ TEST(DockingOptions, the_unit_of_the_contours_is_the_same_whichever_option_came_
     EXPECT_EQ(density_at(*make_model(), own), density_at(*model, own));
 }
 
-TEST(DockingOptions, a_clash_is_felt_at_once_without_a_step_of_the_force) {
+TEST(DockingOptions, a_clash_acts_at_once_without_a_force_step) {
     const auto model = make_model();
     Pose overlapping = scene().structures[1].home();
     overlapping.p_m.x() -= 18.0 * kA;
@@ -204,7 +204,7 @@ TEST(DockingOptions, a_clash_is_felt_at_once_without_a_step_of_the_force) {
     EXPECT_LT((with.torque_n_m - without.torque_n_m - clash.torque_n_m).norm(), 1e-10);
     EXPECT_LT(steps(), 0.06);
     EXPECT_LT((before - with.force_n).norm(), 1e-6);
-    // It outlives a rebuild, and a rebuild that failed.
+    // The option survives a rebuild, and a failed rebuild.
     ASSERT_TRUE(set_option(*model, kDockingLaplacian, true));
     EXPECT_EQ(rebuilt(*model)->bodies().options, kDockingClash | kDockingLaplacian);
     model->give_up();
@@ -214,14 +214,14 @@ TEST(DockingOptions, a_clash_is_felt_at_once_without_a_step_of_the_force) {
     EXPECT_LT((force_at(*model, overlapping).force_n - without.force_n).norm(), 1e-9);
 }
 
-TEST(DockingOptions, an_order_between_take_over_and_step_does_not_cut_the_force) {
+TEST(DockingOptions, an_order_between_adopt_and_step_does_not_interrupt_the_force) {
     DockingSettings settings;
     settings.start_offset_m = 6.0 * kA;
     const auto model = make_model(settings);
     ToolState tool;
     model->reset(tool);
     StepResult before;
-    for (int i = 0; i < 2 * DockingModel::kRampSteps; ++i) before = model->step(tool, Budget{});
+    for (int i = 0; i < 2 * ForceFade::ramp_steps(1e-3); ++i) before = model->step(tool, Budget{});
     ASSERT_GT(before.wrench_world.force_n.norm(), 0.1);
     ASSERT_TRUE(set_option(*model, kDockingLaplacian, true));
     const auto next = rebuilt(*model);
@@ -256,7 +256,7 @@ TEST(DockingOptions, a_command_turns_its_option_on_and_off) {
         ASSERT_TRUE(model->order(order));
         EXPECT_EQ(model->bodies().options_asked, 0U);
     }
-    order.command = static_cast<std::uint8_t>(CommandKind::set_detail_filter);  // of another system
+    order.command = static_cast<std::uint8_t>(CommandKind::set_detail_filter);  // belongs to another system
     EXPECT_FALSE(model->order(order));
 }
 

@@ -1,4 +1,4 @@
-// The docking model against the derivatives of its own energy, and its grip, clutch, rebuilding and start.
+// The docking model against the derivatives of its energy; its grip, clutch, rebuild and start.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -21,11 +21,10 @@ INSTANTIATE_TEST_SUITE_P(Docking, ForceModelContract,
                                                         .grip = kGrip,
                                                         .touch = kTouch,
                                                         .force_n_min = 0.05,
-                                                        .step_n_max = 0.05,
-                                                        .predicts = false}),
+                                                        .step_n_max = 0.05}),
                          [](const auto& tested) { return tested.param.name; });
 
-// -k_E sum w rho, in double precision, atom by atom.
+// -k_E sum w rho, in double precision, one atom at a time.
 double energy_j(const DockingModel& model, const Pose& T_model_body) {
     const Structure& rod = scene().rod;
     double sum = 0.0;
@@ -38,7 +37,7 @@ double energy_j(const DockingModel& model, const Pose& T_model_body) {
     return -scene().meta.energy_j_per_sigma * sum;
 }
 
-TEST(Docking, wrench_is_the_slope_of_the_energy_by_the_tools_place_and_rotation) {
+TEST(Docking, wrench_is_the_energy_gradient_over_tool_position_and_rotation) {
     const auto model = make_model();
     const double scale = scene().meta.world_per_model;
     SeededRandom random(3);
@@ -47,7 +46,7 @@ TEST(Docking, wrench_is_the_slope_of_the_energy_by_the_tools_place_and_rotation)
             start_pose(model->home(), 8.0 * kA * random.uniform(), random.uniform(), random.next());
         const Wrench wrench = model->evaluate(body, at(1.0F)).wrench_world;
         for (int a = 0; a < 3; ++a) {
-            const double step_m = 1e-5, turn_rad = 1e-5;  // of the hand
+            const double step_m = 1e-5, turn_rad = 1e-5;  // motion of the hand
             Pose fore = body, back = body;
             fore.p_m[a] += step_m / scale;
             back.p_m[a] -= step_m / scale;
@@ -62,7 +61,7 @@ TEST(Docking, wrench_is_the_slope_of_the_energy_by_the_tools_place_and_rotation)
     }
 }
 
-TEST(Docking, a_hand_that_goes_in_circles_gains_no_energy_at_any_level) {
+TEST(Docking, a_closed_path_of_the_hand_gains_no_energy_at_any_level) {
     const auto model = make_model();
     for (const float fidelity : {0.0F, 0.37F, 1.0F}) {
         model->reset(tool_at(kGrip));
@@ -108,7 +107,7 @@ TEST(Docking, the_tool_moves_the_body_by_the_scale_and_turns_it_about_its_centre
     EXPECT_LT(model->bodies().T_model_body[0].q.angularDistance(turn * model->home().q), 1e-9);
 }
 
-TEST(Docking, with_the_clutch_held_the_tool_moves_alone_and_nothing_is_felt_suddenly) {
+TEST(Docking, with_the_clutch_held_the_tool_moves_alone_and_the_force_makes_no_step) {
     const auto model = make_model();
     model->reset(tool_at(kGrip));
     Wrench before = model->step(tool_at(kGrip), at(1.0F)).wrench_world;
@@ -134,10 +133,10 @@ TEST(Docking, with_the_clutch_held_the_tool_moves_alone_and_nothing_is_felt_sudd
     }
 }
 
-TEST(Docking, a_step_with_a_share_sums_its_part_anew_and_its_error_says_what_the_rest_may_be_off) {
+TEST(Docking, a_partial_step_recomputes_its_fraction_and_its_error_bounds_the_rest) {
     const Scene big = make_scene(4096);
     DockingModel model(big.meta, big.grid, {big.rod}, {big.codebook}, {});
-    for (const float fidelity : {1.0F, 0.9F}) {  // at 0.9 two big levels are blended
+    for (const float fidelity : {1.0F, 0.9F}) {  // 0.9 blends two large levels
         model.reset(tool_at(kGrip));
         Pose hand = kGrip;
         for (int i = 0; i < 600; ++i) {
@@ -149,7 +148,7 @@ TEST(Docking, a_step_with_a_share_sums_its_part_anew_and_its_error_says_what_the
             ASSERT_EQ(r.status, StepStatus::ok);
             if (i < 300) continue;  // the ramp
             const StepResult whole = model.evaluate(model.bodies().T_model_body[0], budget);
-            EXPECT_EQ(whole.load.recomputed_fraction, 1.0F);  // it keeps nothing
+            EXPECT_EQ(whole.load.recomputed_fraction, 1.0F);  // evaluate() keeps no partial sums
             EXPECT_NEAR(r.load.recomputed_fraction, 0.25F, 1e-3F);
             EXPECT_EQ(r.load.items, whole.load.items);
             EXPECT_GT(r.load.error, whole.load.error);
@@ -166,10 +165,10 @@ TEST(Docking, a_step_with_a_share_sums_its_part_anew_and_its_error_says_what_the
     Budget budget = at(1.0F);
     budget.work_fraction = 0.25F;
     EXPECT_EQ(model.step(tool_at(kGrip), budget).load.recomputed_fraction,
-              1.0F);  // a body elsewhere is summed wholly
+              1.0F);  // a moved body is summed completely
 }
 
-TEST(Docking, a_model_is_rebuilt_while_it_is_stepped_and_ordered_about) {
+TEST(Docking, a_model_can_be_rebuilt_while_it_is_stepped_and_gets_orders) {
     const auto model = make_model();
     model->reset(tool_at(kGrip));
     const ModelBodies then = model->bodies();
@@ -185,14 +184,14 @@ TEST(Docking, a_model_is_rebuilt_while_it_is_stepped_and_ordered_about) {
     builder.join();
     ASSERT_NE(rebuilt, nullptr);
     ASSERT_TRUE(rebuilt->adopt(*model));
-    EXPECT_EQ(rebuilt->bodies().count, 2U);  // what was ordered meanwhile
+    EXPECT_EQ(rebuilt->bodies().count, 2U);  // orders during the rebuild are kept
     EXPECT_EQ(rebuilt->bodies().active, 1U);
     EXPECT_TRUE(rebuilt->order(add));
     EXPECT_EQ(rebuilt->bodies().id[2], 3U);
-    EXPECT_FALSE(make_model()->adopt(*model));  // of another scene
+    EXPECT_FALSE(make_model()->adopt(*model));  // belongs to another scene
 }
 
-TEST(Docking, starts_with_the_bodies_that_it_is_given) {
+TEST(Docking, starts_with_the_given_bodies) {
     DockingSettings settings;
     const Pose place = start_pose(Pose{Vec3::Constant(kCentre), Quat::Identity()}, 9.0 * kA, 0.3, 2);
     settings.bodies = {{.structure = 0, .T_model_body = place, .fixed = true},
@@ -207,13 +206,13 @@ TEST(Docking, starts_with_the_bodies_that_it_is_given) {
     settings.bodies[0].structure = 1;
     EXPECT_THROW(make_model(settings), StartupError);
     settings.bodies[0].structure = 0;
-    settings.bodies[0].T_model_body.p_m.x() = 1.0;  // a metre off, in the model
+    settings.bodies[0].T_model_body.p_m.x() = 1.0;  // 1 m away in model coordinates
     EXPECT_THROW(make_model(settings), StartupError);
     settings.bodies.resize(16);
     EXPECT_THROW(make_model(settings), StartupError);
 }
 
-TEST(Docking, starts_where_it_is_told_the_same_every_time) {
+TEST(Docking, start_pose_follows_the_settings_and_repeats) {
     DockingSettings settings;
     settings.start_offset_m = 15.0 * kA;
     settings.start_rotation_rad = 0.5;
@@ -228,7 +227,7 @@ TEST(Docking, starts_where_it_is_told_the_same_every_time) {
     EXPECT_NE(make_model(settings)->bodies().T_model_body[0].p_m, a.p_m);
 }
 
-TEST(Docking, force_scale_scales) {
+TEST(Docking, force_scale_scales_force_and_torque) {
     DockingSettings settings;
     settings.force_scale = 0.25;
     const Pose body = start_pose(make_model()->home(), 6.0 * kA, 0.2, 5);
@@ -248,7 +247,7 @@ TEST(Docking, refuses_broken_scenes) {
     s.meta.world_per_model = 0.0;
     EXPECT_THROW(build(s), StartupError);
     s = good;
-    s.codebook.levels.clear();  // 1000 atoms and nothing that always fits
+    s.codebook.levels.clear();  // 1000 atoms and no level that always fits
     EXPECT_THROW(build(s), StartupError);
     s = good;
     std::swap(s.codebook.levels[0], s.codebook.levels[1]);

@@ -1,4 +1,4 @@
-// Erosion, and the model that feels and cuts.
+// Erosion of bone, and the drill model that renders the force and cuts.
 #include <gtest/gtest.h>
 
 #include <atomic>
@@ -24,7 +24,7 @@ BoneBlock solid(std::uint32_t edge, double level = 1.0) {
 }
 Vec3 along(const Vec3& from, const Vec3& to, double s) { return from + s * (to - from); }
 
-// What eq. 12 leaves of solid bone after a straight stroke, by Simpson's rule along it.
+// Mass that eq. 12 removes from solid bone in a straight stroke, by Simpson's rule along the stroke.
 double removed_by_theory(const BoneBlock& bone, const Vec3& from, const Vec3& to, double radius,
                          double exposure) {
     constexpr int kParts = 100;
@@ -49,7 +49,7 @@ double removed_by_theory(const BoneBlock& bone, const Vec3& from, const Vec3& to
     return removed;
 }
 
-TEST(Erosion, takes_what_its_equation_says_at_any_servo_rate_and_stroke_speed) {
+TEST(Erosion, follows_its_equation_at_any_servo_rate_and_stroke_speed) {
     const double radius = 4.0, rate_per_s = 30.0;
     const Vec3 from(9.2, 10.1, 11.4), to(17.7, 13.9, 12.2);
     const double way_m = kVoxelM * (to - from).norm();
@@ -75,7 +75,7 @@ TEST(Erosion, takes_what_its_equation_says_at_any_servo_rate_and_stroke_speed) {
     }
 }
 
-TEST(Erosion, bricks_that_take_turns_lose_the_same) {
+TEST(Erosion, alternating_groups_of_bricks_remove_the_same_mass) {
     const double radius = 13.0, exposure = 1.5;
     const Vec3 from(17.2, 20.1, 18.4), to(27.7, 23.9, 25.2);
     constexpr int kSteps = 80;
@@ -101,8 +101,8 @@ TEST(Erosion, bricks_that_take_turns_lose_the_same) {
     EXPECT_NEAR(static_cast<double>(erosion.removed()), right, 0.005 * right);
 }
 
-TEST(Erosion, slow_or_soft_bone_is_rounded_right_in_expectation) {
-    // So little a step that a voxel seldom loses a level; and one step that takes nearly all.
+TEST(Erosion, rounding_is_unbiased_for_slow_cuts_and_soft_bone) {
+    // Steps so small that a voxel seldom loses a level, and one step that removes nearly all.
     for (const double exposure : {1e-5, 1e-3, 0.09, 0.11, 3.0}) {
         for (const double soft : {1.0, 3.0}) {
             BoneBlock bone = solid(32, 100.0 / 255.0);
@@ -113,7 +113,7 @@ TEST(Erosion, slow_or_soft_bone_is_rounded_right_in_expectation) {
             const double right = removed_by_theory(bone, at, at, radius, rate);
             erosion.begin();
             erosion.cut(best_brick_kernels(), {at, at, radius, exposure, soft});
-            // Each voxel rounds at most one level: the sum scatters by the root of their sum at most.
+            // Each voxel rounds by one level at most, so the sum scatters by at most the root of the sum.
             EXPECT_NEAR(static_cast<double>(erosion.removed()), right, 5.0 * std::sqrt(right) + 1e-3 * right)
                 << exposure;
         }
@@ -150,7 +150,7 @@ TEST(Erosion, no_mass_is_lost) {
     };
     for (int i = 0; i < 20; ++i) cut({Vec3(70.0, 70.0, 140.0 - i), Vec3(70.3, 70.0, 139.0 - i), 12.5, 0.05});
     EXPECT_EQ(unlisted, 0U);
-    cut({Vec3::Constant(-5.0), Vec3::Constant(150.0), 90.0, 0.4});  // more bricks than the list has room for
+    cut({Vec3::Constant(-5.0), Vec3::Constant(150.0), 90.0, 0.4});  // more bricks than the list can hold
     EXPECT_GT(unlisted, 0U);
     cut({Vec3(-60.0, 1000.0, 3.0), Vec3(-50.0, 2000.0, 3.0), 30.0, 1.0});  // beside the volume
     EXPECT_EQ(erosion.pass().removed, 0U);
@@ -168,7 +168,7 @@ TEST(Erosion, no_mass_is_lost) {
     }
 }
 
-// Bone below z = 0 of the world, the tool's shaft upward.
+// Bone fills z < 0 of the world; the tool's shaft points up.
 struct Bench {
     BoneBlock bone;
     SceneMeta meta{};
@@ -229,7 +229,7 @@ TEST(DrillModel, a_scripted_stroke_repeats_bit_by_bit) {
     EXPECT_NE(left, left_other);
 }
 
-TEST(DrillModel, the_force_is_continuous_while_bone_vanishes) {
+TEST(DrillModel, the_force_is_continuous_while_bone_is_removed) {
     for (const auto shape : {BurrShape::sphere, BurrShape::cylinder}) {
         DrillSettings s = burr();
         s.tool.shape = shape;
@@ -244,18 +244,18 @@ TEST(DrillModel, the_force_is_continuous_while_bone_vanishes) {
         double turning_n = 0.0;
         for (int i = 0; i < 1500; ++i) {
             const StepResult now = b.step(Bench::at(0.0, 0.0, z_m));
-            // The first turning step adds friction, which lies across.
+            // The first step with the burr on adds friction, which acts sideways.
             if (i == 0) turning_n = now.wrench_world.force_n.z();
             EXPECT_NEAR(now.wrench_world.force_n.z(), i == 0 ? turning_n : before.wrench_world.force_n.z(),
                         0.03 * pressed_n)
                 << i;
             before = now;
         }
-        EXPECT_LT(before.wrench_world.force_n.z(), 0.5 * pressed_n);  // eq. 12 takes little at the rim
+        EXPECT_LT(before.wrench_world.force_n.z(), 0.5 * pressed_n);  // eq. 12 erodes slowly at the rim
     }
 }
 
-TEST(DrillModel, steps_that_were_late_are_made_up_for) {
+TEST(DrillModel, late_steps_are_cut_later) {
     const auto removed = [](int late_every, double radius_m) {
         Bench b(burr(radius_m));
         const double z_m = radius_m - 8e-4;
@@ -277,14 +277,14 @@ TEST(DrillModel, steps_that_were_late_are_made_up_for) {
         }
         return static_cast<double>(b.model->removed_levels());
     };
-    for (const double radius_m : {2e-3, 5e-3}) {  // in one turn, in two
+    for (const double radius_m : {2e-3, 5e-3}) {  // one and two groups of bricks
         const double on_time = removed(0, radius_m);
         EXPECT_GT(on_time, 255.0 * 20.0);
         EXPECT_NEAR(removed(4, radius_m), on_time, 0.03 * on_time);
     }
 }
 
-TEST(DrillModel, only_a_turning_head_cuts_and_not_while_the_clutch_is_held) {
+TEST(DrillModel, only_a_rotating_head_cuts_and_not_while_the_clutch_is_held) {
     Bench b(burr());
     const ToolState in = Bench::at(0.0, 0.0, 1.2e-3);
     const std::uint64_t mass = mass_of(b.bone);
@@ -303,7 +303,7 @@ TEST(DrillModel, only_a_turning_head_cuts_and_not_while_the_clutch_is_held) {
     held.buttons = 1;
     for (int i = 0; i < 300; ++i) (void)b.step(held);
     EXPECT_EQ(mass_of(b.bone), mass);
-    // Upside down the shaft is in the bone, and the head outside.
+    // Upside down, the shaft is in the bone and the head is outside.
     ToolState turned = Bench::at(0.0, 0.0, 2.6e-3);
     turned.T_world_tool.q = Quat(0.0, 1.0, 0.0, 0.0);
     b.model->reset(turned);
@@ -317,7 +317,7 @@ TEST(DrillModel, only_a_turning_head_cuts_and_not_while_the_clutch_is_held) {
     EXPECT_EQ(mass - mass_of(b.bone), b.model->removed_levels());
 }
 
-TEST(DrillModel, a_jump_cuts_nothing_on_its_way) {
+TEST(DrillModel, a_jump_cuts_nothing_on_its_path) {
     Bench b(burr());
     b.model->turn_burr({kFullRadS, 1e-3});
     b.model->reset(Bench::at(-20e-3, 0.0, 0.0));
@@ -327,7 +327,7 @@ TEST(DrillModel, a_jump_cuts_nothing_on_its_way) {
     EXPECT_EQ(b.model->removed_levels(), 0U);
 }
 
-TEST(DrillModel, a_running_burr_rattles_within_its_share_and_around_the_same_force) {
+TEST(DrillModel, vibration_stays_within_its_fraction_of_the_force_and_keeps_the_mean) {
     DrillSettings s = burr();
     s.rate_per_s = 0.0;
     s.law.friction_n_s_m3 = 0.0;
@@ -345,7 +345,8 @@ TEST(DrillModel, a_running_burr_rattles_within_its_share_and_around_the_same_for
     for (int i = 0; i < 1000; ++i) {
         const Vec3 now = shaken.step(in).wrench_world.force_n;
         EXPECT_LT((now - calm).norm(), 0.21 * calm.norm());
-        EXPECT_LT((now - before).norm(), 0.2 * 0.66 * calm.norm());  // a tenth of a turn a step, at most
+        EXPECT_LT((now - before).norm(),
+                  0.2 * 0.66 * calm.norm());  // at most a tenth of a revolution per step
         sum += now;
         before = now;
     }
@@ -353,7 +354,7 @@ TEST(DrillModel, a_running_burr_rattles_within_its_share_and_around_the_same_for
     EXPECT_GT(calm.norm(), 0.1);
 }
 
-TEST(DrillModel, refuses_what_it_cannot_render) {
+TEST(DrillModel, refuses_settings_that_it_cannot_render) {
     const auto refused = [](const auto& spoil) {
         DrillSettings s = burr();
         spoil(s);
@@ -370,7 +371,7 @@ TEST(DrillModel, refuses_what_it_cannot_render) {
     EXPECT_THROW(Erosion(b.shared->octree, b.bone.density, few, 1), StartupError);
 }
 
-// The model of the contract's suite owns its bone.
+// A model that owns its bone, for the suite of the model contract.
 class OwnBone final : public ForceModel {
 public:
     explicit OwnBone(const DrillSettings& s) : bench_(s) {}
@@ -378,6 +379,7 @@ public:
     std::uint32_t items(float f) const noexcept override { return bench_.model->items(f); }
     PathLoad predict(float f) const noexcept override { return bench_.model->predict(f); }
     void reset(const ToolState& t) noexcept override { bench_.model->reset(t); }
+    void drive(const ToolDrive& d) noexcept override { bench_.model->drive(d); }
     StepResult step(const ToolState& t, const Budget& b) noexcept override {
         return bench_.model->step(t, b);
     }

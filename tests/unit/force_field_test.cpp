@@ -1,4 +1,4 @@
-// The field's force: against the analytic field of two charges, in double precision; energy along closed paths; the contract.
+// The field's force against the analytic field of two charges (double precision); energy on closed paths; the contract.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -44,14 +44,15 @@ Budget budget_of(float fidelity) {
     return b;
 }
 
-// Settled at one place.
+// Settled force at one position.
 Vec3 force_at(FieldModel& model, const Vec3& world_m, float fidelity = 1.0F) {
     StepResult r;
-    for (int i = 0; i <= ForceFade::kRampSteps; ++i) r = model.step(tool_at(world_m), budget_of(fidelity));
+    for (int i = 0; i <= ForceFade::ramp_steps(1e-3); ++i)
+        r = model.step(tool_at(world_m), budget_of(fidelity));
     return r.wrench_world.force_n;
 }
 
-// Minus the gradient of the analytic potential at the gain of the scene, by central differences.
+// Minus the gradient of the analytic potential times the scene's gain, by central differences.
 Vec3 analytic_n(const Scene& scene, const Vec3& at_m) {
     constexpr double kStep = 1e-5;
     Vec3 gradient;
@@ -62,7 +63,7 @@ Vec3 analytic_n(const Scene& scene, const Vec3& at_m) {
     return -scene.field.force_n_m_per_unit * gradient;
 }
 
-TEST(FieldModel, a_point_feels_the_analytic_field_of_two_charges) {
+TEST(FieldModel, force_on_a_point_is_the_analytic_field_of_two_charges) {
     const Scene scene = scene_of(0.0);
     FieldModel model(scene.meta, scene.field, scene.grid);
     SeededRandom random(7);
@@ -76,7 +77,7 @@ TEST(FieldModel, a_point_feels_the_analytic_field_of_two_charges) {
     }
 }
 
-TEST(FieldModel, a_ball_feels_the_mean_of_the_analytic_field_over_its_volume) {
+TEST(FieldModel, force_on_a_ball_is_the_mean_analytic_field_over_its_volume) {
     const Scene scene = scene_of(0.012);
     FieldModel model(scene.meta, scene.field, scene.grid);
     const double radius_m = scene.field.probe_radius_m;
@@ -101,7 +102,7 @@ TEST(FieldModel, a_ball_feels_the_mean_of_the_analytic_field_over_its_volume) {
     }
 }
 
-TEST(FieldModel, the_stated_error_holds_at_places_that_it_was_not_measured_at) {
+TEST(FieldModel, the_reported_error_holds_at_new_positions) {
     const Scene scene = scene_of(0.012);
     FieldModel model(scene.meta, scene.field, scene.grid), finest(scene.meta, scene.field, scene.grid);
     SeededRandom random(23);
@@ -151,7 +152,7 @@ TEST(FieldModel, no_closed_path_inside_the_box_gains_energy) {
     EXPECT_LT(std::abs(work_j), 1e-6);
 }
 
-TEST(FieldModel, the_stated_stiffness_bounds_the_derivative_of_the_force) {
+TEST(FieldModel, the_reported_stiffness_bounds_the_derivative_of_the_force) {
     const Scene scene = scene_of(0.0);
     FieldModel model(scene.meta, scene.field, scene.grid);
     EXPECT_EQ(model.stiffness_n_m(), scene.field.stiffness_n_m);
@@ -165,7 +166,7 @@ TEST(FieldModel, the_stated_stiffness_bounds_the_derivative_of_the_force) {
     }
 }
 
-TEST(FieldModel, outside_of_the_box_the_force_fades_to_zero) {
+TEST(FieldModel, outside_the_box_the_force_fades_to_zero) {
     const Scene scene = scene_of(0.002);
     FieldModel model(scene.meta, scene.field, scene.grid);
     const Vec3 step_m(scene.grid.spacing_m.x(), 0.0, 0.0), face_m(-0.5, 0.1, 0.0);

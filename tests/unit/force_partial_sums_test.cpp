@@ -1,4 +1,4 @@
-// Sums in slices against the sum over all points.
+// Partial sums over slices against the sum over all points.
 #include <gtest/gtest.h>
 #include <rapidcheck.h>
 #include <rapidcheck/gtest.h>
@@ -13,7 +13,7 @@ namespace tact {
 namespace {
 
 constexpr double kA = 1e-10;
-constexpr std::size_t kPoints = 2403;  // in slices that are not of one size
+constexpr std::size_t kPoints = 2403;  // not a multiple of the slice count: slices differ in size
 
 DensityMap make_map() {
     DensityGrid grid;
@@ -54,7 +54,7 @@ const PointSet& points() {
     return made;
 }
 
-// A hand on its way: at step i, moving smoothly by up to 0.05 A and 2 mrad a step.
+// Pose of a smoothly moving body at step i: up to 0.05 A and 2 mrad per step.
 Pose on_the_way(int i) {
     const double t = 0.01 * i;
     return {Vec3(23 + 4 * std::sin(t), 22 + 5 * std::sin(0.7 * t + 1), 24 + 3 * std::cos(1.3 * t)) * kA,
@@ -67,7 +67,7 @@ PartialSums::Result step(PartialSums& partial, const Pose& pose, double share) {
 
 DensitySums whole(const Pose& pose) { return map().sum(points().view(), pose); }
 
-// Rounding: the weights sum to one, so each sum is known to some 1e-6 of what one point can give.
+// Rounding: the weights sum to one, so each sum is accurate to about 1e-6 of one point's largest contribution.
 constexpr double kRounding = 3e-6;
 void expect_equal(const DensitySums& a, const DensitySums& b) {
     EXPECT_NEAR(a.density_sigma, b.density_sigma, kRounding);
@@ -75,7 +75,7 @@ void expect_equal(const DensitySums& a, const DensitySums& b) {
     EXPECT_LT((a.moment - b.moment).norm(), 20.0 * kRounding);
 }
 
-TEST(PartialSums, share_one_is_the_sum_over_all_points) {
+TEST(PartialSums, work_fraction_one_sums_all_points) {
     PartialSums partial;
     for (int i = 0; i < 50; ++i) {
         const PartialSums::Result r = step(partial, on_the_way(3 * i), 1.0);
@@ -86,7 +86,7 @@ TEST(PartialSums, share_one_is_the_sum_over_all_points) {
     }
 }
 
-TEST(PartialSums, what_is_no_share_is_a_whole_step) {
+TEST(PartialSums, an_invalid_work_fraction_makes_a_full_step) {
     for (const double share : {0.0, -1.0, 1.5, std::nan(""), HUGE_VAL}) {
         PartialSums partial;
         (void)step(partial, on_the_way(0), 1.0);
@@ -94,7 +94,7 @@ TEST(PartialSums, what_is_no_share_is_a_whole_step) {
     }
 }
 
-TEST(PartialSums, the_work_is_in_proportion_to_the_share) {
+TEST(PartialSums, work_is_proportional_to_the_work_fraction) {
     PartialSums partial;
     for (int i = 0; i < 3; ++i) (void)step(partial, on_the_way(i), 1.0);
     for (int eighths = 1; eighths < 8; ++eighths) {
@@ -106,7 +106,7 @@ TEST(PartialSums, the_work_is_in_proportion_to_the_share) {
     }
 }
 
-TEST(PartialSums, a_body_that_rests_is_summed_wholly_within_as_many_steps_as_there_are_slices) {
+TEST(PartialSums, a_resting_body_is_summed_completely_within_one_round_of_slices) {
     for (const double share : {0.01, 0.125, 0.3, 0.6, 0.99}) {
         PartialSums partial;
         for (int i = 0; i < 20; ++i) (void)step(partial, on_the_way(i), share);
@@ -117,7 +117,7 @@ TEST(PartialSums, a_body_that_rests_is_summed_wholly_within_as_many_steps_as_the
     }
 }
 
-// The estimate is held where it is made for: on a smooth way, whatever the shares.
+// The error bound holds for smooth motion and any work fractions.
 RC_GTEST_PROP(PartialSums, the_error_of_a_moving_body_is_below_its_bound, ()) {
     PartialSums partial;
     const int from = *rc::gen::inRange(0, 2000);
@@ -129,12 +129,12 @@ RC_GTEST_PROP(PartialSums, the_error_of_a_moving_body_is_below_its_bound, ()) {
         RC_ASSERT((r.sums.gradient - whole(pose).gradient).norm() <= r.stale + kRounding / kA);
         stale_most = std::max(stale_most, r.stale);
     }
-    // It says something: less than a tenth of what one point can feel here.
+    // The bound is useful: below a tenth of the largest force on one point here.
     RC_ASSERT(stale_most * kA < 0.1);
 }
 
-// Whatever the shares do, a step is no bigger than what all slices together change in kSlices steps.
-TEST(PartialSums, shares_that_change_every_step_move_the_sum_no_further_than_the_body_did) {
+// For any work fractions, a step changes the sum by no more than all slices change together in kSlices steps.
+TEST(PartialSums, varying_work_fractions_change_the_sum_no_more_than_the_body_motion) {
     constexpr int kSteps = 600;
     const std::size_t slices = PartialSums::kSlices;
     std::vector<std::array<Vec3, PartialSums::kSlices>> part(kSteps);
@@ -169,7 +169,7 @@ TEST(PartialSums, shares_that_change_every_step_move_the_sum_no_further_than_the
     EXPECT_LE(biggest, most + kRounding / kA);
 }
 
-TEST(PartialSums, a_leap_of_the_body_is_summed_wholly) {
+TEST(PartialSums, a_jump_of_the_body_is_summed_completely) {
     PartialSums partial;
     for (int i = 0; i < 5; ++i) (void)step(partial, on_the_way(i), 0.25);
     Pose far = on_the_way(5);
@@ -184,7 +184,7 @@ TEST(PartialSums, a_leap_of_the_body_is_summed_wholly) {
     EXPECT_NEAR(static_cast<double>(step(partial, turned, 0.125).recomputed_fraction), 0.125, 8.0 / kPoints);
 }
 
-TEST(PartialSums, another_density_and_other_points_are_summed_wholly) {
+TEST(PartialSums, another_density_and_other_points_are_summed_completely) {
     const DensityMap other = make_map();
     const PointSet fewer = make_point_set(points().view(), "again");
     PartialSums partial;
@@ -198,14 +198,28 @@ TEST(PartialSums, another_density_and_other_points_are_summed_wholly) {
     EXPECT_EQ(partial.step(map(), fewer, on_the_way(3), 0.125, Instant::max()).recomputed_fraction, 1.0F);
 }
 
-TEST(PartialSums, a_deadline_that_has_passed_leaves_the_old_sums_as_they_were) {
+TEST(PartialSums, after_the_deadline_older_sums_are_used_and_their_staleness_is_reported) {
     PartialSums partial;
     for (int i = 0; i < 3; ++i) (void)step(partial, on_the_way(i), 1.0);
     const PartialSums::Result late = partial.step(map(), points(), on_the_way(3), 0.5, Monotonic::now());
-    EXPECT_FALSE(late.complete);
+    EXPECT_TRUE(late.late);
+    EXPECT_TRUE(late.complete);
     EXPECT_EQ(late.recomputed_fraction, 0.0F);
+    EXPECT_GE(late.stale, (whole(on_the_way(3)).gradient - late.sums.gradient).norm());
+    EXPECT_GT(late.stale, 0.0);
     expect_equal(late.sums, whole(on_the_way(2)));
     expect_equal(step(partial, on_the_way(3), 1.0).sums, whole(on_the_way(3)));
+}
+
+TEST(PartialSums, without_older_sums_nearby_a_passed_deadline_leaves_the_step_incomplete) {
+    PartialSums partial;
+    EXPECT_FALSE(partial.step(map(), points(), on_the_way(0), 1.0, Monotonic::now()).complete);
+    (void)step(partial, on_the_way(0), 1.0);
+    Pose far = on_the_way(0);
+    far.p_m += Vec3::Constant(2.0 * map().spacing_m().minCoeff());
+    const PartialSums::Result late = partial.step(map(), points(), far, 1.0, Monotonic::now());
+    EXPECT_TRUE(late.late);
+    EXPECT_FALSE(late.complete);
 }
 
 }  // namespace

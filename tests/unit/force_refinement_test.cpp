@@ -1,5 +1,5 @@
-// Refinement: every cut is the whole surface, as fine as asked around the probe, and the same wherever the probe
-// came from.
+// Refinement: each cut is the whole surface, as fine as requested around the probe, and independent of the path
+// on which the probe came.
 #include <gtest/gtest.h>
 
 #include <set>
@@ -54,8 +54,8 @@ TriangleMesh active_mesh(const Refinement& r) {
     return mesh;
 }
 
-// By the definition: a triangle of the full mesh is there just where its corners have three holders, with
-// these as corners.
+// By definition a triangle of the full mesh is active exactly if three different places hold its corners, and
+// those places are its active corners.
 void expect_whole(const Refinement& r, const Surface& s) {
     std::map<std::uint32_t, std::array<std::uint32_t, 3>> there;
     r.each_triangle([&](std::uint32_t t, const std::array<std::uint32_t, 3>& at) {
@@ -75,8 +75,8 @@ void expect_whole(const Refinement& r, const Surface& s) {
 
 void expect_full_detail(const Refinement& r, const Surface& s, const Vec3& probe_m, double radius_m) {
     for (std::uint32_t t = 0; t < s.forest.triangles(); ++t) {
-        // The box of a triangle stands for it; a little more is asked for than was promised, so only corners
-        // and the middle count.
+        // The request uses the triangle's box, a little larger than the guarantee, so this test checks only corners
+        // and centre.
         std::array<Vec3, 4> point;
         point[3].setZero();
         const auto corner = s.corners(t);
@@ -107,7 +107,7 @@ void settle(Refinement& r, const Vec3& probe_m) {
     FAIL() << "still changing after 1000 steps";
 }
 
-TEST(RefineFilter, distance_is_where_the_error_becomes_allowed) {
+TEST(RefineFilter, distance_is_the_inverse_of_the_allowed_error) {
     const RefineFilter bell = RefineFilter::bell(0.1F, 0.2F, 0.01F);
     const RefineFilter::Point points[] = {
         {0.3F, 0.02F}, {0.2F, 0.01F}, {0.4F, 0.015F}, {NAN, 1.0F}, {0.5F, -1.0F}};
@@ -126,12 +126,12 @@ TEST(RefineFilter, distance_is_where_the_error_becomes_allowed) {
         EXPECT_GE(f.distance_m(1e-9F), 0.1F);
     }
     EXPECT_NEAR(steps.allowed_m(0.25F), 0.015F, 1e-6F);
-    EXPECT_EQ(steps.allowed_m(0.4F), 0.02F);  // raised
+    EXPECT_EQ(steps.allowed_m(0.4F), 0.02F);  // raised: allowed errors never decrease with distance
     EXPECT_NEAR(bell.allowed_m(0.3F), 0.01F * (1.0F - std::exp(-1.0F)), 3e-4F);
     EXPECT_GT(RefineFilter().distance_m(1e-9F), 1e30F);
 }
 
-TEST(Refinement, every_cut_on_a_path_is_the_whole_closed_surface_without_folds) {
+TEST(Refinement, each_cut_on_a_path_is_the_whole_closed_surface_without_folds) {
     Refinement r(torus().forest, some_settings(0.12F));
     expect_whole(r, torus());
     const std::size_t folds = count_folds(torus().mesh);
@@ -157,10 +157,10 @@ TEST(Refinement, every_cut_on_a_path_is_the_whole_closed_surface_without_folds) 
     }
 }
 
-TEST(Refinement, no_triangle_turns_against_the_smooth_surface_that_it_stands_for) {
+TEST(Refinement, no_triangle_flips_against_the_smooth_surface) {
     const Surface ball([] {
         TriangleMesh mesh = test::sheet(70, [](float, float) { return 0.0F; });
-        for (std::size_t v = 0; v < mesh.vertices(); ++v) {  // a cap of a sphere, nearly a half
+        for (std::size_t v = 0; v < mesh.vertices(); ++v) {  // a cap of a sphere, almost a hemisphere
             const float x = 2.0F * mesh.position_m[3 * v] - 1.0F,
                         y = 2.0F * mesh.position_m[3 * v + 1] - 1.0F;
             const Eigen::Vector3f p = Eigen::Vector3f(x, y, 0.8F).normalized();
@@ -182,24 +182,24 @@ TEST(Refinement, no_triangle_turns_against_the_smooth_surface_that_it_stands_for
             worst = std::min(worst, now.dot(full) / (now.norm() * full.norm()));
         });
     }
-    EXPECT_GT(worst, 0.5);  // 60 degrees, where triangles at the border of the cap are as large as it
+    EXPECT_GT(worst, 0.5);  // 60 degrees: triangles at the border are as large as the cap
 }
 
-TEST(Refinement, all_within_the_radius_is_as_in_the_full_mesh) {
+TEST(Refinement, inside_the_radius_the_cut_equals_the_full_mesh) {
     Refinement r(torus().forest, some_settings(0.15F));
     for (const Vec3& probe : {Vec3(1.3, 0.0, 0.0), Vec3(0.0, -1.0, 0.3), Vec3(-0.7, 0.1, 0.0)}) {
         EXPECT_TRUE(r.step(probe, Vec3::Zero()).full_detail);
         expect_full_detail(r, torus(), probe, 0.15);
         EXPECT_LT(r.step(probe, Vec3::Zero()).vertices, torus().forest.leaves() * 2 / 3);
     }
-    // Along the path ahead too.
+    // The same holds along the predicted path.
     const Vec3 from(0.0, 1.2, 0.1), velocity(30.0, -10.0, 0.0);
     EXPECT_TRUE(r.step(from, velocity).full_detail);
     for (const double part : {0.0, 0.4, 1.0})
         expect_full_detail(r, torus(), from + 0.01 * part * velocity, 0.15);
 }
 
-TEST(Refinement, the_cut_does_not_depend_on_where_the_probe_came_from) {
+TEST(Refinement, the_cut_does_not_depend_on_the_path_of_the_probe) {
     Refinement r(torus().forest, some_settings(0.2F));
     const Vec3 here(1.1, 0.3, 0.2);
     settle(r, here);
@@ -218,7 +218,7 @@ TEST(Refinement, the_cut_does_not_depend_on_where_the_probe_came_from) {
     EXPECT_EQ(r.memory_bytes(), bytes);
 }
 
-// By brute force, from points of each surface to all triangles of the other.
+// Brute force: from points of one surface to all triangles of the other.
 double farthest_from(const TriangleMesh& from, const TriangleMesh& to) {
     const auto at = [](const TriangleMesh& m, std::size_t corner) {
         const float* const p = &m.position_m[3 * std::size_t{m.triangle[corner]}];
@@ -239,7 +239,7 @@ double farthest_from(const TriangleMesh& from, const TriangleMesh& to) {
     return farthest;
 }
 
-TEST(Refinement, the_deviation_of_the_active_surface_is_within_what_is_said) {
+TEST(Refinement, the_active_surface_stays_within_its_reported_deviation) {
     static const Surface small(rough_torus(24, 12));
     Refinement r(small.forest, some_settings(0.15F));
     for (const Vec3& probe : {Vec3(1.3, 0.0, 0.0), Vec3(-0.9, 0.4, 0.2), Vec3(40.0, 0.0, 0.0)}) {
@@ -255,7 +255,7 @@ TEST(Refinement, the_deviation_of_the_active_surface_is_within_what_is_said) {
     EXPECT_EQ(r.deviation_m(), 0.0F);
 }
 
-TEST(Refinement, budgets_hold_and_what_is_left_follows) {
+TEST(Refinement, budgets_hold_and_later_steps_finish_the_work) {
     RefinementSettings settings = some_settings(0.25F);
     settings.splits_max = 37;
     settings.merges_max = 23;
@@ -281,7 +281,7 @@ TEST(Refinement, budgets_hold_and_what_is_left_follows) {
     EXPECT_EQ(vertices_of(r), vertices_of(at_once));
 }
 
-TEST(Refinement, full_pools_are_said_and_the_surface_stays_whole) {
+TEST(Refinement, full_pools_are_reported_and_the_surface_stays_whole) {
     RefinementSettings settings = some_settings(0.5F);
     settings.nodes_max = torus().forest.roots() + 200;
     Refinement r(torus().forest, settings);
@@ -308,7 +308,7 @@ TEST(Refinement, a_probe_that_is_not_finite_changes_nothing) {
     expect_whole(r, torus());
 }
 
-TEST(Refinement, another_filter_is_followed_by_the_next_step) {
+TEST(Refinement, the_next_step_applies_another_filter) {
     Refinement r(torus().forest, some_settings(0.1F));
     const Vec3 here(1.0, 0.0, 0.3);
     settle(r, here);

@@ -16,7 +16,7 @@ namespace tact::rod {
 inline constexpr double kA = 1e-10;
 inline constexpr double kCentre = 30.0 * kA;
 
-// A bent rod of atoms in a map of Gaussians around the place where it belongs.
+// A bent rod of atoms in a map of Gaussians around its home.
 struct Scene {
     SceneMeta meta{};
     DensityGrid grid;

@@ -1,4 +1,4 @@
-// Three ways to look a surface up: the same force, and the adaptive one is there where the tool is.
+// Three modes of surface query give the same force, and the adaptive surface covers the tool's surroundings.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -40,10 +40,10 @@ const Baked& sphere() {
 
 struct Felt {
     std::vector<Vec3> force_n;
-    double adaptive = 0.0;  // share of the cycles
+    double adaptive = 0.0;  // fraction of the cycles
 };
 
-// Once around the sphere, and up and down, at a speed in the hand's world.
+// One round around the sphere with an up-and-down motion; the speed is in the world frame.
 Felt feel(SurfaceMode mode, double radius_m, double speed_m_s, bool has_slow_update = true) {
     const auto model = load_surface_model(
         *sphere().file, {.radius_m = radius_m, .damping_n_s_m = 0.0, .friction = 0.1, .mode = mode});
@@ -71,7 +71,7 @@ Felt feel(SurfaceMode mode, double radius_m, double speed_m_s, bool has_slow_upd
     return felt;
 }
 
-// To the bit: the same triangles are looked at in the same order, however they were found.
+// Bit by bit: each mode tests the same triangles in the same order.
 void expect_same_force(const Felt& a, const Felt& b) {
     double force_sum_n = 0.0;
     std::size_t different = 0;
@@ -97,19 +97,19 @@ TEST(SurfaceModes, the_adaptive_surface_gives_the_force_of_the_full_mesh) {
     }
 }
 
-TEST(SurfaceModes, it_keeps_up_with_a_fast_hand) {
+TEST(SurfaceModes, the_adaptive_surface_keeps_up_with_a_fast_hand) {
     const Felt chr = feel(SurfaceMode::chr, 1e-3, 0.5);
     expect_same_force(chr, feel(SurfaceMode::off_tree, 1e-3, 0.5));
     EXPECT_GT(chr.adaptive, 0.99);
 }
 
-TEST(SurfaceModes, without_tending_the_tree_answers_and_says_so) {
+TEST(SurfaceModes, without_slow_updates_the_tree_is_used_and_reported) {
     const Felt chr = feel(SurfaceMode::chr, 1e-3, 0.05, false);
     EXPECT_EQ(chr.adaptive, 0.0);
     expect_same_force(chr, feel(SurfaceMode::off_tree, 1e-3, 0.05));
 }
 
-TEST(SurfaceModes, adaptive_without_a_forest_is_refused_and_the_others_are_not) {
+TEST(SurfaceModes, adaptive_mode_without_a_forest_is_refused_and_brute_force_is_not) {
     const Baked plain(false);
     EXPECT_THROW((void)load_surface_model(*plain.file, {.mode = SurfaceMode::chr}), StartupError);
     EXPECT_NE(load_surface_model(*plain.file, {.mode = SurfaceMode::off_brute}), nullptr);
@@ -124,7 +124,7 @@ std::vector<std::uint32_t> leaves_in(const SurfaceMesh& mesh, const Vec3& centre
     return leaf;
 }
 
-TEST(NearSurface, finds_what_the_whole_tree_finds_in_its_box) {
+TEST(NearSurface, finds_the_same_leaves_as_the_whole_tree_in_its_box) {
     const SurfaceMesh full = read_surface(*sphere().file);
     NearSurface near(4096);
     SeededRandom random(5);
@@ -163,7 +163,7 @@ TEST(NearSurface, finds_what_the_whole_tree_finds_in_its_box) {
     EXPECT_GT(nothing, 100U);
 }
 
-TEST(NearSurface, what_does_not_fit_is_not_held) {
+TEST(NearSurface, a_box_that_does_not_fit_is_not_held) {
     const SurfaceMesh full = read_surface(*sphere().file);
     NearSurface near(16);
     std::array<float, 3> low_m{}, high_m{};
@@ -178,7 +178,7 @@ TEST(NearSurface, what_does_not_fit_is_not_held) {
     EXPECT_TRUE(near.holds(full.low_m().cast<float>().cast<double>(), 0.0));
 }
 
-TEST(SurfaceModes, more_fidelity_is_a_wider_radius_of_more_triangles) {
+TEST(SurfaceModes, more_fidelity_gives_a_wider_radius_and_more_triangles) {
     const auto model = load_surface_model(*sphere().file, {.radius_m = 1e-3, .mode = SurfaceMode::chr});
     double radius = 0.0, triangles = 0.0;
     for (const float fidelity : {0.0F, 0.3F, 1.0F}) {
@@ -189,7 +189,7 @@ TEST(SurfaceModes, more_fidelity_is_a_wider_radius_of_more_triangles) {
     }
 }
 
-// A hand at rest over the sphere after `turns` slow updates.
+// A model with the hand over the sphere after `turns` slow updates.
 std::unique_ptr<SurfaceModel> rested(float fidelity, int turns, const ModelOrder& order = {}) {
     auto model = load_surface_model(*sphere().file, {.radius_m = 1e-3, .mode = SurfaceMode::chr});
     static_cast<void>(model->order(order));
@@ -198,7 +198,7 @@ std::unique_ptr<SurfaceModel> rested(float fidelity, int turns, const ModelOrder
     tool.T_world_tool.p_m = model->meta().to_world(Vec3::Zero()) + Vec3(0.0, 0.0, 1.2 * ball_m);
     model->reset(tool);
     for (int i = 0; i < turns; ++i) {
-        tool.T_world_tool.p_m.x() += 1e-3;  // so that each turn has something to build
+        tool.T_world_tool.p_m.x() += 1e-3;  // each slow update gets something to build
         static_cast<void>(model->step(tool, {.fidelity = fidelity}));
         model->slow_update(tool, {});
     }
@@ -206,7 +206,7 @@ std::unique_ptr<SurfaceModel> rested(float fidelity, int turns, const ModelOrder
     return model;
 }
 
-TEST(SurfaceModes, what_is_kept_fine_is_shown_with_its_bound_and_cost) {
+TEST(SurfaceModes, the_detail_report_gives_radius_bound_and_cost) {
     const SurfaceDetail d = rested(1.0F, 40)->touch().detail;
     ASSERT_TRUE(d.valid);
     EXPECT_TRUE(d.full);
@@ -214,16 +214,16 @@ TEST(SurfaceModes, what_is_kept_fine_is_shown_with_its_bound_and_cost) {
     EXPECT_GT(d.triangles, 0U);
     EXPECT_GT(d.turn_s, 0.0);
     EXPECT_GT(d.turn_predicted_s, 0.0);
-    // Far away the filter allows half of the radius, and the bound counts ways along the surface too.
+    // Far away the filter allows half of the radius, and the bound includes distances along the surface.
     EXPECT_GT(d.deviation_m, 0.0);
     EXPECT_FALSE(load_surface_model(*sphere().file, {})->touch().detail.valid);
 }
 
-TEST(SurfaceModes, the_knobs_cost_is_that_of_the_surface_around_the_tool) {
+TEST(SurfaceModes, the_cost_of_the_knob_is_that_of_the_surface_around_the_tool) {
     const auto model = rested(0.5F, 10);
     EXPECT_EQ(model->items(0.5F), model->touch().detail.near_triangles);
     EXPECT_GT(model->items(1.0F), model->items(0.2F));
-    // One rate for all levels: a wider radius is dearer by its triangles.
+    // One rate for all levels: cost grows with the number of triangles.
     const AdaptiveSurface& surface = *model->adaptive();
     EXPECT_NEAR(surface.predicted_s(1.0F) / surface.predicted_s(0.2F),
                 surface.predicted_triangles(1.0F) / surface.predicted_triangles(0.2F), 1e-6);
@@ -231,7 +231,7 @@ TEST(SurfaceModes, the_knobs_cost_is_that_of_the_surface_around_the_tool) {
     EXPECT_EQ(load_surface_model(*sphere().file, {})->slow_update_s(), 0.0);
 }
 
-TEST(SurfaceModes, a_person_forms_the_filter_and_the_cut_follows) {
+TEST(SurfaceModes, a_new_filter_shape_changes_the_cut) {
     ModelOrder order;
     order.kind = ModelOrder::Kind::setting;
     order.command = static_cast<std::uint8_t>(CommandKind::set_detail_filter);
@@ -253,7 +253,7 @@ TEST(SurfaceModes, a_person_forms_the_filter_and_the_cut_follows) {
     order.body = 9;
     EXPECT_FALSE(model->order(order));
     order.body = 0;
-    order.command = static_cast<std::uint8_t>(CommandKind::set_clash);  // of another system
+    order.command = static_cast<std::uint8_t>(CommandKind::set_clash);  // belongs to another system
     EXPECT_FALSE(model->order(order));
     EXPECT_FALSE(load_surface_model(*sphere().file, {})->order(order));
 }

@@ -1,4 +1,4 @@
-// A tool over triangles that are small against a step: there is no room for the guards of a whole step's way.
+// A tool over triangles much smaller than a step: the half-spaces of a full step's path do not fit.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -13,7 +13,7 @@
 namespace tact {
 namespace {
 
-// Of 0.025 mm, bumpy, y up, 10 by 6 mm.
+// A bumpy patch of 10 x 6 mm, y up, with edges of 0.025 mm.
 TriangleMesh dense_patch() {
     constexpr std::uint32_t kX = 400, kZ = 240;
     constexpr double kEdgeM = 2.5e-5;
@@ -32,8 +32,8 @@ TriangleMesh dense_patch() {
     return mesh;
 }
 
-TEST(DenseSurface, does_not_hold_a_tool_fast) {
-    TriangleMesh block = made_tool("block");  // 16 mm
+TEST(DenseSurface, does_not_hold_the_tool_back) {
+    TriangleMesh block = made_tool("block");  // 16 mm wide
     for (float& x : block.position_m) x *= 0.2F;
     SceneWriter out;
     write_surface(out, build_surface(dense_patch()));
@@ -62,7 +62,7 @@ TEST(DenseSurface, does_not_hold_a_tool_fast) {
         (void)model.step(hand, {});
         farthest_m = std::max(farthest_m, behind_m());
     }
-    // One that stands still is 5 mm behind.
+    // A stuck proxy would be 5 mm behind.
     EXPECT_LT(farthest_m, deep_m + 1e-3);
 }
 

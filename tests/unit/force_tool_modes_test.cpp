@@ -1,5 +1,5 @@
-// Three ways to look a surface up for a tool that is a mesh: the same wrench, and the adaptive one is there where the
-// tool is.
+// Three modes of surface query for a tool mesh give the same wrench, and the adaptive surface covers the tool's
+// surroundings.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -42,10 +42,10 @@ const Scene& scene() {
 
 struct Felt {
     std::vector<Wrench> wrench;
-    double touching = 0.0, adaptive = 0.0;  // shares of the cycles
+    double touching = 0.0, adaptive = 0.0;  // fractions of the cycles
 };
 
-// Around the sphere and up and down, and about its own axis; pressed in after a quarter of a second.
+// A path around the sphere, up and down and about the tool's axis; the tool presses in after 0.25 s.
 Felt feel(SurfaceMode mode, double speed_m_s, bool has_slow_update = true, int steps = kSteps,
           double friction = 0.1) {
     const auto model = load_tool_model(
@@ -92,13 +92,13 @@ TEST(ToolModes, the_adaptive_surface_gives_the_wrench_of_the_full_mesh_to_the_bi
     }
 }
 
-TEST(ToolModes, without_tending_the_tree_answers_and_says_so) {
+TEST(ToolModes, without_slow_updates_the_tree_is_used_and_reported) {
     const Felt chr = feel(SurfaceMode::chr, 0.055, false);
     EXPECT_EQ(chr.adaptive, 0.0);
     EXPECT_EQ(different(chr, feel(SurfaceMode::off_tree, 0.055)), 0U);
 }
 
-// With friction the way of the proxy counts too, and that depends on which guards happen to be known.
+// Without friction: friction also depends on the proxy's path, which depends on the cached half-spaces.
 TEST(ToolModes, all_triangles_give_the_force_of_the_tree) {
     constexpr int kFew = 600;
     const Felt brute = feel(SurfaceMode::off_brute, 0.055, false, kFew, 0.0),
@@ -116,7 +116,7 @@ TEST(ToolModes, chr_without_a_forest_is_refused) {
     EXPECT_THROW((void)load_tool_model(*bare.file, {.mode = SurfaceMode::chr}), StartupError);
 }
 
-TEST(ToolModes, what_is_tended_is_shown) {
+TEST(ToolModes, the_slow_update_is_reported) {
     const auto model = load_tool_model(*scene().file, {.mode = SurfaceMode::chr});
     ToolState tool;
     tool.T_world_tool.p_m = scene().meta.to_world(Vec3(0.0, 0.055, 0.0));
@@ -129,7 +129,7 @@ TEST(ToolModes, what_is_tended_is_shown) {
     EXPECT_TRUE(model->has_slow_update());
     EXPECT_TRUE(detail.valid);
     EXPECT_TRUE(detail.full);
-    // The whole tool lies in it, however it turns.
+    // The refined region contains the whole tool in any orientation.
     EXPECT_GT(detail.radius_m, model->contact().points().reach_m());
     EXPECT_GT(model->slow_update_s(), 0.0);
 }

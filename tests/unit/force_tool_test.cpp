@@ -61,7 +61,7 @@ TriangleMesh scaled(TriangleMesh mesh, double by) {
     return mesh;
 }
 
-// Of size in the hand's world; a scene in memory.
+// A scene in memory; sizes are in world metres.
 struct World {
     std::vector<std::byte> bytes;
     std::unique_ptr<SceneFile> file;
@@ -89,14 +89,14 @@ std::unique_ptr<World> world(const TriangleMesh& surface, const TriangleMesh& to
     return w;
 }
 
-// 0.03 x 0.01 x 0.02 m over a plane; coarse points, as its corners tell.
+// A box of 0.03 x 0.01 x 0.02 m over a plane. Few points are enough, because its corners decide.
 const World& box_on_plane() {
     static const auto made =
         world(plane_mesh(), box_mesh({0.015, 0.005, 0.01}), {.points = 300, .grip_in_middle = true});
     return *made;
 }
 
-// A bar of 0.04 m along x, thin, over two blocks at x = -0.01 and x = 0.015.
+// A thin bar of 0.04 m along x over two blocks at x = -0.01 and x = 0.015.
 const World& bar_on_blocks() {
     static const auto made = [] {
         TriangleMesh blocks;
@@ -129,14 +129,14 @@ struct Hand {
     Hand(const World& w, const SurfaceSettings& settings, const Pose& start)
         : model(w.model(settings)), place(start) {
         model->reset(at(start.p_m, start.q));
-        for (int i = 0; i < ForceFade::kRampSteps + 8; ++i) (void)step(start);
+        for (int i = 0; i < ForceFade::ramp_steps(1e-3) + 8; ++i) (void)step(start);
     }
     const Wrench& step(const Pose& pose) {
         place = pose;
         felt = model->step(at(pose.p_m, pose.q), {}).wrench_world;
         return felt;
     }
-    // By steps of a tenth of a millimetre, or a hundredth of a radian; then at rest.
+    // Moves in steps of 0.1 mm or 0.01 rad, then rests.
     const Wrench& lead(const Pose& to, int rest = 300) {
         const Pose from = place;
         const int steps = 1 + static_cast<int>(std::max((to.p_m - from.p_m).norm() / 1e-4,
@@ -159,7 +159,7 @@ Pose pose(const Vec3& p, const Vec3& turn_rad = Vec3::Zero()) {
     return {p, quat_from_rotation_vector(turn_rad)};
 }
 
-TEST(TouchTool, every_prefix_of_its_points_is_an_even_sampling) {
+TEST(TouchTool, every_prefix_of_the_points_is_an_even_sampling) {
     const TriangleMesh mesh = box_mesh({0.015, 0.005, 0.01});
     const TouchTool tool = sample_tool(mesh, {.points = 600});
     ASSERT_EQ(tool.points(), 600U);
@@ -170,7 +170,7 @@ TEST(TouchTool, every_prefix_of_its_points_is_an_even_sampling) {
         for (std::size_t i = 0; i < n; ++i)
             for (std::size_t k = 0; k < i; ++k)
                 nearest = std::min(nearest, (tool.at_m(i) - tool.at_m(k)).norm());
-        for (int i = 0; i < 2000; ++i) {  // a place of the surface
+        for (int i = 0; i < 2000; ++i) {  // a point on the surface
             Vec3 p = random.direction();
             p = p.cwiseAbs().maxCoeff() > 0.0 ? Vec3(p / p.cwiseAbs().maxCoeff()) : p;
             p = p.cwiseProduct(Vec3(0.015, 0.005, 0.01));
@@ -181,7 +181,7 @@ TEST(TouchTool, every_prefix_of_its_points_is_an_even_sampling) {
         EXPECT_LE(farthest, 1.15 * cover + 3.0 * ball) << n;
         EXPECT_GE(nearest, 0.66 * cover - 4.0 * ball) << n;
     }
-    // All corners among the first; every ball inside, and at its surface.
+    // The first points include all corners; every ball is inside and touches the surface.
     std::size_t corners = 0, stick_out = 0;
     for (std::size_t i = 0; i < tool.points(); ++i) {
         const Vec3 below = Vec3(0.015, 0.005, 0.01) - tool.at_m(i).cwiseAbs();
@@ -249,7 +249,7 @@ TEST(TouchTool, made_tools_are_closed_and_turned_outward) {
     EXPECT_EQ(made_tool("none").triangles(), 0U);
 }
 
-TEST(TwistHalfSpaces, the_answer_is_the_nearest_twist_that_keeps_every_guard) {
+TEST(TwistHalfSpaces, the_solution_is_the_nearest_twist_inside_all_half_spaces) {
     SeededRandom random(11);
     const auto number = [&] { return 2.0 * random.uniform() - 1.0; };
     for (int trial = 0; trial < 60; ++trial) {
@@ -279,7 +279,7 @@ TEST(TwistHalfSpaces, the_answer_is_the_nearest_twist_that_keeps_every_guard) {
             pushed += s.active[i].weight_m * s.active[i].normal;
         }
         EXPECT_LT((pushed - s.move_m).norm(),
-                  1e-9);  // with the weights above: the optimum (Karush, Kuhn, Tucker)
+                  1e-9);  // with the weights above: the optimum (Karush-Kuhn-Tucker)
         for (const auto& [normal, slack] : plane) EXPECT_GT(normal.dot(s.move_m) + slack, -3e-6);
     }
 }
@@ -347,15 +347,15 @@ TEST(Tool, a_tilted_box_is_held_by_its_lowest_corner_and_the_torque_is_lever_tim
     EXPECT_LT(std::hypot(hand.felt.force_n.x(), hand.felt.force_n.z()), 0.01);
 }
 
-// Two supports at a = 0.009 and b = 0.014 from the hand (inner edges of the blocks), pushed down by d without
-// a turn: the proxy turns by t and lies y above, with weights l: y = l1 + l2, g^2 t = b l2 - a l1, kept where
-// y + t b = d, y - t a = d. Both hold only for t = 0, y = d: forces b / (a + b) and a / (a + b).
-TEST(Tool, a_bar_on_two_supports_shares_the_force_by_its_levers) {
+// Two supports at a = 0.009 and b = 0.014 from the hand (inner edges of the blocks); the hand presses down by d without
+// rotation. The proxy rotates by t and lies y above. With weights l1, l2: y = l1 + l2, g^2 t = b l2 - a l1, and contact
+// requires y + t b = d, y - t a = d. The solution is t = 0, y = d, with forces b / (a + b) and a / (a + b).
+TEST(Tool, a_bar_on_two_supports_splits_the_force_by_its_levers) {
     Hand hand(bar_on_blocks(), plain(), pose({0.0, 0.01, 0.0}));
     (void)hand.lead(pose({0.0, 0.0, 0.0}));
     EXPECT_NEAR(hand.felt.force_n.y(), kStiffness * 0.001, 0.01);
     EXPECT_LT(hand.felt.torque_n_m.norm(), 1e-4);
-    // Over one support alone, to the right of the other: it tilts, and the hand feels the lever.
+    // On one support only, to the right of the other: the bar tilts, and the torque is lever times force.
     Hand over(bar_on_blocks(), plain(), pose({-0.022, 0.01, 0.0}));
     (void)over.lead(pose({-0.022, 0.0, 0.0}));
     const double lever = over.felt.torque_n_m.z() / over.felt.force_n.y();
@@ -389,7 +389,7 @@ TEST(Tool, a_box_over_an_edge_tilts_and_the_force_follows_from_one_energy) {
 }
 
 TEST(Tool, a_mirrored_world_gives_a_mirrored_wrench) {
-    // x to -x.
+    // The mirror maps x to -x.
     Hand left(bar_on_blocks(), plain(), pose({0.003, 0.01, 0.0}));
     static const auto mirrored = [] {
         TriangleMesh blocks;
@@ -405,7 +405,7 @@ TEST(Tool, a_mirrored_world_gives_a_mirrored_wrench) {
     EXPECT_LT((a.torque_n_m - Vec3(b.torque_n_m.x(), -b.torque_n_m.y(), -b.torque_n_m.z())).norm(), 2e-4);
 }
 
-TEST(Tool, friction_holds_a_box_in_its_cone_and_it_slides_at_the_rim) {
+TEST(Tool, friction_holds_a_box_inside_the_cone_and_lets_it_slide_at_the_rim) {
     constexpr double kFriction = 0.4, kDepth = 0.001;
     Hand hand(box_on_plane(), plain(kFriction), pose({0.0, 0.02, 0.0}));
     (void)hand.lead(pose({0.0, 0.005 - kDepth, 0.0}));
@@ -415,7 +415,7 @@ TEST(Tool, friction_holds_a_box_in_its_cone_and_it_slides_at_the_rim) {
     EXPECT_NEAR(-slides.force_n.x(), kFriction * slides.force_n.y(), 0.02);
 }
 
-// Over the rough sphere, the tip about `depth` deep.
+// Pose over the rough sphere with the tip about `depth` deep.
 Pose slide(double t, double depth) {
     const double around = 1.1 * t, up = 0.9 * std::sin(0.61 * t);
     const Vec3 d(std::cos(up) * std::cos(around), std::cos(up) * std::sin(around), std::sin(up));
@@ -423,7 +423,7 @@ Pose slide(double t, double depth) {
     return {(rough_radius_m(d) + 0.0137 - depth) * d, q};
 }
 
-TEST(Tool, the_proxy_never_jams_and_no_point_is_ever_behind_the_surface) {
+TEST(Tool, the_proxy_never_jams_and_no_point_gets_behind_the_surface) {
     for (const double speed : {1.0, 3.0}) {
         Hand hand(scaler_on_rough(), plain(speed > 2.0 ? 0.2 : 0.0), slide(0.0, -0.01));
         const ToolPoints& points = hand.model->contact().points();
@@ -436,7 +436,7 @@ TEST(Tool, the_proxy_never_jams_and_no_point_is_ever_behind_the_surface) {
             const double gyration = kWorldPerModel * points.gyration_m();
             const double moved =
                 (hand.place.p_m - last.p_m).norm() + gyration * last.q.angularDistance(hand.place.q);
-            // One that stands still is left behind by 60 mm and more a second.
+            // A jammed proxy falls behind by 60 mm/s and more.
             ASSERT_LT((hand.proxy().p_m - hand.place.p_m).norm(), 0.012) << i;
             ASSERT_LT((now.force_n - before.force_n).norm(), 2.5 * kStiffness * moved + 0.1);
             ASSERT_LT((now.torque_n_m - before.torque_n_m).norm(),
@@ -449,7 +449,7 @@ TEST(Tool, the_proxy_never_jams_and_no_point_is_ever_behind_the_surface) {
                 const Vec3 p = proxy * scaler_on_rough().tool.at_m(k);
                 const SurfacePoint s = scaler_on_rough().mesh.nearest(p, 10.0);
                 ASSERT_GT(s.distance_m, 0.85 * scaler_on_rough().tool.ball_m) << k;
-                // Outside: its way to far above crosses nothing; by the side of the nearest facet, well above it.
+                // The point is outside: well above the surface, it lies on the outer side of the nearest facet.
                 if (s.distance_m > 20.0 * scaler_on_rough().tool.ball_m) {
                     ASSERT_GT(scaler_on_rough().mesh.normal_at(s).dot(p - s.point_m), 0.0) << k;
                 }
@@ -485,7 +485,7 @@ TEST(Tool, a_settled_proxy_is_the_nearest_free_pose_that_small_moves_find) {
     }
 }
 
-TEST(Tool, a_tool_that_is_put_into_the_surface_comes_to_rest_on_it_and_is_felt_without_a_step) {
+TEST(Tool, a_tool_that_starts_in_the_surface_comes_to_rest_on_it_without_a_force_step) {
     for (const double y : {0.001, 0.004, 0.0051, 0.02}) {
         const auto model = box_on_plane().model(plain());
         const ToolState tool = at({0.0, y, 0.0});
@@ -501,11 +501,11 @@ TEST(Tool, a_tool_that_is_put_into_the_surface_comes_to_rest_on_it_and_is_felt_w
     }
 }
 
-// A pin that stands on a sphere of 2 000 triangles, whose facets are 8.7 degrees apart, and slides over it.
+// A pin that stands on a sphere of 2000 triangles (facets 8.7 degrees apart) and slides over it.
 struct OnFacets {
-    double off_rad = 0.0;         // 99 % of the steps: the force, from the sphere's normal
-    double beyond_n = 0.0;        // the most that a step changed the force by beyond what the hand did
-    double twist_beyond_n = 0.0;  // the same of torque over the radius of gyration
+    double off_rad = 0.0;         // 99th percentile of the angle between force and sphere normal
+    double beyond_n = 0.0;        // largest force change per step beyond the hand's motion
+    double twist_beyond_n = 0.0;  // the same for torque over the radius of gyration
 };
 const World& pin_on_facets() {
     static const auto made = world(smooth_sphere(10), box_mesh({5e-5, 0.004, 5e-5}), {.points = 200});
@@ -552,8 +552,8 @@ TEST(Tool, shading_turns_force_and_torque_to_the_smooth_normal_without_steps) {
     EXPECT_LT(shaded.twist_beyond_n, 2.0 * SurfaceModel::kLagN + 1e-3);
 }
 
-// At rest each place pushes along the smooth normal there, as hard as it did, and where it did.
-TEST(Tool, the_shaded_torque_is_that_of_the_pushes_where_they_are) {
+// At rest each contact pushes along the smooth normal at its position, with unchanged magnitude and lever.
+TEST(Tool, the_shaded_torque_is_lever_times_shaded_force) {
     const World& w = pin_on_facets();
     SurfaceSettings settings = plain();
     settings.shading = true;
@@ -589,7 +589,7 @@ TEST(Tool, shading_leaves_a_plane_and_an_edge_as_they_are) {
     const Wrench& w = hand.lead(pose({0.013, 0.004, 0.004}));
     EXPECT_LT((w.force_n - Vec3(0.0, kStiffness * 0.001, 0.0)).norm(), 0.01);
     EXPECT_LT(w.torque_n_m.norm(), 3e-5);
-    // The blocks' normals at their corners are 45 degrees and more from the faces'.
+    // The blocks' corner normals are 45 degrees and more from the face normals.
     Hand over(bar_on_blocks(), settings, pose({-0.022, 0.01, 0.0})),
         plainly(bar_on_blocks(), plain(), pose({-0.022, 0.01, 0.0}));
     const Wrench a = over.lead(pose({-0.022, 0.0, 0.0})), b = plainly.lead(pose({-0.022, 0.0, 0.0}));
@@ -598,7 +598,7 @@ TEST(Tool, shading_leaves_a_plane_and_an_edge_as_they_are) {
     EXPECT_LT((a.torque_n_m - b.torque_n_m).norm(), 1e-9);
 }
 
-TEST(Tool, without_time_it_goes_no_farther_than_what_is_known_to_be_free) {
+TEST(Tool, out_of_time_the_proxy_stays_in_free_space) {
     Hand hand(scaler_on_rough(), plain(), slide(0.0, -0.004));
     Budget hurried;
     hurried.deadline = instant_from_ns(0);

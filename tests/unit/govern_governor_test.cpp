@@ -1,4 +1,4 @@
-// The governor: the seed's law to the letter, its order of sacrifice, and what holds for any rates.
+// The governor: the published law, the order in which paths are lowered, and invariants for any input.
 #include "rt/govern/display_watch.hpp"
 #include "rt/govern/governor.hpp"
 
@@ -24,17 +24,17 @@ Governor with(GovernorSettings settings, std::initializer_list<KnobSpec> knobs) 
     return governor;
 }
 
-TEST(SensitusLaw, is_the_equation_of_the_page) {
+TEST(SensitusLaw, equals_the_published_equation) {
     // V <- V - s V (r_g - r_c) / r_g
     EXPECT_DOUBLE_EQ(sensitus_factor(600.0, 1000.0, 0.5, 0.05), 1.0 - 0.5 * (1000.0 - 600.0) / 1000.0);
     // V <- V + s V (r_c - r_g) / r_g
     EXPECT_DOUBLE_EQ(sensitus_factor(1500.0, 1000.0, 0.5, 0.05), 1.0 + 0.5 * (1500.0 - 1000.0) / 1000.0);
-    // Within the tolerance, its edges included, nothing.
+    // No change within the tolerance, edges included.
     EXPECT_DOUBLE_EQ(sensitus_factor(950.0, 1000.0, 0.5, 0.05), 1.0);
     EXPECT_DOUBLE_EQ(sensitus_factor(1050.0, 1000.0, 0.5, 0.05), 1.0);
 }
 
-TEST(Governor, gives_the_picture_up_first_and_the_force_last) {
+TEST(Governor, lowers_the_display_first_and_the_force_last) {
     Governor governor = with({.law = Law::sensitus, .goal_hz = 1000.0}, {kMesh, kForce});
     int steps = 0;
     while (governor.level(0) > kMesh.floor && steps++ < 1000) {
@@ -49,7 +49,7 @@ TEST(Governor, gives_the_picture_up_first_and_the_force_last) {
     EXPECT_EQ(governor.paths()[1].reason, LevelReason::at_floor);
 }
 
-TEST(Governor, a_knob_whose_floor_is_zero_stays_where_it_comes_back_from_in_a_few_steps) {
+TEST(Governor, a_knob_with_floor_zero_stays_high_enough_to_recover_within_sixty_steps) {
     constexpr KnobSpec kNoFloor{.path = "force", .floor = 0.0F, .start = 1.0F, .haptic = true};
     for (const Law law : {Law::sensitus, Law::elastic}) {
         Governor governor = with({.law = law, .goal_hz = 1000.0}, {kNoFloor});
@@ -65,7 +65,7 @@ TEST(Governor, a_knob_whose_floor_is_zero_stays_where_it_comes_back_from_in_a_fe
     }
 }
 
-TEST(Governor, restores_the_force_before_the_picture_and_no_faster_than_its_slew) {
+TEST(Governor, restores_the_force_before_the_display_and_no_faster_than_its_slew) {
     Governor governor = with({.law = Law::sensitus, .goal_hz = 1000.0}, {kMesh, kForce});
     for (int i = 0; i < 200; ++i) static_cast<void>(governor.step(100.0, kStep));
     float before = governor.level(1);
@@ -79,7 +79,7 @@ TEST(Governor, restores_the_force_before_the_picture_and_no_faster_than_its_slew
     EXPECT_GT(governor.level(0), kMesh.floor);
 }
 
-TEST(Governor, an_absent_path_keeps_its_level_and_the_next_kind_answers) {
+TEST(Governor, an_absent_display_keeps_its_level_and_the_force_falls_instead) {
     Governor governor = with({.law = Law::sensitus, .goal_hz = 1000.0}, {kMesh, kForce});
     governor.set_present(0, false);
     static_cast<void>(governor.step(500.0, kStep));
@@ -87,8 +87,8 @@ TEST(Governor, an_absent_path_keeps_its_level_and_the_next_kind_answers) {
     EXPECT_FLOAT_EQ(governor.level(1), 0.75F);
 }
 
-// The seed's set-up: force loop and picture share a processor, so the rate is what the picture leaves.
-// rate = capacity / (force + picture * V). The rest point is known in closed form.
+// Set-up of the docking paper: force loop and display share a processor.
+// rate = capacity / (force + display * V). The equilibrium is known in closed form.
 TEST(Governor, converges_on_a_shared_processor_to_the_level_where_the_rate_is_the_goal) {
     for (const double gain : {0.1, 0.5, 1.0}) {
         Governor governor =
@@ -106,13 +106,13 @@ TEST(Governor, converges_on_a_shared_processor_to_the_level_where_the_rate_is_th
     }
 }
 
-TEST(Governor, a_goal_beyond_the_machine_ends_at_the_floor_and_recovers_at_once) {
+TEST(Governor, an_unreachable_goal_ends_at_the_floor_and_a_reachable_one_recovers_at_once) {
     Governor governor = with({.law = Law::sensitus, .goal_hz = 1400.0}, {kMesh});
     const auto rate_hz = [](double level) { return 1.0 / (0.8e-3 + 1.02e-3 * level); };
     for (int i = 0; i < 500; ++i)
         static_cast<void>(governor.step(rate_hz(static_cast<double>(governor.level(0))), kStep));
     EXPECT_FLOAT_EQ(governor.level(0), kMesh.floor);
-    EXPECT_FALSE(governor.step(rate_hz(0.05), kStep));  // clamped: nothing winds up
+    EXPECT_FALSE(governor.step(rate_hz(0.05), kStep));  // clamped: no wind-up
     ASSERT_TRUE(governor.set_goal_hz(800.0));
     EXPECT_TRUE(governor.step(rate_hz(0.05), kStep));
     EXPECT_GT(governor.level(0), kMesh.floor);
@@ -146,8 +146,8 @@ TEST(Governor, any_rates_leave_every_level_between_floor_and_one) {
     EXPECT_TRUE(held);
 }
 
-// The same for the law "elastic", whatever the picture says of itself.
-TEST(Governor, any_rates_and_pictures_leave_every_level_of_the_elastic_law_between_floor_and_one) {
+// The same for the law "elastic", for any frame costs.
+TEST(Governor, any_rates_and_frame_costs_leave_every_level_of_the_elastic_law_between_floor_and_one) {
     const bool held = rc::check([] {
         KnobSpec zero{.path = "z", .floor = 0.0F, .start = 0.5F};
         Governor governor =
@@ -165,7 +165,7 @@ TEST(Governor, any_rates_and_pictures_leave_every_level_of_the_elastic_law_betwe
                 static_cast<void>(governor.step(1e3 * number(5000), kStep));
             } else {
                 static_cast<void>(governor.update({number(3000), number(3000), number(3000)}));
-                RC_ASSERT(governor.level(1) == force);  // no force is given up for a picture
+                RC_ASSERT(governor.level(1) == force);  // the display goal never lowers the force
             }
             for (const GovernedPath& p : governor.paths())
                 RC_ASSERT(p.level >= p.knob.floor && p.level <= 1.0F);
@@ -176,7 +176,7 @@ TEST(Governor, any_rates_and_pictures_leave_every_level_of_the_elastic_law_betwe
 
 TEST(Governor, the_elastic_law_steps_to_where_the_model_says_the_goal_is) {
     Governor governor = with({.law = Law::elastic, .goal_hz = 1000.0}, {kMesh});
-    // Half of the picture's cost varies (the prior), and it has half of the core.
+    // Half of the display's cost varies (the prior), and the display uses half of the core.
     for (int i = 0; i < 50; ++i)
         static_cast<void>(governor.update({.work_s = 0.02, .processor_s = 0.02, .period_s = 0.04}));
     ASSERT_TRUE(governor.step(900.0, kStep));
@@ -185,7 +185,7 @@ TEST(Governor, the_elastic_law_steps_to_where_the_model_says_the_goal_is) {
     EXPECT_EQ(governor.paths()[0].reason, LevelReason::rate_low);
 }
 
-TEST(Governor, the_elastic_law_comes_back_only_after_a_hold_and_by_small_steps) {
+TEST(Governor, the_elastic_law_rises_only_after_a_hold_and_by_small_steps) {
     Governor governor = with({.law = Law::elastic, .goal_hz = 1000.0}, {kMesh});
     ASSERT_TRUE(governor.step(300.0, kStep));
     const float low = governor.level(0);
@@ -199,7 +199,7 @@ TEST(Governor, the_elastic_law_comes_back_only_after_a_hold_and_by_small_steps) 
     }
 }
 
-TEST(Governor, one_hitch_of_the_picture_is_no_load_and_two_are) {
+TEST(Governor, one_slow_frame_changes_no_level_and_two_lower_it) {
     Governor governor = with({.goal_hz = 1000.0, .display_goal_hz = 30.0}, {kMesh});
     const auto frame = [&](double work_s) {
         return governor.update(
@@ -214,16 +214,16 @@ TEST(Governor, one_hitch_of_the_picture_is_no_load_and_two_are) {
     EXPECT_LT(governor.level(0), 0.7F);
 }
 
-TEST(Governor, without_a_goal_of_its_own_the_picture_may_take_its_time) {
+TEST(Governor, without_a_display_goal_slow_frames_change_no_level) {
     Governor governor = with({.goal_hz = 1000.0, .display_goal_hz = 0.0}, {kMesh});
     for (int i = 0; i < 10; ++i)
         EXPECT_FALSE(governor.update({.work_s = 2.0, .processor_s = 2.0, .period_s = 2.0}));
     EXPECT_FLOAT_EQ(governor.level(0), 1.0F);
 }
 
-TEST(RateFilter, believes_a_big_error_at_once_and_a_small_one_after_a_while) {
+TEST(RateFilter, detects_a_large_error_at_once_and_a_small_one_after_several_intervals) {
     RateFilter filter;
-    EXPECT_EQ(filter.judge(0.003), RateIs::right);  // nothing seen
+    EXPECT_EQ(filter.judge(0.003), RateIs::right);  // no measurement
     filter.add(900.0, 1000.0);
     EXPECT_EQ(filter.judge(0.003), RateIs::low);
     filter.restart();
@@ -234,7 +234,7 @@ TEST(RateFilter, believes_a_big_error_at_once_and_a_small_one_after_a_while) {
     EXPECT_LT(n, 200);
 }
 
-TEST(RateFilter, a_leap_is_seen_whole_and_not_as_part_of_the_mean) {
+TEST(RateFilter, a_jump_restarts_the_mean) {
     RateFilter filter;
     for (int i = 0; i < 100; ++i) filter.add(i % 2 == 0 ? 995.0 : 1005.0, 1000.0);
     filter.add(700.0, 1000.0);
@@ -256,7 +256,7 @@ TEST(CostFit, finds_the_elasticity_of_a_line_and_keeps_its_prior_where_nothing_m
     EXPECT_NEAR(still.elasticity(0.5), 0.5, 1e-9);
 }
 
-TEST(DisplayWatch, hands_on_each_frame_that_obeyed_once) {
+TEST(DisplayWatch, returns_each_frame_that_applied_the_levels_once) {
     DisplayWatch watch;
     const Instant t = Instant{} + std::chrono::hours(1);
     PictureWord w{.frame = 5,
@@ -265,7 +265,7 @@ TEST(DisplayWatch, hands_on_each_frame_that_obeyed_once) {
                   .work_s = 0.01,
                   .cpu_s = 1.0,
                   .drawn = true};
-    EXPECT_FALSE(watch.take(w));  // the first one of a process has nothing before it
+    EXPECT_FALSE(watch.take(w));  // the first frame of a process has no predecessor
     watch.asked(7, t);
     EXPECT_TRUE(watch.pending(t));
     const auto next = [&](std::uint64_t sequence) {
@@ -282,12 +282,12 @@ TEST(DisplayWatch, hands_on_each_frame_that_obeyed_once) {
     EXPECT_NEAR(look->processor_s, 0.02, 1e-12);
     EXPECT_NEAR(look->period_s, 0.05, 1e-12);
     EXPECT_FALSE(watch.pending(t));
-    EXPECT_FALSE(watch.take(w));  // the same again
+    EXPECT_FALSE(watch.take(w));  // same frame
     watch.asked(9, t);
-    EXPECT_FALSE(watch.pending(t + std::chrono::seconds(1)));  // one that does not answer stops nothing
+    EXPECT_FALSE(watch.pending(t + std::chrono::seconds(1)));  // a silent process blocks nothing
 }
 
-TEST(Governor, the_fixed_law_holds_what_a_person_set_whatever_the_rate) {
+TEST(Governor, the_fixed_law_keeps_the_level_that_a_person_set_at_any_rate) {
     Governor governor = with({.law = Law::fixed, .goal_hz = 1000.0}, {kMesh, kForce});
     EXPECT_FALSE(governor.step(10.0, kStep));
     EXPECT_FLOAT_EQ(governor.level(0), 1.0F);
@@ -300,13 +300,46 @@ TEST(Governor, the_fixed_law_holds_what_a_person_set_whatever_the_rate) {
     EXPECT_FALSE(governor.set_level(7, 0.5));
 }
 
-TEST(Governor, going_over_to_the_fixed_law_keeps_the_levels_as_they_are) {
+TEST(Governor, a_change_to_the_fixed_law_keeps_the_present_levels) {
     Governor governor = with({.law = Law::sensitus, .goal_hz = 1000.0}, {kMesh});
     static_cast<void>(governor.step(500.0, kStep));
     const float level = governor.level(0);
     governor.set_law(Law::fixed);
     EXPECT_FALSE(governor.step(10.0, kStep));
     EXPECT_FLOAT_EQ(governor.level(0), level);
+}
+
+TEST(Governor, the_rate_moves_the_budget_of_a_fitted_path_only_in_a_freely_running_loop) {
+    for (const bool free_running : {false, true}) {
+        Governor governor =
+            with({.law = Law::sensitus, .goal_hz = 1000.0, .free_running = free_running}, {kMesh, kForce});
+        EXPECT_TRUE(governor.set_fitted_level(1, 0.6F, LevelReason::start));
+        governor.set_present(0, false);
+        for (int i = 0; i < 50; ++i) static_cast<void>(governor.step(500.0, kStep));
+        EXPECT_FLOAT_EQ(governor.level(1), 0.6F);
+        EXPECT_EQ(governor.paths()[1].budget < 0.5F, free_running);
+        EXPECT_GE(governor.paths()[1].budget, 0.05F);
+        // A display that comes back is not delayed by a budget that nobody uses.
+        governor.set_present(0, true);
+        static_cast<void>(governor.step(100.0, kStep));
+        const float display = governor.level(0);
+        EXPECT_LT(display, 1.0F);
+        EXPECT_TRUE(governor.step(5000.0, kStep));
+        if (!free_running) {
+            EXPECT_GT(governor.level(0), display);
+        }
+    }
+}
+
+TEST(Governor, a_fitted_level_stays_at_or_above_the_floor_and_is_not_set_under_the_law_fixed) {
+    Governor governor = with({.law = Law::sensitus, .goal_hz = 1000.0}, {kMesh, kForce});
+    EXPECT_TRUE(governor.set_fitted_level(1, 0.0F, LevelReason::cost_high));
+    EXPECT_FLOAT_EQ(governor.level(1), kForce.floor);
+    EXPECT_FALSE(governor.set_fitted_level(1, 0.0F, LevelReason::cost_high));  // no change
+    EXPECT_FALSE(
+        governor.set_fitted_level(1, std::numeric_limits<float>::quiet_NaN(), LevelReason::cost_high));
+    governor.set_law(Law::fixed);
+    EXPECT_FALSE(governor.set_fitted_level(1, 1.0F, LevelReason::cost_low));
 }
 
 TEST(Governor, refuses_impossible_knobs_and_goals) {

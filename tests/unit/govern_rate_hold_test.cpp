@@ -1,4 +1,4 @@
-// The rate on simulated time: a core that gets slower or faster, is taken away in turns, or stands still.
+// Rate hold in simulated time: a core that changes speed, is shared in time slices, or stalls.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -15,8 +15,8 @@ namespace {
 
 constexpr double kGoal_hz = 1000.0;
 
-// A loop without pause on a core of which it has a part. A step costs so much of the core, a twentieth of it
-// whatever its share; the rest is made in eighths, rounded up.
+// A free-running loop on a shared core. A step costs update_s of core time: a twentieth is fixed, the rest is
+// proportional to the recomputed eighths, rounded up.
 struct Core {
     std::function<double(double t_s)> update_s = [](double) { return 0.9e-3; };
     std::function<bool(double t_s)> ours = [](double) { return true; };
@@ -48,7 +48,7 @@ struct Core {
     }
 };
 
-// Fewest and most updates in any tenth of a second within [from_s, to_s], of those that are wanted.
+// Fewest and most updates in any 0.1 s within [from_s, to_s], relative to the goal.
 struct Windows {
     double least = 1e9, most = 0.0;
 };
@@ -79,18 +79,18 @@ TEST(RateHold, a_loop_at_its_goal_or_above_is_left_alone) {
     for (const double update_s : {0.2e-3, 0.9e-3, 0.999e-3, 1.0e-3}) {
         Core core;
         core.update_s = [=](double) { return update_s; };
-        EXPECT_GT(mean_share(core.run(1.0), 0.0, 1.0), 0.999) << update_s;  // the first window has a border
+        EXPECT_GT(mean_share(core.run(1.0), 0.0, 1.0), 0.999) << update_s;  // the first window is incomplete
     }
 }
 
-// One of three programs on the core, in turns of a millisecond, and a picture that is not drawn all the time.
-TEST(RateHold, neither_are_turns_nor_pictures_that_a_window_evens_out) {
+// The loop shares the core with one other program, and with a third during frames, in slices of a millisecond.
+TEST(RateHold, interruptions_that_average_out_within_a_window_cost_no_work) {
     Core core;
     core.ours = [](double t_s) {
         const bool drawing = std::fmod(t_s, 0.05) < 0.02;
         return static_cast<int>(t_s * 1e3) % (drawing ? 3 : 2) == 0;
     };
-    core.update_s = [](double) { return 0.41e-3; };  // 1054 updates/s of it
+    core.update_s = [](double) { return 0.41e-3; };  // 1054 updates/s on a third of the core
     EXPECT_GT(mean_share(core.run(2.0), 0.0, 2.0), 0.99);
 }
 
@@ -100,20 +100,20 @@ TEST(RateHold, a_core_that_gets_slower_by_half_at_once_costs_less_than_four_perc
         core.update_s = [=](double t_s) { return t_s < 0.5 + phase_s ? 0.98e-3 : 1.47e-3; };
         const auto all = core.run(2.0);
         EXPECT_GE(worst_window(all, 0.0, 2.0), 0.96);
-        // What is given up is what is lacking: 0.98 of the goal at 1.47 times the time.
+        // The lost work equals the deficit: 0.98 of the goal at 1.47 times the cost.
         EXPECT_NEAR(mean_share(all, 1.0, 2.0), (1.0 / (0.98 * 1.47) - 0.05) / 0.95, 0.04);
         EXPECT_EQ(mean_share(all, 0.0, 0.5), 1.0);
     }
 }
 
-TEST(RateHold, so_it_does_in_turns_of_a_millisecond) {
+TEST(RateHold, a_core_shared_in_slices_of_a_millisecond_that_slows_by_half_costs_as_little) {
     Core core;
     core.ours = [](double t_s) { return static_cast<int>(t_s * 1e3) % 3 == 0; };
     core.update_s = [](double t_s) { return t_s < 0.5 ? 0.32e-3 : 0.48e-3; };
     EXPECT_GE(worst_window(core.run(2.0), 0.0, 2.0), 0.95);
 }
 
-TEST(RateHold, when_the_core_is_fast_again_nothing_is_given_up_any_more) {
+TEST(RateHold, once_the_core_is_fast_again_all_work_is_recomputed) {
     Core core;
     core.update_s = [](double t_s) { return t_s > 0.5 && t_s < 1.0 ? 2.5e-3 : 0.95e-3; };
     const auto all = core.run(2.0);
@@ -121,16 +121,16 @@ TEST(RateHold, when_the_core_is_fast_again_nothing_is_given_up_any_more) {
     EXPECT_EQ(mean_share(all, 1.11, 2.0), 1.0);
 }
 
-TEST(RateHold, a_short_stall_is_made_good_within_the_window) {
+TEST(RateHold, a_short_stall_is_recovered_within_the_window) {
     Core core;
     core.update_s = [](double) { return 0.99e-3; };
     core.ours = [](double t_s) { return t_s < 0.5 || t_s > 0.51; };
     const auto all = core.run(1.0);
-    EXPECT_LT(worst_window(all, 0.4, 0.52), 0.95);  // nothing can be made good before it is over
+    EXPECT_LT(worst_window(all, 0.4, 0.52), 0.95);  // no recovery before the stall ends
     EXPECT_GE(worst_window(all, 0.43, 1.0), 0.97);
 }
 
-TEST(RateHold, a_long_stall_is_made_good_by_no_more_than_a_quarter_of_a_window) {
+TEST(RateHold, a_long_stall_is_recovered_by_at_most_a_quarter_of_a_window) {
     for (const double stall_s : {0.1, 1.0, 30.0}) {
         Core core;
         core.ours = [=](double t_s) { return t_s < 0.5 || t_s > 0.5 + stall_s; };
@@ -145,7 +145,7 @@ TEST(RateHold, a_long_stall_is_made_good_by_no_more_than_a_quarter_of_a_window) 
     }
 }
 
-TEST(RateHold, a_goal_out_of_reach_leaves_the_least_share_and_no_debt) {
+TEST(RateHold, an_unreachable_goal_leaves_the_least_work_fraction_and_no_deficit) {
     Core core;
     core.update_s = [](double t_s) { return t_s < 1.0 ? 20e-3 : 0.9e-3; };
     const auto all = core.run(2.0);
@@ -153,16 +153,16 @@ TEST(RateHold, a_goal_out_of_reach_leaves_the_least_share_and_no_debt) {
     EXPECT_EQ(mean_share(all, 1.2, 2.0), 1.0);
 }
 
-TEST(RateHold, slow_goals_and_fast_ones_are_held_alike) {
+TEST(RateHold, goals_from_50_hz_to_20_khz_are_held) {
     for (const double goal_hz : {50.0, 300.0, 4000.0, 20000.0}) {
         Core core;
         core.update_s = [=](double t_s) { return (t_s < 0.5 ? 0.98 : 1.47) / goal_hz; };
-        const double least = goal_hz < 200.0 ? 0.6 : goal_hz < 1000.0 ? 0.9 : 0.96;  // counts are whole
+        const double least = goal_hz < 200.0 ? 0.6 : goal_hz < 1000.0 ? 0.9 : 0.96;  // counts are integers
         EXPECT_GE(worst_window(core.run(2.0, goal_hz), 0.0, 2.0, goal_hz), least) << goal_hz;
     }
 }
 
-TEST(RateHold, a_loop_ahead_of_its_goal_rests_and_gives_nothing_up) {
+TEST(RateHold, a_loop_ahead_of_its_goal_sleeps_and_recomputes_all_work) {
     for (const double update_s : {0.05e-3, 0.3e-3, 0.9e-3}) {
         Core core;
         core.rests = true;
@@ -174,7 +174,7 @@ TEST(RateHold, a_loop_ahead_of_its_goal_rests_and_gives_nothing_up) {
     }
 }
 
-TEST(RateHold, a_core_whose_speed_leaps_to_and_fro_makes_the_goal_on_average_and_in_every_window) {
+TEST(RateHold, a_core_of_alternating_speed_reaches_the_goal_on_average_and_in_every_window) {
     Core core;
     core.rests = true;
     core.ours = [](double t_s) { return static_cast<int>(t_s * 1e3) % 3 == 0; };
@@ -188,7 +188,7 @@ TEST(RateHold, a_core_whose_speed_leaps_to_and_fro_makes_the_goal_on_average_and
     EXPECT_LE(windows(all, 0.1, 3.0).most, 1.1);
 }
 
-TEST(RateHold, any_times_and_goals_give_a_share_and_a_rest) {
+TEST(RateHold, any_times_and_goals_give_a_valid_work_fraction_and_sleep) {
     RateHold hold;
     const Instant now = Instant{} + std::chrono::hours(1);
     for (const double goal_hz : {1.0, 1e7})

@@ -1,6 +1,5 @@
-// The laws over the same loads, on a plant in arithmetic: nothing is measured on this machine, and every run
-// repeats to the bit. Prints the table of rt/govern/README.md and holds the default law to being the better
-// one.
+// Simulates the laws over identical loads, independent of this machine; runs repeat to the bit. Prints the table
+// of rt/govern/README.md and checks that the default law is the better one.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -16,9 +15,9 @@ namespace tact {
 namespace {
 
 constexpr double kGoal_hz = 1000.0;
-constexpr double kSettled_s = 2.0;  // after a change of the load; what comes later is held to the goal
+constexpr double kSettled_s = 2.0;  // after a change of the load, until the goal applies
 
-// A load that changes at instants: from each on, until the next.
+// A load that changes at given times; each value holds until the next.
 struct Story {
     std::string name;
     std::vector<std::pair<double, Load>> from;
@@ -44,7 +43,7 @@ std::vector<Story> stories() {
     return all;
 }
 
-// The highest level with which the goal is held under a load that stays: by trying.
+// Highest level that holds the goal under a constant load, found by bisection.
 double best_level(const Story& story, const Load& load) {
     double low = static_cast<double>(SharedCorePlant::kMesh.floor), high = 1.0;
     for (int i = 0; i < 12; ++i) {
@@ -68,21 +67,21 @@ double best_level(const Story& story, const Load& load) {
 }
 
 struct Figures {
-    double missed_percent = 0.0;   // updates that lacked to the goal, of those wanted, over all of it
-    double settling_s = 0.0;       // longest, after a change: back at 95 % of the goal for a second
-    double mean_percent = 0.0;     // rate against the goal, where the goal binds and the change is past
-    double worst_percent = 100.0;  // lowest tenth of a second there, of the goal
-    double fidelity = 0.0;         // level over the best possible, mean where the goal binds
-    double overshoot = 0.0;        // furthest below the best possible, of it
+    double missed_percent = 0.0;   // missing updates relative to the goal, over the whole run
+    double settling_s = 0.0;       // longest time from a change until a second at 95 % of the goal begins
+    double mean_percent = 0.0;     // rate relative to the goal, settled and with a binding goal
+    double worst_percent = 100.0;  // lowest rate over 0.1 s, relative to the goal
+    double fidelity = 0.0;         // mean level relative to the best, with a binding goal
+    double overshoot = 0.0;        // largest fall below the best level, relative to it
     int changes = 0;
 };
 
-// A law with its settings. The published one says nothing of its interval and gain.
+// A law with its settings. The publication gives neither interval nor gain of its law.
 struct Contender {
     std::string name;
     Law law;
     double gain, interval_s;
-    bool hold = false;  // with rate_hold.hpp beneath it, as the controller runs
+    bool hold = false;  // with rate_hold.hpp, as in the free-running controller
 };
 const std::vector<Contender> kContenders{{"sensitus, s 0.5, 0.2 s", Law::sensitus, 0.5, 0.2},
                                          {"sensitus, s 0.5, 0.1 s", Law::sensitus, 0.5, 0.1},
@@ -155,8 +154,8 @@ TEST(LawReplay, the_default_law_is_better_than_the_published_one_over_the_same_l
     }
 }
 
-// What a neighbour on the same physical core does: everything takes 1.45 times as long for up to seconds.
-TEST(LawReplay, held_the_rate_is_at_its_goal_in_every_tenth_of_a_second_though_the_core_leaps) {
+// Load on the same physical core: everything takes 1.45 times as long for up to seconds.
+TEST(LawReplay, with_rate_hold_every_tenth_of_a_second_reaches_the_goal_on_a_core_of_alternating_speed) {
     std::mt19937 random(3);
     std::uniform_real_distribution<double> length_s(0.2, 3.0);
     std::vector<double> leap_s{0.0};
@@ -184,7 +183,7 @@ TEST(LawReplay, held_the_rate_is_at_its_goal_in_every_tenth_of_a_second_though_t
             hold ? "held" : "by the law alone", 100.0 * (sum / n - 1.0), 100.0 * worst, 100.0 * fresh / n,
             level / n);
         if (!hold) {
-            EXPECT_LT(worst, 0.8);  // what there is to win
+            EXPECT_LT(worst, 0.8);  // room for improvement
             continue;
         }
         EXPECT_NEAR(sum / n, 1.0, 0.01);
@@ -208,7 +207,7 @@ TEST(LawReplay, the_same_load_twice_gives_the_same_levels) {
     EXPECT_NE(run(1), run(2));
 }
 
-// Ten times the load for a minute, then none: what went down meanwhile must not have to be paid back.
+// Ten times the load for a minute, then none: the time at the floor must not delay the recovery.
 TEST(LawReplay, nothing_winds_up_at_the_floor) {
     for (const double bad_s : {2.0, 60.0}) {
         PlantSettings p;
@@ -224,7 +223,7 @@ TEST(LawReplay, nothing_winds_up_at_the_floor) {
     }
 }
 
-TEST(LawReplay, inside_the_dead_band_nothing_moves) {
+TEST(LawReplay, within_the_dead_band_no_level_changes) {
     PlantSettings p;
     p.frame_jitter = 0.0;
     p.seconds = 40.0;
@@ -240,12 +239,12 @@ TEST(LawReplay, inside_the_dead_band_nothing_moves) {
         }
 }
 
-// A map too big for the renderer: the force rate is at its goal all the time, the picture is not at its own.
-TEST(LawReplay, a_picture_below_its_own_goal_gets_coarser_and_no_coarser_than_it_has_to) {
+// A map too large for the renderer: the force rate meets its goal, the display rate does not.
+TEST(LawReplay, a_display_below_its_goal_gets_coarser_and_no_coarser_than_necessary) {
     for (const Law law : {Law::elastic, Law::sensitus}) {
         PlantSettings p;
         p.free_running = false;
-        p.frame_full_s = 0.6;  // 1.6 frames a second with all of it
+        p.frame_full_s = 0.6;  // 1.6 frames/s at full detail
         p.fps_max = 60.0;
         p.seconds = 20.0;
         SharedCorePlant plant(p, {.law = law, .goal_hz = kGoal_hz, .display_goal_hz = 30.0});
@@ -260,19 +259,19 @@ TEST(LawReplay, a_picture_below_its_own_goal_gets_coarser_and_no_coarser_than_it
                     plant.changes());
         EXPECT_LT(below_s, 4.0);
         EXPECT_GE(fps, 28.0);
-        const double rest = (1.0 / 30.0 - p.frame_fixed_s) / p.frame_full_s;  // where a frame takes its goal
+        const double rest = (1.0 / 30.0 - p.frame_fixed_s) / p.frame_full_s;  // a frame takes its goal time
         EXPECT_GT(s.back().level, 0.5 * rest);
         EXPECT_LT(s.back().level, 1.1 * rest);
         EXPECT_EQ(plant.governor().paths()[0].reason, LevelReason::picture_low);
-        EXPECT_FLOAT_EQ(plant.governor().level(1), 1.0F);  // the force is not touched for a picture
+        EXPECT_FLOAT_EQ(plant.governor().level(1), 1.0F);  // the display goal does not lower the force
     }
 }
 
-TEST(LawReplay, a_picture_with_time_to_spare_comes_back_to_all_of_it) {
+TEST(LawReplay, a_display_with_time_to_spare_returns_to_full_detail) {
     PlantSettings p;
     p.free_running = false;
     p.fps_max = 60.0;
-    p.frame_full_s = 0.02;  // 37 frames a second with all of it
+    p.frame_full_s = 0.02;  // 37 frames/s at full detail
     p.seconds = 20.0;
     SharedCorePlant plant(p, {.goal_hz = kGoal_hz, .display_goal_hz = 30.0});
     const auto& s = plant.run([](double t) { return Load{.frame_times = t < 5.0 ? 20.0 : 1.0}; });

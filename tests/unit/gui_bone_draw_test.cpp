@@ -1,4 +1,4 @@
-// Bone in the pixels: where its surface is, what drilling changes, structures, and how a moving view becomes sharp.
+// Bone in the pixels: position of its surface, changes by drilling, structures, and refinement of a moving view.
 #include <gtest/gtest.h>
 
 #include <filesystem>
@@ -17,7 +17,7 @@ namespace {
 
 constexpr int kWidth = 200, kHeight = 160;
 constexpr std::uint32_t kEdge = 48, kAllRays = 1U << 30U;
-constexpr double kBallRadius = 15.0;  // voxels, about the middle
+constexpr double kBallRadius = 15.0;  // voxels, around the middle
 
 Vec3 middle() { return Vec3::Constant(0.5 * kEdge - 0.5); }
 
@@ -70,7 +70,7 @@ protected:
         glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
         view.draw(frame(rays));
     }
-    // Along the view, ångström; below zero: nothing is there.
+    // Depth along the view in ångström; negative: background.
     [[nodiscard]] double depth_a(int x, int y) const {
         float seen = 1.0F;
         glReadPixels(x, y, 1, 1, GL_DEPTH_COMPONENT, GL_FLOAT, &seen);
@@ -100,7 +100,7 @@ protected:
     Camera camera_;
 };
 
-TEST_F(BoneDraw, a_ball_of_bone_is_where_its_surface_is_in_every_pixel) {
+TEST_F(BoneDraw, the_depth_of_every_pixel_matches_the_surface_of_a_ball) {
     BoneView view(*bone_, centre_model_m_, now_);
     draw(view);
     EXPECT_TRUE(view.sharp());
@@ -117,7 +117,7 @@ TEST_F(BoneDraw, a_ball_of_bone_is_where_its_surface_is_in_every_pixel) {
             if ((z > 0.0) != (nearest < kBallRadius)) wrong += std::fabs(nearest - kBallRadius) > 0.6 ? 1 : 0;
             if (z <= 0.0) continue;
             ++hits;
-            // The surface of a ball whose rim is one voxel wide lies where a third of it is reached.
+            // The edge of the ball ramps over one voxel; its surface lies at a third of the ramp.
             if (nearest < 0.9 * kBallRadius) {
                 EXPECT_NEAR((ray * z - c).norm() / voxel_a, kBallRadius + 0.2, 0.25) << x << ", " << y;
             }
@@ -126,15 +126,15 @@ TEST_F(BoneDraw, a_ball_of_bone_is_where_its_surface_is_in_every_pixel) {
     EXPECT_EQ(wrong, 0);
 }
 
-TEST_F(BoneDraw, drilling_changes_the_picture_where_it_is_and_no_more_rays_are_sent) {
+TEST_F(BoneDraw, drilling_redraws_only_the_changed_part) {
     BoneView view(*bone_, centre_model_m_, now_);
     draw(view);
     const double before = depth_a(kWidth / 2, kHeight / 2);
     const std::uint32_t whole = view.rays();
     draw(view);
-    EXPECT_EQ(view.rays(), 0U) << "nothing moved";
+    EXPECT_EQ(view.rays(), 0U) << "nothing changed";
     EXPECT_NEAR(depth_a(kWidth / 2, kHeight / 2), before, 1.0);
-    // A shaft from the eye to the middle of the ball.
+    // A shaft from the eye to the centre of the ball.
     const Vec3 towards = camera_.orientation().conjugate().cast<double>() * Vec3::UnitZ();
     std::set<std::uint32_t> bricks;
     for (std::uint32_t z = 0; z < kEdge; ++z)
@@ -154,7 +154,7 @@ TEST_F(BoneDraw, drilling_changes_the_picture_where_it_is_and_no_more_rays_are_s
     EXPECT_EQ(view.rays(), 0U);
 }
 
-TEST_F(BoneDraw, a_moving_view_is_coarse_and_becomes_the_same_as_one_that_never_moved) {
+TEST_F(BoneDraw, a_moving_view_is_coarse_and_refines_to_the_still_one) {
     BoneView still(*bone_, centre_model_m_, now_), moving(*bone_, centre_model_m_, now_);
     draw(still);
     const Image sharp = read_pixels(kWidth, kHeight);
@@ -180,8 +180,8 @@ TEST_F(BoneDraw, a_moving_view_is_coarse_and_becomes_the_same_as_one_that_never_
     EXPECT_EQ(read_pixels(kWidth, kHeight).rgb, sharp.rgb);
 }
 
-TEST_F(BoneDraw, a_soft_structure_is_seen_in_its_colour_once_the_bone_over_it_is_gone) {
-    // The inner half of the ball is a nerve, of a density that bone has where it is all but nothing.
+TEST_F(BoneDraw, a_soft_structure_appears_in_its_colour_after_the_bone_above_is_removed) {
+    // The inner half of the ball is a nerve, with a density that renders as almost transparent in bone.
     std::vector<std::uint8_t> labels(block_->density.size());
     for (std::uint32_t z = 0; z < kEdge; ++z)
         for (std::uint32_t y = 0; y < kEdge; ++y)
@@ -211,7 +211,7 @@ TEST_F(BoneDraw, a_soft_structure_is_seen_in_its_colour_once_the_bone_over_it_is
     EXPECT_LT(depth_a(kWidth / 2, kHeight / 2), 0.0);
 }
 
-TEST_F(BoneDraw, a_large_volume_comes_from_its_front_picture_by_picture_and_is_the_same_at_the_end) {
+TEST_F(BoneDraw, a_large_volume_is_uploaded_front_to_back_over_several_frames) {
     BoneView at_once(*bone_, centre_model_m_, now_), slowly(*bone_, centre_model_m_, now_);
     draw(at_once);
     EXPECT_EQ(at_once.filled(), 1.0F);
@@ -219,7 +219,7 @@ TEST_F(BoneDraw, a_large_volume_comes_from_its_front_picture_by_picture_and_is_t
     const auto slabs = block_->bricks.bricks()[2];
     BoneFrame frame_of_no_time = frame(kAllRays);
     frame_of_no_time.fill_s = 0.0;
-    // A texture a picture, until there is something to draw with; what changes meanwhile is not sent into nothing.
+    // One texture per frame until the first slab can be drawn; changes meanwhile are not uploaded.
     for (int texture = 1; texture <= 3; ++texture) {
         glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
         slowly.draw(frame_of_no_time);
@@ -241,7 +241,7 @@ TEST_F(BoneDraw, a_large_volume_comes_from_its_front_picture_by_picture_and_is_t
         if (i == slabs / 2) {
             EXPECT_GT(seen, 100U);
         }
-        slowly.changed(0);  // is not there yet: nothing of it is sent before its turn
+        slowly.changed(0);  // not loaded yet: nothing is uploaded before its turn
     }
     glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
     slowly.draw(frame_of_no_time);
@@ -249,7 +249,7 @@ TEST_F(BoneDraw, a_large_volume_comes_from_its_front_picture_by_picture_and_is_t
     EXPECT_EQ(read_pixels(kWidth, kHeight).rgb, whole.rgb);
 }
 
-TEST_F(BoneDraw, the_frame_buffer_that_was_bound_is_bound_again) {
+TEST_F(BoneDraw, the_bound_frame_buffer_is_restored) {
     BoneView view(*bone_, centre_model_m_, now_);
     GLint before = 0, after = 0;
     glGetIntegerv(GL_DRAW_FRAMEBUFFER_BINDING, &before);

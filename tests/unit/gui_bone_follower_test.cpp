@@ -1,4 +1,4 @@
-// The window's copy of the bone: what it is told, and that nothing of what is drilled is lost or told twice.
+// The window's copy of the bone: each change is reported exactly once.
 #include <fcntl.h>
 #include <gtest/gtest.h>
 
@@ -15,7 +15,7 @@ namespace {
 
 constexpr std::size_t kVoxels = BoneBricks::kVoxels;
 
-// A scene's bone, and a controller that drills it.
+// The bone of a scene and a controller that drills it.
 struct DrilledBone {
     explicit DrilledBone(std::array<std::uint32_t, 3> size = {24, 16, 16}) {
         bricks.size = size;
@@ -60,7 +60,7 @@ long long levels(std::span<const std::uint8_t> voxels) {
     return std::accumulate(voxels.begin(), voxels.end(), 0LL);
 }
 
-TEST(BoneFollower, without_a_controller_it_is_the_scenes_bone) {
+TEST(BoneFollower, without_a_controller_it_is_the_bone_of_the_scene) {
     const DrilledBone bone;
     BoneFollower follower(bone.view(), 5);
     EXPECT_TRUE(follower.follow(100).empty());
@@ -68,7 +68,7 @@ TEST(BoneFollower, without_a_controller_it_is_the_scenes_bone) {
     EXPECT_EQ(follower.volume().bricks.size, bone.bricks.size);
 }
 
-TEST(BoneFollower, tells_what_is_cut_once_with_before_and_after) {
+TEST(BoneFollower, reports_each_cut_once_with_before_and_after) {
     const DrilledBone bone;
     BoneFollower follower(bone.view(), 5);
     ASSERT_EQ(follower.attach(bone.mapped), "");
@@ -92,7 +92,7 @@ TEST(BoneFollower, tells_what_is_cut_once_with_before_and_after) {
     EXPECT_EQ(again[0].before[17], 120);
 }
 
-TEST(BoneFollower, a_few_bricks_at_a_call_reach_all_of_them_and_none_starves) {
+TEST(BoneFollower, all_bricks_are_reached_with_one_brick_per_call) {
     const DrilledBone bone;
     BoneFollower follower(bone.view(), 5);
     ASSERT_EQ(follower.attach(bone.mapped), "");
@@ -100,7 +100,7 @@ TEST(BoneFollower, a_few_bricks_at_a_call_reach_all_of_them_and_none_starves) {
     long long told = 0, cut = 0;
     for (int step = 0; step < 400; ++step) {
         const std::size_t brick =
-            step % 2 == 0 ? 0 : random() % bone.bricks.brick_count();  // one is always cut
+            step % 2 == 0 ? 0 : random() % bone.bricks.brick_count();  // brick 0 is cut in every other step
         const std::size_t voxel = random() % kVoxels;
         const std::uint8_t now = bone.region->densities()[brick * kVoxels + voxel];
         if (step < 300 && now > 20) {
@@ -115,7 +115,7 @@ TEST(BoneFollower, a_few_bricks_at_a_call_reach_all_of_them_and_none_starves) {
     EXPECT_EQ(levels(follower.volume().density), levels(bone.region->densities()));
 }
 
-TEST(BoneFollower, what_was_drilled_before_it_came_is_not_cut_now) {
+TEST(BoneFollower, earlier_cuts_are_reported_as_not_new) {
     const DrilledBone bone;
     bone.cut(2, 5, 0);
     BoneFollower follower(bone.view(), 5);
@@ -133,7 +133,7 @@ TEST(BoneFollower, what_was_drilled_before_it_came_is_not_cut_now) {
     EXPECT_TRUE(later[0].cut_now);
 }
 
-TEST(BoneFollower, another_controller_brings_the_bone_back) {
+TEST(BoneFollower, another_controller_restores_the_bone) {
     const DrilledBone first, second;
     BoneFollower follower(first.view(), 5);
     ASSERT_EQ(follower.attach(first.mapped), "");
@@ -142,7 +142,7 @@ TEST(BoneFollower, another_controller_brings_the_bone_back) {
     follower.detach();
     first.cut(0, 0, 0);
     EXPECT_TRUE(follower.follow(100).empty());
-    EXPECT_EQ(follower.volume().density[kVoxels + 9], 10) << "it stays as it was seen last";
+    EXPECT_EQ(follower.volume().density[kVoxels + 9], 10) << "the last state is kept";
     ASSERT_EQ(follower.attach(second.mapped), "");
     const auto told = follower.follow(100);
     ASSERT_EQ(told.size(), 1U);
@@ -151,7 +151,7 @@ TEST(BoneFollower, another_controller_brings_the_bone_back) {
     EXPECT_EQ(levels(follower.volume().density), levels(second.density));
 }
 
-TEST(BoneFollower, a_region_of_another_scene_is_refused_in_words) {
+TEST(BoneFollower, a_region_of_another_scene_is_refused) {
     const DrilledBone bone, other({24, 24, 16});
     BoneFollower follower(bone.view(), 6);
     EXPECT_NE(follower.attach(bone.mapped).find("another scene"), std::string::npos);
@@ -162,8 +162,8 @@ TEST(BoneFollower, a_region_of_another_scene_is_refused_in_words) {
     EXPECT_TRUE(smaller.follow(100).empty());
 }
 
-TEST(BoneFollower, nothing_beyond_the_size_is_taken_over) {
-    DrilledBone bone({20, 9, 9});  // 3 x 2 x 2 bricks, most of them in part
+TEST(BoneFollower, voxels_beyond_the_size_stay_zero) {
+    DrilledBone bone({20, 9, 9});  // 3 x 2 x 2 bricks, most of them partly filled
     for (std::size_t b = 0; b < bone.bricks.brick_count(); ++b)
         for (std::size_t v = 0; v < kVoxels; ++v) bone.cut(b, v, 255);
     std::fill(bone.density.begin(), bone.density.end(), std::uint8_t{0});

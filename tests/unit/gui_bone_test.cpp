@@ -1,4 +1,4 @@
-// What of a bone is seen, which parts of its picture are drawn when, and the instruments: all without a display.
+// Visible bone, order of tile updates, and instruments; without a display.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -14,17 +14,17 @@
 namespace tact {
 namespace {
 
-TEST(BoneField, what_is_soft_but_labelled_is_as_solid_as_the_share_of_it_that_is_left) {
-    EXPECT_EQ(solid_of(90, 200, 0), 90) << "bone without a label: its density";
-    EXPECT_EQ(solid_of(90, 200, 3), 90) << "a bony structure too";
+TEST(BoneField, a_soft_labelled_voxel_is_solid_in_proportion_to_its_remaining_density) {
+    EXPECT_EQ(solid_of(90, 200, 0), 90) << "unlabelled bone keeps its density";
+    EXPECT_EQ(solid_of(90, 200, 3), 90) << "a bony structure keeps its density";
     EXPECT_EQ(solid_of(40, 40, 3), 255);
     EXPECT_EQ(solid_of(20, 40, 3), 127);
     EXPECT_EQ(solid_of(0, 40, 3), 0);
-    EXPECT_EQ(solid_of(0, 0, 3), 255) << "what a scan shows nothing of stays as labelled";
+    EXPECT_EQ(solid_of(0, 0, 3), 255) << "invisible in the scan: solid as labelled";
     EXPECT_EQ(solid_of(0, 0, 0), 0);
 }
 
-// Two balls of bone in an odd-sized box.
+// Two balls of bone in a box of odd size.
 struct TwoBalls {
     BoneBlock block{45, 3e-4,
                     [](const Vec3& p) {
@@ -46,7 +46,7 @@ struct TwoBalls {
     }
 };
 
-// Whether a surface may be met inside of a cell: of points all over it, interpolated as the graphics card does.
+// True if no sample in a cell reaches the surface level, interpolated as on the graphics card.
 bool clear_of_surface(const BoneVolumeView& v, std::uint32_t cx, std::uint32_t cy, std::uint32_t cz) {
     const auto at = [&](int x, int y, int z) {
         const auto inside = [&](int i, std::size_t axis) {
@@ -85,7 +85,7 @@ void expect_true_distances(const BoneField& field, const BoneVolumeView& now) {
             for (std::uint32_t x = 0; x < nx; ++x) {
                 const int k = field.free_cells()[(std::size_t{z} * ny + y) * nx + x];
                 far += k > 2 ? 1 : 0;
-                // All cells nearer than k are clear of surfaces.
+                // All cells nearer than k contain no surface.
                 for (int dz = 1 - k; dz < k; ++dz)
                     for (int dy = 1 - k; dy < k; ++dy)
                         for (int dx = 1 - k; dx < k; ++dx) {
@@ -96,19 +96,19 @@ void expect_true_distances(const BoneField& field, const BoneVolumeView& now) {
                                 continue;
                             const auto at = static_cast<std::uint32_t>(
                                 (az * static_cast<int>(ny) + ay) * static_cast<int>(nx) + ax);
-                            ASSERT_NE(clear[at], 0) << x << "," << y << "," << z << " says " << k;
+                            ASSERT_NE(clear[at], 0) << x << "," << y << "," << z << " has distance " << k;
                         }
             }
-    EXPECT_GT(far, 50U) << "large steps are possible";
+    EXPECT_GT(far, 50U) << "large steps must be possible";
 }
 
-TEST(BoneField, no_surface_lies_where_a_ray_leaps) {
+TEST(BoneField, free_cells_contain_no_surface) {
     const TwoBalls two;
     const BoneField field(two.baked, two.labels, two.now);
     expect_true_distances(field, two.now);
 }
 
-TEST(BoneField, drilled_places_open_and_bone_that_comes_back_is_seen_again) {
+TEST(BoneField, drilled_cells_open_and_restored_bone_is_detected) {
     TwoBalls two;
     BoneField field(two.baked, two.labels, two.now);
     const auto brick = static_cast<std::uint32_t>(two.block.bricks.brick(33, 33, 33));
@@ -119,15 +119,15 @@ TEST(BoneField, drilled_places_open_and_bone_that_comes_back_is_seen_again) {
         two.drill(b);
         EXPECT_TRUE(field.changed(b));
     }
-    // In turn, bricks saw neighbours that were not drilled yet; at the next look all is open.
+    // In the first round, bricks were next to undrilled ones; in the second all space is open.
     for (std::uint32_t b = 0; b < two.block.bricks.brick_count(); ++b) EXPECT_TRUE(field.changed(b));
     EXPECT_GE(field.free_cells()[middle], 1);
     std::copy(whole.begin(), whole.end(), two.drilled.begin());
-    EXPECT_FALSE(field.changed(brick)) << "bone has come back: all is measured anew";
+    EXPECT_FALSE(field.changed(brick)) << "restored bone requires a new measurement";
     expect_true_distances(field, two.now);
 }
 
-TEST(BoneTiles, all_of_the_view_is_drawn_once_from_the_middle_outwards) {
+TEST(BoneTiles, the_view_is_drawn_once_from_the_middle_outwards) {
     BoneTiles tiles;
     tiles.resize(300, 200);
     tiles.all_wrong({0, 0, 300, 200});
@@ -156,14 +156,14 @@ TEST(BoneTiles, all_of_the_view_is_drawn_once_from_the_middle_outwards) {
     EXPECT_TRUE(tiles.take(5000).empty());
 }
 
-TEST(BoneTiles, a_tile_larger_than_the_rays_is_drawn_all_the_same) {
+TEST(BoneTiles, a_tile_larger_than_the_ray_budget_is_drawn) {
     BoneTiles tiles;
     tiles.resize(256, 64);
     tiles.all_wrong({0, 0, 256, 64});
     EXPECT_EQ(tiles.take(1).size(), 1U);
 }
 
-TEST(BoneTiles, where_bone_changed_is_drawn_first_and_only_there) {
+TEST(BoneTiles, only_stale_tiles_are_redrawn) {
     BoneTiles tiles;
     tiles.resize(640, 640);
     tiles.all_wrong({0, 0, 640, 640});
@@ -171,7 +171,7 @@ TEST(BoneTiles, where_bone_changed_is_drawn_first_and_only_there) {
     ASSERT_TRUE(tiles.all_good());
     tiles.stale({0, 0, 70, 10});
     EXPECT_FALSE(tiles.all_good());
-    EXPECT_EQ(tiles.rays_wrong(), 0U) << "shown until it is drawn again";
+    EXPECT_EQ(tiles.rays_wrong(), 0U) << "stale tiles stay visible until redrawn";
     const auto now = tiles.take(640 * 640);
     EXPECT_EQ(std::set<std::uint32_t>(now.begin(), now.end()), (std::set<std::uint32_t>{0, 1}));
 }
@@ -185,7 +185,7 @@ TEST(BoneTiles, beyond_the_bone_nothing_is_drawn) {
     EXPECT_TRUE(tiles.all_good());
 }
 
-TEST(RayPace, rays_fit_the_time_of_a_frame_and_come_back_slowly) {
+TEST(RayPace, rays_fit_the_frame_time_and_recover_slowly) {
     RayPace pace;
     for (int i = 0; i < 60; ++i) pace.took(0, 0.010);
     for (int i = 0; i < 60; ++i) pace.took(pace.rays_most(), 0.010 + 2e-6 * pace.rays_most());
@@ -193,9 +193,9 @@ TEST(RayPace, rays_fit_the_time_of_a_frame_and_come_back_slowly) {
     pace.took(pace.rays_most(), 0.010 + 8e-6 * pace.rays_most());
     const std::uint32_t dear = pace.rays_most();
     EXPECT_NEAR(dear, std::max((RayPace::kFrame_s - 0.010) / 8e-6, 1.0 * RayPace::kFewest), 500.0)
-        << "believed at once";
+        << "a higher cost is applied at once";
     pace.took(dear, 0.010 + 1e-6 * dear);
-    EXPECT_LT(pace.rays_most(), 1.3 * dear) << "believed slowly";
+    EXPECT_LT(pace.rays_most(), 1.3 * dear) << "a lower cost is applied slowly";
     for (const double odd : {0.0, -1.0, 100.0, std::nan("")}) {
         const std::uint32_t before = pace.rays_most();
         pace.took(20000, odd);
@@ -213,9 +213,9 @@ double farthest(const TubeMesh& mesh, double z_most) {
     return most;
 }
 
-TEST(DrillTools, a_head_reaches_as_far_as_it_cuts_and_normals_point_outwards) {
+TEST(DrillTools, a_drawn_head_has_the_size_of_the_tool_and_outward_normals) {
     DrawnDrillTool tool;
-    tool.radius_m = 3e-9;  // 30 angstroms
+    tool.radius_m = 3e-9;  // 30 ångström
     tool.length_m = 6e-9;
     tool.tip_radius_m = 3e-9;
     const TubeMesh ball = build_drill_tool(tool);
@@ -238,14 +238,14 @@ TEST(DrillTools, a_head_reaches_as_far_as_it_cuts_and_normals_point_outwards) {
     tool.head = DrillHead::cylinder;
     tool.length_m = 12e-9;
     const TubeMesh rod = build_drill_tool(tool);
-    EXPECT_NEAR(farthest(rod, 0.0), 60.0, 0.5) << "half of its length beyond the middle";
+    EXPECT_NEAR(farthest(rod, 0.0), 60.0, 0.5) << "half of its length";
     tool.head = DrillHead::tube;
     EXPECT_FALSE(build_drill_tool(tool).index.empty());
     tool.radius_m = 0.0;
     EXPECT_TRUE(build_drill_tool(tool).index.empty());
 }
 
-TEST(DrillHands, tools_are_drawn_in_model_lengths_and_turn_only_while_they_turn) {
+TEST(DrillHands, tools_are_drawn_in_model_units_and_rotate_only_when_driven) {
     DrillTopic topic{};
     SceneMeta meta{};
     meta.world_per_model = 2.0;

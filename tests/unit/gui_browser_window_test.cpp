@@ -1,5 +1,5 @@
-// A person opens the list of scenes with a key, presses another one with the mouse, and the launcher runs that.
-// All programs are the real ones, on an X server of their own.
+// A person opens the list of scenes with a key and clicks another scene, which the launcher then runs.
+// All programs are the real ones, on a separate X server.
 #include <gtest/gtest.h>
 #include <signal.h>
 #include <sys/wait.h>
@@ -17,14 +17,14 @@ namespace tact {
 namespace {
 
 using std::chrono::milliseconds;
-constexpr std::chrono::seconds kPatience(120);  // reached only when something is wrong
+constexpr std::chrono::seconds kPatience(120);  // reached only on failure
 
 class BrowserInTheWindow : public testing::Test {
 protected:
     void SetUp() override {
         for (const char* const program : {"Xvfb", "xdotool"})
             if (launch::find_in_path(program).empty())
-                GTEST_SKIP() << program << " is not installed: nothing can be pressed here";
+                GTEST_SKIP() << program << " is not installed: keys and clicks cannot be sent";
         char name[] = "/tmp/tact-browser-test-XXXXXX";
         folder_ = mkdtemp(name);
         setenv("TACT_RUNTIME_DIR", folder_.c_str(), 1);
@@ -32,7 +32,7 @@ protected:
         setenv("XDG_CACHE_HOME", (folder_ + "/cache").c_str(), 1);
         std::filesystem::create_directory(folder_ + "/cache");
         setenv("LIBGL_ALWAYS_SOFTWARE", "1", 1);
-        setenv("ASAN_OPTIONS", "detect_leaks=0", 1);  // graphics drivers keep memory to the end on purpose
+        setenv("ASAN_OPTIONS", "detect_leaks=0", 1);  // graphics drivers keep memory until exit on purpose
         x_server_ = std::make_unique<launch::XServer>(folder_, 1280, 720);
         for (const auto& [key, value] : x_server_->environment())
             value.empty() ? unsetenv(key.c_str()) : setenv(key.c_str(), value.c_str(), 1);
@@ -71,7 +71,7 @@ protected:
         std::ifstream file(folder_ + "/state/tact/recent.json");
         return {std::istreambuf_iterator<char>(file), {}};
     }
-    // Again and again until the words are there: a window that is busy may miss a click.
+    // Repeats `act` until the text appears, because a busy window may miss a click.
     template <class Act>
     bool until_words(const std::string& words, Act&& act) {
         const Instant until = Monotonic::now() + kPatience;
@@ -102,27 +102,27 @@ protected:
     pid_t tact_ = 0;
 };
 
-TEST_F(BrowserInTheWindow, a_scene_that_is_pressed_runs_and_is_the_newest_of_the_list) {
-    // The scene that runs comes first, then the one from before.
-    EXPECT_TRUE(until_words("asking the launcher for " + second_, [] {
+TEST_F(BrowserInTheWindow, a_clicked_scene_runs_and_becomes_the_newest_of_the_list) {
+    // The running scene is first in the list, the previous one second.
+    EXPECT_TRUE(until_words("requesting from the launcher: " + second_, [] {
         x("key --clearmodifiers o");
         std::this_thread::sleep_for(milliseconds(500));
         press("600 162");
     })) << log();
     ASSERT_TRUE(wait_for_words("showing " + second_)) << log();
-    EXPECT_NE(log().find("another scene was asked for: " + second_), std::string::npos) << log();
+    EXPECT_NE(log().find("another scene was requested: " + second_), std::string::npos) << log();
     const Instant until = Monotonic::now() + kPatience;
     while (recents().find("second.tact") > recents().find("first.tact") && Monotonic::now() < until)
         std::this_thread::sleep_for(milliseconds(20));
     EXPECT_LT(recents().find("second.tact"), recents().find("first.tact")) << recents();
-    EXPECT_NE(recents().find("/gone/away.tact"), std::string::npos) << "what is missing may come back";
+    EXPECT_NE(recents().find("/gone/away.tact"), std::string::npos) << "missing files stay in the list";
     kill(tact_, SIGINT);
     int status = 0;
     waitpid(std::exchange(tact_, 0), &status, 0);
     EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 0) << log();
 }
 
-TEST_F(BrowserInTheWindow, raw_data_that_are_marked_in_the_folder_are_imported_and_run) {
+TEST_F(BrowserInTheWindow, marked_raw_data_in_the_folder_is_imported_and_run) {
     const std::string mesh = folder_ + "/tetra.obj";
     std::ofstream(mesh) << "v 0 0 0\nv 9 0 0\nv 0 9 0\nv 0 0 9\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 1 4 3\n";
     EXPECT_TRUE(until_words("importing " + mesh, [] {
@@ -131,7 +131,7 @@ TEST_F(BrowserInTheWindow, raw_data_that_are_marked_in_the_folder_are_imported_a
         press("646 82");  // the folder: its parent, two folders, three scenes, the mesh
         std::this_thread::sleep_for(milliseconds(500));
         press("600 329");
-        press("506 488");  // below the rows
+        press("506 488");  // the button below the rows
     })) << log();
     EXPECT_TRUE(wait_for_words("showing " + folder_ + "/cache/tact/tetra-")) << log();
 }

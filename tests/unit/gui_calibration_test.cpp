@@ -1,4 +1,4 @@
-// The calibration of a stage without a window: measuring at rest, the steps, the file, and what is shown.
+// The calibration of a stage without a window: measurement at rest, steps, file, and displayed text.
 #include <gtest/gtest.h>
 #include <sys/resource.h>
 #include <unistd.h>
@@ -29,7 +29,7 @@ Vec3 noise(SeededRandom& random, double m) {
     return m * Vec3(x, y, z);
 }
 
-// A leaning wall, an arm turned against the tracker, a wand: what the calibration is to find.
+// The unknowns of the calibration: a leaning screen, an arm rotated against the tracker, a wand tip.
 struct Lab {
     Pose T_screen_glass{Vec3(0.12, -0.08, -0.4), quat_from_rotation_vector(Vec3(-0.3, 0.2, 0.05))};
     double width_m = 0.8, height_m = 0.45;
@@ -47,7 +47,7 @@ struct Lab {
     }
 };
 
-// A person before the screen, a picture every 20 ms.
+// A person in front of the screen; one frame every 20 ms.
 class Person {
 public:
     Person(const Lab& lab, Calibration& calibration) : lab_(lab), calibration_(calibration) {}
@@ -99,13 +99,13 @@ void touch_screen(Person& person, Calibration& calibration, const Lab& lab) {
 
 double apart_rad(const Quat& a, const Quat& b) { return rotation_vector_rad(a * b.conjugate()).norm(); }
 
-TEST(RestWindow, takes_the_mean_of_a_second_at_rest_and_says_the_spread) {
+TEST(RestWindow, takes_the_mean_and_spread_of_a_second_at_rest) {
     SeededRandom random(3);
     RestWindow window(4e-3);
     window.start(0.0);
     const Vec3 at(0.1, 0.2, 0.3);
     double t = 0.0;
-    // Moving at 0.2 m/s: a second of it is never within 4 mm.
+    // Moving at 0.2 m/s: no second stays within 4 mm.
     for (int i = 0; i < 100; ++i, t += 0.02) {
         window.add(t, i + 1, at + Vec3(0.2 * (t - 2.0), 0.0, 0.0), true);
         ASSERT_NE(window.state(), RestWindow::State::done);
@@ -114,9 +114,9 @@ TEST(RestWindow, takes_the_mean_of_a_second_at_rest_and_says_the_spread) {
     int frames = 0;
     for (; window.state() != RestWindow::State::done && frames < 200; ++frames, t += 0.02)
         window.add(t, 200 + frames, at + noise(random, 1e-3), true);
-    EXPECT_GE(frames, 45);  // what was moved a second ago is no longer among them
+    EXPECT_GE(frames, 45);  // samples from the motion have left the window
     EXPECT_LT((window.mean_m() - at).norm(), 1e-3);
-    // A hand that sinks by 4 mm a second has no place, however little it spreads.
+    // A hand that sinks by 4 mm/s is not at rest, even with a small spread.
     RestWindow sinking(4e-3);
     sinking.start(0.0);
     for (int i = 0; i < 200; ++i) {
@@ -126,11 +126,11 @@ TEST(RestWindow, takes_the_mean_of_a_second_at_rest_and_says_the_spread) {
     EXPECT_NEAR(window.spread_m(), std::sqrt(3.0) * 1e-3, 0.8e-3);
 }
 
-TEST(RestWindow, a_sample_that_is_repeated_or_no_number_is_not_counted_and_silence_begins_anew) {
+TEST(RestWindow, repeated_and_non_finite_samples_do_not_count_and_silence_restarts) {
     RestWindow window(2e-3);
     window.start(0.0);
     const Vec3 at(0.1, 0.0, 0.0);
-    for (int i = 0; i < 40; ++i) window.add(0.02 * i, 5, at, true);  // one sample, again and again
+    for (int i = 0; i < 40; ++i) window.add(0.02 * i, 5, at, true);  // the same sample repeatedly
     EXPECT_LE(window.samples(), 1U);
     EXPECT_TRUE(window.silent());
     EXPECT_NE(window.text("the wand").find("lost"), std::string::npos);
@@ -142,16 +142,16 @@ TEST(RestWindow, a_sample_that_is_repeated_or_no_number_is_not_counted_and_silen
     EXPECT_EQ(window.samples(), 0U);
     for (int i = 0; i < 1200; ++i, t += 0.02) window.add(t, 400 + i, at, false);
     EXPECT_EQ(window.state(), RestWindow::State::failed);
-    EXPECT_NE(window.text("the wand").find("nothing is heard"), std::string::npos);
+    EXPECT_NE(window.text("the wand").find("no data"), std::string::npos);
 }
 
-TEST(Calibration, finds_screen_and_workspace_from_noisy_touches_and_its_residual_is_of_the_noise) {
+TEST(Calibration, finds_screen_and_workspace_from_noisy_touches_with_a_residual_of_the_noise) {
     const Lab lab;
     Calibration calibration(start_of(lab));
     Person person(lab, calibration);
     touch_screen(person, calibration, lab);
     EXPECT_EQ(calibration.status().grade, FitGrade::green) << calibration.status().text;
-    // 1 mm an axis, the mean of some fifty: a seventh of it.
+    // Noise of 1 mm per axis, averaged over about fifty samples: a seventh of it.
     EXPECT_LT(calibration.marks().fit.residual_m_rms, 0.6e-3);
     EXPECT_GT(calibration.marks().fit.residual_m_rms, 0.02e-3);
     const ScreenPlace truth = lab.screen(), found = calibration.draft().screen;
@@ -181,7 +181,7 @@ TEST(Calibration, finds_screen_and_workspace_from_noisy_touches_and_its_residual
     }
 }
 
-TEST(Calibration, a_mark_that_was_missed_is_named_and_taken_again_it_is_green) {
+TEST(Calibration, a_wrong_mark_is_named_and_measured_again) {
     const Lab lab;
     for (const std::size_t missed : {std::size_t{0}, std::size_t{3}, std::size_t{4}}) {
         Calibration calibration(start_of(lab));
@@ -199,18 +199,18 @@ TEST(Calibration, a_mark_that_was_missed_is_named_and_taken_again_it_is_green) {
             EXPECT_EQ(before.lower_left_m, calibration.draft().screen.lower_left_m);
         }
         EXPECT_EQ(calibration.glass_text(), "POINT " + std::to_string(missed + 1) + " DOES NOT FIT");
-        EXPECT_NE(calibration.instruction().find("All points are taken"), std::string::npos);
+        EXPECT_NE(calibration.instruction().find("All points are measured"), std::string::npos);
         calibration.redo(missed);
         EXPECT_EQ(calibration.marks().current, missed);
         EXPECT_EQ(calibration.glass_text(), "WAND: TOUCH MARK " + std::to_string(missed + 1));
         person.touch(lab.mark_screen_m(missed));
         EXPECT_EQ(calibration.status().grade, FitGrade::green) << calibration.status().text;
         EXPECT_FALSE(calibration.marks().outlier());
-        EXPECT_EQ(calibration.glass_text(), "ALL POINTS ARE TAKEN");
+        EXPECT_EQ(calibration.glass_text(), "ALL POINTS DONE");
     }
 }
 
-TEST(Calibration, good_marks_have_no_outlier) {
+TEST(Calibration, accurate_marks_have_no_outlier) {
     const Lab lab;
     int named = 0;
     SeededRandom random(21);
@@ -225,7 +225,7 @@ TEST(Calibration, good_marks_have_no_outlier) {
     EXPECT_LE(named, 15);
 }
 
-TEST(Calibration, degenerate_points_are_refused_in_words_and_change_nothing) {
+TEST(Calibration, degenerate_points_are_refused_and_change_nothing) {
     const Lab lab;
     Calibration calibration(start_of(lab));
     Person person(lab, calibration);
@@ -244,7 +244,7 @@ TEST(Calibration, degenerate_points_are_refused_in_words_and_change_nothing) {
     EXPECT_FALSE(calibration.draft().in_workspace);
 }
 
-TEST(Calibration, a_wrong_size_is_told_and_the_measured_one_can_be_taken) {
+TEST(Calibration, a_wrong_size_is_reported_and_can_be_replaced_by_the_measured_one) {
     const Lab lab;
     Calibration calibration(start_of(lab));
     Person person(lab, calibration);
@@ -253,7 +253,7 @@ TEST(Calibration, a_wrong_size_is_told_and_the_measured_one_can_be_taken) {
     calibration.go(CalibrationStep::screen);
     for (std::size_t i = 0; i < kMarks; ++i) person.touch(lab.mark_screen_m(i));
     EXPECT_NE(calibration.status().grade, FitGrade::green);
-    EXPECT_NE(calibration.status().text.find("off what was typed"), std::string::npos)
+    EXPECT_NE(calibration.status().text.find("off the typed size"), std::string::npos)
         << calibration.status().text;
     calibration.use_measured_size();
     EXPECT_EQ(calibration.status().grade, FitGrade::green) << calibration.status().text;
@@ -261,7 +261,7 @@ TEST(Calibration, a_wrong_size_is_told_and_the_measured_one_can_be_taken) {
     EXPECT_NEAR(calibration.draft().screen.height_m(), lab.height_m, 1e-3);
 }
 
-TEST(Calibration, a_hand_that_moves_or_a_tracker_that_is_lost_is_waited_for_and_given_up_in_words) {
+TEST(Calibration, a_moving_hand_or_lost_tracker_ends_in_a_message_after_a_time) {
     const Lab lab;
     Calibration calibration(start_of(lab));
     Person person(lab, calibration);
@@ -271,7 +271,7 @@ TEST(Calibration, a_hand_that_moves_or_a_tracker_that_is_lost_is_waited_for_and_
     for (int i = 0; i < 60; ++i) person.frame(Vec3::Zero(), Vec3::Zero());
     calibration.take();
     EXPECT_FALSE(calibration.measuring());
-    EXPECT_NE(calibration.message().find("Nothing is heard of the tracker"), std::string::npos);
+    EXPECT_NE(calibration.message().find("No data from the tracker"), std::string::npos);
     person.seen = true;
     person.frame(Vec3::Zero(), Vec3::Zero());
     calibration.take();
@@ -283,8 +283,8 @@ TEST(Calibration, a_hand_that_moves_or_a_tracker_that_is_lost_is_waited_for_and_
     EXPECT_NE(calibration.live().find("lost"), std::string::npos);
     for (int i = 0; i < 1000; ++i) person.frame(Vec3::Zero(), Vec3::Zero());
     EXPECT_FALSE(calibration.measuring());
-    EXPECT_NE(calibration.message().find("Not taken"), std::string::npos);
-    // A pose that is no number is as good as none.
+    EXPECT_NE(calibration.message().find("Not measured"), std::string::npos);
+    // A non-finite pose counts as no pose.
     CalibrationInput in;
     in.now_s = 1e3;
     in.sensor_good = in.hand_good = true;
@@ -295,7 +295,7 @@ TEST(Calibration, a_hand_that_moves_or_a_tracker_that_is_lost_is_waited_for_and_
     EXPECT_FALSE(calibration.stylus_screen_m());
 }
 
-TEST(Calibration, stylus_and_wand_have_to_rest_together) {
+TEST(Calibration, stylus_and_wand_must_rest_together) {
     const Lab lab;
     Calibration calibration(start_of(lab));
     Person person(lab, calibration);
@@ -304,12 +304,12 @@ TEST(Calibration, stylus_and_wand_have_to_rest_together) {
     person.frame(Vec3::Zero(), Vec3::Zero());
     calibration.take();
     for (int i = 0; i < 100; ++i) person.frame(Vec3::Zero(), Vec3(0.01 * i, 0.0, 0.0));
-    EXPECT_EQ(calibration.marks().taken(), 0U);  // the wand alone rested for long
+    EXPECT_EQ(calibration.marks().taken(), 0U);  // only the wand rested
     for (int i = 0; i < 60; ++i) person.frame(Vec3::Zero(), Vec3(1.0, 0.0, 0.0));
     EXPECT_EQ(calibration.marks().taken(), 1U);
 }
 
-TEST(Calibration, nothing_is_asked_for_on_the_glass_before_it_can_be_done) {
+TEST(Calibration, the_screen_requests_nothing_before_it_is_possible) {
     const Lab lab;
     Calibration calibration(start_of(lab));
     Person person(lab, calibration);
@@ -318,16 +318,16 @@ TEST(Calibration, nothing_is_asked_for_on_the_glass_before_it_can_be_done) {
     for (const CalibrationStep step : {CalibrationStep::screen, CalibrationStep::workspace}) {
         calibration.go(step);
         EXPECT_EQ(calibration.lacking(), Lacking::size);
-        EXPECT_EQ(calibration.glass_text(), "FIRST TYPE THE SIZE OF THE PICTURE");
-        EXPECT_NE(calibration.instruction().find("size comes first"), std::string::npos);
+        EXPECT_EQ(calibration.glass_text(), "FIRST TYPE THE DISPLAY SIZE");
+        EXPECT_NE(calibration.instruction().find("size is missing"), std::string::npos);
         calibration.take();
         EXPECT_FALSE(calibration.measuring());
-        EXPECT_NE(calibration.message().find("size comes first"), std::string::npos) << calibration.message();
+        EXPECT_NE(calibration.message().find("size is missing"), std::string::npos) << calibration.message();
     }
-    calibration.set_workspace_by_wand(true);  // which needs no picture
+    calibration.set_workspace_by_wand(true);  // needs no display
     EXPECT_EQ(calibration.lacking(), Lacking::nothing);
     EXPECT_EQ(calibration.glass_text(), "STYLUS TO WAND: POINT 1");
-    EXPECT_EQ(calibration.instruction().find("size comes first"), std::string::npos);
+    EXPECT_EQ(calibration.instruction().find("size is missing"), std::string::npos);
     calibration.set_workspace_by_wand(false);
     calibration.set_picture_size(lab.width_m, lab.height_m);
     EXPECT_EQ(calibration.glass_text(), "STYLUS: TOUCH MARK 1");
@@ -338,12 +338,12 @@ TEST(Calibration, nothing_is_asked_for_on_the_glass_before_it_can_be_done) {
     calibration.take();
     person.seen = person.arm = false;
     for (int i = 0; i < 60; ++i) person.frame(Vec3::Zero(), Vec3::Zero());
-    EXPECT_EQ(calibration.glass_text(), "THE TRACKER SEES NO SENSOR");
+    EXPECT_EQ(calibration.glass_text(), "NO SENSOR TRACKED");
     calibration.go(CalibrationStep::workspace);
-    EXPECT_EQ(calibration.glass_text(), "NOTHING IS HEARD OF THE STYLUS");
+    EXPECT_EQ(calibration.glass_text(), "NO DATA FROM THE STYLUS");
 }
 
-TEST(Calibration, the_stylus_button_takes_once_per_press) {
+TEST(Calibration, the_stylus_button_measures_once_per_press) {
     const Lab lab;
     Calibration calibration(start_of(lab));
     Person person(lab, calibration);
@@ -357,7 +357,7 @@ TEST(Calibration, the_stylus_button_takes_once_per_press) {
     EXPECT_FALSE(calibration.measuring());
 }
 
-TEST(Calibration, the_tip_of_the_wand_is_found_by_turning_about_it) {
+TEST(Calibration, the_tip_of_the_wand_is_found_by_rotating_about_it) {
     const Lab lab;
     Calibration calibration{StageSettings{}};
     Person person(lab, calibration);
@@ -370,8 +370,8 @@ TEST(Calibration, the_tip_of_the_wand_is_found_by_turning_about_it) {
                          quat_from_rotation_vector(
                              0.4 * Vec3(std::sin(0.05 * i), well ? std::cos(0.07 * i) : 0.0, 0.0)));
         EXPECT_FALSE(calibration.measuring());
-        if (!well) {  // about one axis the tip may be anywhere along it
-            EXPECT_NE(calibration.message().find("turned too little"), std::string::npos)
+        if (!well) {  // rotation about one axis leaves the tip undetermined along it
+            EXPECT_NE(calibration.message().find("tilted too little"), std::string::npos)
                 << calibration.message();
         } else {
             EXPECT_LT((calibration.draft().wand_tip_sensor_m - lab.tip_sensor_m).norm(), 1e-3)
@@ -380,13 +380,13 @@ TEST(Calibration, the_tip_of_the_wand_is_found_by_turning_about_it) {
     }
 }
 
-TEST(Calibration, what_is_typed_is_checked) {
+TEST(Calibration, typed_values_are_checked) {
     Calibration calibration{StageSettings{}};
     calibration.set_picture_size(NAN, 0.3);
     EXPECT_FALSE(calibration.draft().screen_measured);
     EXPECT_NE(calibration.message(), "");
     calibration.set_screen({Vec3(0, 0, 0), Vec3(0.5, 0, 0), Vec3(0.3, 0.3, 0)});
-    EXPECT_NE(calibration.message().find("no rectangle"), std::string::npos);
+    EXPECT_NE(calibration.message().find("not form a rectangle"), std::string::npos);
     calibration.set_screen({Vec3(0, 0, 0), Vec3(0.5, INFINITY, 0), Vec3(0, 0.3, 0)});
     EXPECT_FALSE(calibration.draft().screen_measured);
     calibration.set_screen({Vec3(0, 0, 0), Vec3(0.5, 0, 0), Vec3(0, 0.3, 0)});
@@ -434,7 +434,7 @@ void same(const StageSettings& a, const StageSettings& b) {
     close(a.wand_tip_sensor_m, b.wand_tip_sensor_m);
 }
 
-TEST_F(StageFileWritten, is_read_back_as_the_same_stage_and_the_old_one_is_kept) {
+TEST_F(StageFileWritten, reads_back_unchanged_and_keeps_the_old_file) {
     const Lab lab;
     StageSettings s = start_of(lab);
     s.mode = StereoMode::two_windows;
@@ -452,16 +452,16 @@ TEST_F(StageFileWritten, is_read_back_as_the_same_stage_and_the_old_one_is_kept)
     ASSERT_TRUE(std::filesystem::exists(old));
     std::ifstream in(old);
     EXPECT_EQ(std::string(std::istreambuf_iterator<char>(in), {}), "# by hand\nmode = \"anaglyph\"\n");
-    // Again at once: both old ones stay.
+    // A second write at once keeps both old files.
     const auto second = write_stage_file(path, StageSettings{});
     EXPECT_NE(second, old);
     same(StageSettings{}, read_stage_file(path));
     same(s, read_stage_file(second));
     EXPECT_TRUE(write_stage_file(folder_ / "new.toml", s).empty());
-    EXPECT_EQ(files(), 4);  // and nothing that is half written
+    EXPECT_EQ(files(), 4);  // and no partial file
 }
 
-TEST_F(StageFileWritten, what_cannot_be_read_again_is_not_written_and_a_folder_that_is_not_there_is_told) {
+TEST_F(StageFileWritten, unreadable_settings_are_not_written_and_a_missing_folder_is_reported) {
     StageSettings s;
     const auto path = folder_ / "lab.toml";
     std::ofstream(path) << "mode = \"anaglyph\"\n";
@@ -472,7 +472,7 @@ TEST_F(StageFileWritten, what_cannot_be_read_again_is_not_written_and_a_folder_t
     EXPECT_EQ(files(), 1);
 }
 
-TEST_F(StageFileWritten, where_there_is_no_room_the_folder_stays_as_it_was) {
+TEST_F(StageFileWritten, without_disk_space_the_folder_is_unchanged) {
     const auto path = folder_ / "lab.toml";
     std::ofstream(path) << "mode = \"anaglyph\"\n";
     rlimit before{};
@@ -493,7 +493,7 @@ TEST_F(StageFileWritten, where_there_is_no_room_the_folder_stays_as_it_was) {
     EXPECT_EQ(read_stage_file(path).mode, StereoMode::anaglyph);
 }
 
-TEST(TestPicture, its_steps_stand_where_they_say_and_the_tool_is_where_the_hand_is) {
+TEST(TestPicture, steps_have_their_depths_and_the_tool_is_at_the_hand) {
     const GlassSize glass{530.0, 300.0, 0.28};
     const auto depths = stair_depths_mm(glass);
     EXPECT_DOUBLE_EQ(depths[2], 0.0);
@@ -511,18 +511,18 @@ TEST(TestPicture, its_steps_stand_where_they_say_and_the_tool_is_where_the_hand_
         EXPECT_LE(std::abs(v.y_mm), 151.0F);
     }
     ASSERT_GT(with_tool.size(), plain.size());
-    // The cross comes last: first its three bars.
+    // The cross is last; its three bars come first.
     for (std::size_t i = plain.size(); i < plain.size() + 6 * 4; ++i, count += 1.0)
         middle +=
             Eigen::Vector3d(static_cast<double>(with_tool[i].x_mm), static_cast<double>(with_tool[i].y_mm),
                             static_cast<double>(with_tool[i].z_mm));
     EXPECT_LT((middle / count - tool).norm(), 1e-3);
-    // Each eye has a word of its own.
+    // Each eye has its own text.
     const auto right = test_picture(glass, {1, {}});
     EXPECT_NE(plain.size(), right.size());
 }
 
-TEST(TestPicture, the_words_of_the_eyes_stand_within_the_circle_and_apart) {
+TEST(TestPicture, the_texts_for_the_two_eyes_are_inside_the_circle_and_separate) {
     for (const GlassSize& glass : {GlassSize{530.0, 300.0, 0.28}, GlassSize{400.0, 400.0, 2.0}}) {
         const auto inks_of = [&](std::size_t eye) {
             std::set<std::array<int, 3>> inks;

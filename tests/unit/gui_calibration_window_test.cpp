@@ -1,5 +1,5 @@
-// A calibration from the first key to the file, in a window on an X server of its own: keys and clicks as a person's, the
-// emulated tracker with its noise, frames and filter, and the emulated arm. What is found is what the laboratory of the test is.
+// A complete calibration in a window on a separate X server, with keys and clicks, the emulated tracker (noise, frames,
+// filter) and the emulated arm. The result must match the geometry of the test laboratory.
 #include <fcntl.h>
 #include <gtest/gtest.h>
 #include <sys/wait.h>
@@ -33,7 +33,7 @@ Vec3 mark_m(std::size_t i) {
            Vec3((kMarkPlaces[i][0] - 0.5) * kWidthM, (kMarkPlaces[i][1] - 0.5) * kHeightM, 0.0);
 }
 
-// The controller with emulated devices: what is published is what tact-rt publishes of them.
+// A controller with emulated devices that publishes the same topics as tact-rt.
 class Laboratory {
 public:
     Laboratory() {
@@ -52,7 +52,7 @@ public:
         const std::lock_guard lock(mutex_);
         arm_.hold(at_world_m);
     }
-    // On a thread of its own, as the controller is a process of its own: the window is never left without poses.
+    // Runs on its own thread, like a separate controller process, so the window always gets poses.
     void run() {
         thread_ = std::jthread([this](const std::stop_token& over) {
             while (!over.stop_requested()) {
@@ -90,7 +90,7 @@ private:
     std::unique_ptr<LinkServer> server_;
     MappedRegion<GuiRegion> gui_;
     std::atomic<bool> attached_{false};
-    std::mutex mutex_;  // of the arm
+    std::mutex mutex_;  // protects the arm
     std::jthread thread_;
 };
 
@@ -99,12 +99,12 @@ protected:
     void SetUp() override {
         for (const char* const program : {"Xvfb", "xdotool"})
             if (launch::find_in_path(program).empty())
-                GTEST_SKIP() << program << " is not installed: no key can be pressed here";
+                GTEST_SKIP() << program << " is not installed: keys cannot be sent";
         char name[] = "/tmp/tact-calibration-test-XXXXXX";
         folder_ = mkdtemp(name);
         setenv("TACT_RUNTIME_DIR", folder_.c_str(), 1);
         setenv("LIBGL_ALWAYS_SOFTWARE", "1", 1);
-        // Graphics drivers and X libraries keep memory to the end on purpose.
+        // Graphics drivers and X libraries keep memory until exit on purpose.
         setenv("ASAN_OPTIONS", "detect_leaks=0", 1);
         x_server_ = std::make_unique<launch::XServer>(folder_, 1024, 720);
         for (const auto& [key, value] : x_server_->environment())
@@ -130,7 +130,7 @@ protected:
         std::ifstream file(folder_ + "/gui.log");
         return {std::istreambuf_iterator<char>(file), {}};
     }
-    // Waits until the window has said so often what is wanted.
+    // Waits until the log contains `words` `times` times.
     [[nodiscard]] bool logged(const std::string& words, std::size_t times = 1) {
         return test::wait_for([&] {
                    const std::string text = log();
@@ -154,9 +154,9 @@ protected:
     std::unique_ptr<launch::Child> gui_;
 };
 
-TEST_F(CalibrationWindow, is_rehearsed_with_emulated_devices_from_the_first_key_to_the_file) {
+TEST_F(CalibrationWindow, completes_with_emulated_devices_from_the_first_key_to_the_file) {
     const std::string file = folder_ + "/lab.toml";
-    // The picture's size from a ruler; where it stands is not known yet.
+    // The display size from a ruler; its pose is unknown.
     std::ofstream(file)
         << "[screen]\nlower_left_m = [-0.22, -0.17, 0.0]\nlower_right_m = [0.22, -0.17, 0.0]\n"
            "upper_left_m = [-0.22, 0.17, 0.0]\n";
@@ -165,41 +165,41 @@ TEST_F(CalibrationWindow, is_rehearsed_with_emulated_devices_from_the_first_key_
     ASSERT_TRUE(test::wait_for([&] { return laboratory_->attached(); })) << log();
     laboratory_->hold_wand(mark_m(0));
     press("k");
-    ASSERT_TRUE(logged("calibration: begins")) << log();
+    ASSERT_TRUE(logged("calibration: started")) << log();
     press("Return");
     press("Return");
     ASSERT_TRUE(logged("step 3, Screen")) << log();
     for (std::size_t i = 0; i < kMarks; ++i) {
-        // The third mark is missed by 3 cm at first.
+        // The third mark is first measured 3 cm off.
         laboratory_->hold_wand(mark_m(i) + (i == 2 ? Vec3(0.03, 0.0, 0.01) : Vec3(Vec3::Zero())));
         press("t");
-        ASSERT_TRUE(logged("Point " + std::to_string(i + 1) + " is taken")) << log();
+        ASSERT_TRUE(logged("Point " + std::to_string(i + 1) + " measured")) << log();
     }
     press("Return");
-    ASSERT_TRUE(logged("Point 3 does not fit the others: take it again")) << log();
+    ASSERT_TRUE(logged("Point 3 does not fit the others: measure it again")) << log();
     press("Escape");
-    ASSERT_TRUE(logged("calibration: left")) << log();
+    ASSERT_TRUE(logged("calibration: closed")) << log();
     EXPECT_FALSE(std::filesystem::exists(folder_ + "/stage.toml"));
 
     press("k");
-    ASSERT_TRUE(logged("calibration: begins", 2)) << log();
+    ASSERT_TRUE(logged("calibration: started", 2)) << log();
     press("Return");
     press("Return");
     ASSERT_TRUE(logged("step 3, Screen", 2)) << log();
     for (std::size_t i = 0; i < kMarks; ++i) {
         laboratory_->hold_wand(mark_m(i));
         press("t");
-        ASSERT_TRUE(logged("Point " + std::to_string(i + 1) + " is taken", 2)) << log();
+        ASSERT_TRUE(logged("Point " + std::to_string(i + 1) + " measured", 2)) << log();
     }
-    press("b");  // the last one once more
-    ASSERT_TRUE(logged("Point 6 is to be taken again")) << log();
+    press("b");  // repeat the last point
+    ASSERT_TRUE(logged("Point 6 will be measured again")) << log();
     press("t");
-    ASSERT_TRUE(logged("Point 6 is taken", 3)) << log();
+    ASSERT_TRUE(logged("Point 6 measured", 3)) << log();
     press("Return");
     ASSERT_TRUE(logged("calibration: Screen: green")) << log();
     ASSERT_TRUE(logged("step 4, Workspace")) << log();
 
-    // Where the arm reaches: the stylus at the marks.
+    // Measure the marks within the arm's reach with the stylus.
     std::size_t taken = 0;
     for (std::size_t i = 0; i < kMarks; ++i) {
         const Vec3 at_world_m = kScreenWorld.inverse() * mark_m(i);
@@ -210,7 +210,7 @@ TEST_F(CalibrationWindow, is_rehearsed_with_emulated_devices_from_the_first_key_
         }
         laboratory_->hold_stylus(at_world_m);
         press("t");
-        ASSERT_TRUE(logged("Point " + std::to_string(i + 1) + " is taken", i == 5 ? 4 : 3)) << log();
+        ASSERT_TRUE(logged("Point " + std::to_string(i + 1) + " measured", i == 5 ? 4 : 3)) << log();
         ++taken;
     }
     ASSERT_GE(taken, kMarksMin);
@@ -222,7 +222,7 @@ TEST_F(CalibrationWindow, is_rehearsed_with_emulated_devices_from_the_first_key_
     press("ctrl+s");
     ASSERT_TRUE(logged("and read back")) << log();
     press("Escape");
-    ASSERT_TRUE(logged("calibration: left", 2)) << log();
+    ASSERT_TRUE(logged("calibration: closed", 2)) << log();
 
     const StageSettings found = read_stage_file(file);
     const ScreenPlace flat = ScreenPlace::of_size(kWidthM, kHeightM);

@@ -12,7 +12,7 @@
 #include "gui/render/target.hpp"
 #include "gui/window/window.hpp"
 
-// Graphics drivers and X libraries keep memory to the end on purpose.
+// Graphics drivers and X libraries deliberately keep memory until exit.
 extern "C" const char* __asan_default_options() { return "detect_leaks=0"; }
 
 namespace tact {
@@ -37,9 +37,9 @@ protected:
         server_.reset();
         if (!folder_.empty()) std::filesystem::remove_all(folder_);
     }
-    // Skips where nothing can be drawn; else the image is bound.
+    // Skips the case if there is no X server to draw on; otherwise binds the image.
     void SetUp() override {
-        if (!server_) GTEST_SKIP() << "Xvfb is not installed: nothing can be drawn here";
+        if (!server_) GTEST_SKIP() << "Xvfb is not installed: there is no display to draw on";
         target_->bind();
     }
 

@@ -23,7 +23,7 @@ Particle particle(Matter matter, float x, float y, float z) {
     return p;
 }
 
-// A slab of so many layers across the view, its face in z = 0.
+// A slab of `layers` layers across the view with its front face at z = 0.
 std::vector<Particle> slab(Matter matter, int layers) {
     std::vector<Particle> all;
     for (int z = 0; z < layers; ++z)
@@ -34,7 +34,7 @@ std::vector<Particle> slab(Matter matter, int layers) {
     return all;
 }
 
-TEST(ParticleDots, grains_come_first_and_what_is_wet_has_a_box) {
+TEST(ParticleDots, grains_come_first_and_fluids_have_a_bounding_box) {
     const std::vector<Particle> particles{
         particle(Matter::water, 1, 2, 3), particle(Matter::dust, 90, 90, 90),
         particle(Matter::blood, -4, 5, 6), particle(Matter::paste, 7, 8, 9)};
@@ -49,10 +49,10 @@ TEST(ParticleDots, grains_come_first_and_what_is_wet_has_a_box) {
     EXPECT_TRUE(dots.empty());
 }
 
-TEST(ParticlePace, gives_way_at_once_and_comes_back_slowly_and_does_not_fall_for_what_pixels_cost) {
+TEST(ParticlePace, falls_at_once_recovers_slowly_and_ignores_the_cost_of_pixels) {
     ParticlePace pace;
     EXPECT_EQ(pace.most(), 12000U);
-    for (int i = 0; i < 10; ++i) pace.took(1000, 0.005);  // all but one of it for pixels
+    for (int i = 0; i < 10; ++i) pace.took(1000, 0.005);  // almost all of the time is per pixel
     EXPECT_GT(pace.most(), 11000U);
     for (int i = 0; i < 5; ++i) pace.took(12000, 0.1);
     EXPECT_EQ(pace.most(), ParticlePace::kLeast);
@@ -71,7 +71,7 @@ protected:
         Canvas::SetUp();
         if (IsSkipped()) return;
         camera_.frame(12.0F);
-        // Along -z: a particle's x and y are those of the picture.
+        // Along -z: x and y of a particle are those of the image.
         view_.eye_from_cells = Eigen::Matrix4f::Identity();
         view_.eye_from_cells(2, 3) = -camera_.distance_a();
         view_.projection = camera_.projection(static_cast<float>(kWidth) / kHeight);
@@ -83,7 +83,7 @@ protected:
         cloud_.reset();
         EXPECT_EQ(glGetError(), GLenum{GL_NO_ERROR});
     }
-    // Over white, with everything at this depth in clip space (1: nothing is there).
+    // Draws on white with a background at this depth in clip space (1: no background).
     Image picture(std::span<const Particle> particles, double depth = 1.0) {
         glViewport(0, 0, kWidth, kHeight);
         glClearColor(1.0F, 1.0F, 1.0F, 1.0F);
@@ -102,7 +102,7 @@ protected:
         EXPECT_EQ(frame, own);
         return read_pixels(kWidth, kHeight);
     }
-    // Of clip space, at this z of the particles.
+    // Depth in clip space for this z of particles.
     double depth_at(float z) const {
         const Eigen::Vector4f clip =
             view_.projection * (view_.eye_from_cells * Eigen::Vector4f(0.0F, 0.0F, z, 1.0F));
@@ -124,16 +124,16 @@ protected:
     ParticleCloud::View view_;
 };
 
-TEST_F(GuiCloud, nothing_is_drawn_of_nothing) { EXPECT_EQ(touched(picture({})), 0U); }
+TEST_F(GuiCloud, no_particles_draw_nothing) { EXPECT_EQ(touched(picture({})), 0U); }
 
-TEST_F(GuiCloud, blood_hides_what_lies_behind_and_water_does_not) {
+TEST_F(GuiCloud, blood_hides_the_background_and_water_does_not) {
     const auto blood = middle(picture(slab(Matter::blood, 3))),
                water = middle(picture(slab(Matter::water, 3)));
     EXPECT_GT(blood[0], 50);
     EXPECT_LT(blood[1], 60);
     EXPECT_LT(blood[2], 60);
     for (const int c : water) EXPECT_GT(c, 150);
-    EXPECT_GT(touched(picture(slab(Matter::water, 3))), 2000U);  // but it is seen
+    EXPECT_GT(touched(picture(slab(Matter::water, 3))), 2000U);  // but water is visible
     const auto dust = middle(picture(slab(Matter::dust, 1)));
     EXPECT_GT(dust[0], dust[2]);  // ivory
     const auto paste = middle(picture(slab(Matter::paste, 3)));
@@ -141,7 +141,7 @@ TEST_F(GuiCloud, blood_hides_what_lies_behind_and_water_does_not) {
     EXPECT_GT(paste[1], 80);
 }
 
-TEST_F(GuiCloud, what_lies_behind_the_scene_is_not_drawn) {
+TEST_F(GuiCloud, particles_behind_the_scene_are_not_drawn) {
     for (const Matter matter : {Matter::dust, Matter::water, Matter::blood, Matter::paste}) {
         const std::vector<Particle> particles = slab(matter, 2);
         EXPECT_GT(touched(picture(particles, depth_at(-6.0F))), 2000U) << static_cast<int>(matter);
@@ -149,7 +149,7 @@ TEST_F(GuiCloud, what_lies_behind_the_scene_is_not_drawn) {
     }
 }
 
-TEST_F(GuiCloud, drops_that_touch_are_one_body_and_far_ones_are_not) {
+TEST_F(GuiCloud, touching_drops_merge_and_distant_ones_do_not) {
     const auto gap = [&](float apart) {
         const std::array drops{particle(Matter::blood, -0.5F * apart, 0, 0),
                                particle(Matter::blood, 0.5F * apart, 0, 0)};
@@ -159,20 +159,20 @@ TEST_F(GuiCloud, drops_that_touch_are_one_body_and_far_ones_are_not) {
     EXPECT_EQ(gap(8.0F), 255);
 }
 
-TEST_F(GuiCloud, a_view_of_another_size_or_from_close_by_does_no_harm) {
+TEST_F(GuiCloud, another_view_size_or_a_close_eye_does_no_harm) {
     const std::vector<Particle> particles = slab(Matter::water, 2);
     view_.x_px = 40;
     view_.y_px = 30;
     view_.width_px = 61;
     view_.height_px = 43;
     EXPECT_GT(touched(picture(particles)), 500U);
-    view_.eye_from_cells(2, 3) = -0.5F;  // the eye is in it
+    view_.eye_from_cells(2, 3) = -0.5F;  // the eye is inside
     static_cast<void>(picture(particles));
-    view_.eye_from_cells(2, 3) = 50.0F;  // behind it
+    view_.eye_from_cells(2, 3) = 50.0F;  // the particles are behind the eye
     EXPECT_EQ(touched(picture(particles)), 0U);
 }
 
-TEST_F(GuiCloud, a_scene_shows_no_more_particles_than_there_may_be_whether_they_are_given_up_yet_or_not) {
+TEST_F(GuiCloud, a_scene_draws_no_more_particles_than_its_limit) {
     BoneBricks bricks;
     bricks.size = {32, 32, 32};
     bricks.voxel_m = 3e-4;

@@ -1,4 +1,4 @@
-// Contours beside the frame loop: extraction, the worker, the child that refines.
+// Contours beside the frame loop: extraction, worker thread, and refinement by a child process.
 #include <gtest/gtest.h>
 #include <signal.h>
 #include <sys/wait.h>
@@ -24,14 +24,14 @@ namespace {
 
 using test::wait_for;
 
-// Minus the distance from the middle: the surface at -r is a sphere of radius r.
+// Minus the distance from the centre: the contour at -r is a sphere of radius r.
 std::shared_ptr<SceneContent> ball(std::uint32_t size) {
     auto content = std::make_shared<SceneContent>();
     content->grid = test::sampled(size, [](const Vec3& p) { return -p.norm(); });
     return content;
 }
 
-TEST(ContourExtract, lies_where_the_level_is_and_faces_outwards) {
+TEST(ContourExtract, lies_at_the_level_and_faces_outwards) {
     const DensityGrid grid = ball(33)->grid;
     for (const std::uint32_t stride : {1U, 2U, 4U}) {
         const PlainMesh mesh = extract_contour(thinned(grid, stride), -0.6);
@@ -47,7 +47,7 @@ TEST(ContourExtract, lies_where_the_level_is_and_faces_outwards) {
     EXPECT_TRUE(extract_contour(grid, 5.0).empty());
 }
 
-TEST(ContourExtract, a_thinned_grid_has_every_nth_voxel_in_its_place) {
+TEST(ContourExtract, a_thinned_grid_has_every_nth_voxel_at_its_position) {
     const DensityGrid grid =
         test::sampled(11, [](const Vec3& p) { return p.x() + 10.0 * p.y() + 100.0 * p.z(); });
     const DensityGrid thin = thinned(grid, 3);
@@ -59,7 +59,7 @@ TEST(ContourExtract, a_thinned_grid_has_every_nth_voxel_in_its_place) {
         }
 }
 
-TEST(ContourExtract, the_stride_follows_time_and_vertices_and_comes_back) {
+TEST(ContourExtract, the_stride_follows_time_and_vertices_and_recovers) {
     DensityGrid grid;
     grid.size = {100, 100, 100};
     StrideLimits limits;
@@ -67,7 +67,7 @@ TEST(ContourExtract, the_stride_follows_time_and_vertices_and_comes_back) {
     EXPECT_EQ(next_stride(grid, 1, 2.0 * limits.extract_s_max, 100, limits), 2U);
     EXPECT_EQ(next_stride(grid, 1, 0.0, limits.vertices_max + 1, limits), 2U);
     EXPECT_EQ(next_stride(grid, 2, 0.001, 100, limits), 1U);
-    // Not where the finer one would be too slow or too large.
+    // Not if the finer stride would be too slow or too large.
     EXPECT_EQ(next_stride(grid, 2, 0.9 * limits.extract_s_max, 100, limits), 2U);
     EXPECT_EQ(next_stride(grid, 2, 0.001, limits.vertices_max / 2, limits), 2U);
     EXPECT_EQ(next_stride(grid, kStrideMax, 100.0, 1U << 30U, limits), kStrideMax);
@@ -76,7 +76,7 @@ TEST(ContourExtract, the_stride_follows_time_and_vertices_and_comes_back) {
     EXPECT_EQ(next_stride(grid, first_stride(grid, limits), 0.0, 1, limits), first_stride(grid, limits));
 }
 
-// Takes until one fits.
+// Takes outcomes until one fits.
 template <class F>
 ContourOutcome take_until(ContourWorker& worker, std::size_t contour, F&& fits) {
     ContourOutcome outcome;
@@ -112,7 +112,7 @@ TEST(ContourWorker, shows_the_newest_level_then_refines_it_once) {
     EXPECT_EQ(std::count(refined.begin(), refined.end(), -0.7), 1);
 }
 
-TEST(ContourWorker, a_wish_stops_the_refinement_before_it) {
+TEST(ContourWorker, a_request_stops_the_previous_refinement) {
     std::atomic<int> begun{0}, stopped{0};
     ContourWorker worker(
         ball(15),
@@ -125,13 +125,13 @@ TEST(ContourWorker, a_wish_stops_the_refinement_before_it) {
         Duration::zero());
     worker.request(0, -0.5);
     ASSERT_TRUE(wait_for([&] { return begun == 1; }));
-    worker.request(1, -0.6);  // of another contour: the one under way waits
+    worker.request(1, -0.6);  // another contour: the current refinement is interrupted
     (void)take_until(worker, 1, [](const ContourOutcome& o) { return o.plain != nullptr; });
     EXPECT_GE(stopped, 1);
-    ASSERT_TRUE(wait_for([&] { return begun >= 2; }));  // taken up again; ended by the destructor
+    ASSERT_TRUE(wait_for([&] { return begun >= 2; }));  // started again; the destructor ends it
 }
 
-TEST(ContourWorker, tells_what_went_wrong_and_is_not_stuck) {
+TEST(ContourWorker, reports_errors_and_continues) {
     ContourWorker worker(
         ball(15),
         [](double, const std::function<bool()>&) -> std::shared_ptr<const ProgressiveMesh> {
@@ -141,13 +141,13 @@ TEST(ContourWorker, tells_what_went_wrong_and_is_not_stuck) {
     worker.request(0, -0.5);
     const auto bad = take_until(worker, 0, [](const ContourOutcome& o) { return !o.error.empty(); });
     EXPECT_NE(bad.error.find("no such luck"), std::string::npos);
-    worker.request(0, std::nan(""));  // no request
-    worker.request(9, 1.0);           // no contour
+    worker.request(0, std::nan(""));  // an invalid level
+    worker.request(9, 1.0);           // an invalid contour
     worker.request(0, -0.4);
     (void)take_until(worker, 0, [](const ContourOutcome& o) { return o.plain && o.level == -0.4; });
 }
 
-TEST(ContourWorker, keeps_to_the_vertices_it_may_use) {
+TEST(ContourWorker, keeps_its_vertex_limit) {
     const auto content = ball(65);
     ContourWorker worker(content, {}, Duration::zero());
     const std::size_t all = extract_contour(content->grid, -0.8).vertex.size();
@@ -172,7 +172,7 @@ protected:
         content_ = load_scene(folder_ + "/scene.tact");
     }
     ~ContourChild() override { std::filesystem::remove_all(folder_); }
-    // A program that does this instead of contouring.
+    // A script in place of tact-prep.
     std::string program(const std::string& script) const {
         const std::string path = folder_ + "/prep.sh";
         std::ofstream(path) << "#!/bin/sh\n" << script;
@@ -191,7 +191,7 @@ protected:
     std::shared_ptr<const SceneContent> content_;
 };
 
-TEST_F(ContourChild, brings_the_surface_of_this_scene_at_this_level) {
+TEST_F(ContourChild, returns_the_surface_of_this_scene_at_this_level) {
     const double level = 1.3 * content_->meta.contour;
     const auto mesh = refine_by_child(content_, TACT_PREP)(level, [] { return false; });
     const TriangleMesh expected = isosurface(content_->grid, level);
@@ -199,21 +199,21 @@ TEST_F(ContourChild, brings_the_surface_of_this_scene_at_this_level) {
     EXPECT_EQ(mesh->triangles(), expected.triangles());
 }
 
-TEST_F(ContourChild, failures_are_words_never_crashes) {
+TEST_F(ContourChild, failures_are_reported_without_crash) {
     EXPECT_NE(
         failure(refine_by_child(content_, program("echo out of luck >&2; exit 3\n"))).find("out of luck"),
         std::string::npos);
-    EXPECT_NE(failure(refine_by_child(content_, program("exit 0\n"))), "no error");  // wrote nothing
+    EXPECT_NE(failure(refine_by_child(content_, program("exit 0\n"))), "no error");  // writes nothing
     EXPECT_NE(failure(refine_by_child(content_, program("head -c 5000 /dev/zero > \"$5\"\n"))), "no error");
     EXPECT_NE(failure(refine_by_child(content_, program("kill -9 $$\n"))), "no error");
-    // A whole scene, but not what was asked for.
+    // A valid scene, but not the requested contour.
     EXPECT_NE(failure(refine_by_child(content_, program("cp \"$2\" \"$5\"\n"))), "no error");
     EXPECT_NE(failure(refine_by_child(content_, folder_ + "/none")), "no error");
     EXPECT_THROW((void)refine_by_child(content_, program("exec sleep 1000\n"))(0.6, [] { return true; }),
                  Cancelled);
 }
 
-TEST(ScratchFolder, goes_with_its_owner_and_where_that_was_killed_with_the_next_one) {
+TEST(ScratchFolder, is_removed_with_its_owner_or_after_a_kill_by_the_next_one) {
     char name[] = "/tmp/tact-scratch-test-XXXXXX";
     const std::filesystem::path parent = mkdtemp(name);
     const auto folders = [&] {
@@ -222,7 +222,7 @@ TEST(ScratchFolder, goes_with_its_owner_and_where_that_was_killed_with_the_next_
             seen.insert(entry.path().filename().string());
         return seen;
     };
-    // What is not its own stays, whatever its name.
+    // Files of others are kept, whatever their names.
     std::filesystem::create_directories(parent / "tact-gui-scratch-of-a-person" / "x");
     std::filesystem::create_directories(parent / "elsewhere");
     std::ofstream(parent / "elsewhere" / "kept") << "kept";
@@ -244,7 +244,7 @@ TEST(ScratchFolder, goes_with_its_owner_and_where_that_was_killed_with_the_next_
     close(told[0]);
     close(told[1]);
     {
-        const ScratchFolder beside(parent);  // takes nothing from one that lives
+        const ScratchFolder beside(parent);  // keeps the folder of a running process
         EXPECT_EQ(folders().size(), others.size() + 2);
     }
     EXPECT_EQ(folders().size(), others.size() + 1);
@@ -262,7 +262,7 @@ TEST(ScratchFolder, goes_with_its_owner_and_where_that_was_killed_with_the_next_
     std::filesystem::remove_all(parent);
 }
 
-TEST(ContourOption, says_level_colour_opacity_and_style) {
+TEST(ContourOption, gives_level_colour_opacity_and_style) {
     const ContourOption o = read_contour_option("2.5s:ff8000:0.25:wire");
     EXPECT_EQ(o.unit, LevelUnit::sigma);
     EXPECT_EQ(o.value, 2.5);

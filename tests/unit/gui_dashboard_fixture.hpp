@@ -1,4 +1,4 @@
-// The dashboard without a window: ImGui on a display of its own size that nobody sees, with a mouse that a test moves.
+// The dashboard without a window: ImGui on a virtual display, with a mouse that the test moves.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -67,7 +67,7 @@ public:
         ImGui::GetIO().MouseWheel = 0.0F;
         frame();
     }
-    // Where something of a card lies: the middle of where the mouse finds it. {0, 0}: nowhere.
+    // The middle of the area in which the mouse hits an item of a card. {0, 0} if there is none.
     ImVec2 find(const char* card, const char* label) {
         ImGuiWindow* const window = ImGui::FindWindowByName(card);
         if (window == nullptr) return {};
@@ -83,7 +83,7 @@ public:
     }
     void click(const char* card, const char* label) {
         const ImVec2 at = find(card, label);
-        ASSERT_GT(at.x, 0.0F) << label << " is not to be found on " << card;
+        ASSERT_GT(at.x, 0.0F) << label << " was not found on the card " << card;
         click(at);
     }
 

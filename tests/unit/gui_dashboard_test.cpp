@@ -1,4 +1,4 @@
-// What the dashboard keeps of a run: lateness of a minute, rates, changes of knobs, each in bounded memory.
+// Data that the dashboard keeps of a run: lateness of a minute, rates, level changes; in bounded memory.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -10,7 +10,7 @@
 namespace tact {
 namespace {
 
-// A controller that counts and publishes once a second.
+// A controller that counts cycles and publishes once per second.
 struct Late {
     DurationHistogram histogram;
     std::int64_t now_ns = 1'000'000'000;
@@ -28,13 +28,13 @@ struct Late {
     }
 };
 
-TEST(LatenessWindow, the_whole_run_has_the_controllers_own_figures_and_the_minute_those_of_a_minute) {
+TEST(LatenessWindow, the_whole_run_has_the_metrics_of_the_controller_and_the_minute_its_own) {
     Late late;
     LatenessWindow window;
     EXPECT_TRUE(window.empty());
     late.second(900'000);  // one bad second, long ago
     window.add(late.topic());
-    EXPECT_EQ(window.recent_metrics().cycles, 0U);  // nothing to compare with yet
+    EXPECT_EQ(window.recent_metrics().cycles, 0U);  // no earlier record to compare with
     for (int s = 0; s < 100; ++s) {
         late.second(s == 70 ? 40'000 : 5'000);
         window.add(late.topic());
@@ -51,7 +51,7 @@ TEST(LatenessWindow, the_whole_run_has_the_controllers_own_figures_and_the_minut
     EXPECT_NEAR(static_cast<double>(window.recent_metrics().max_ns), 40'000.0, 0.07 * 40'000.0);
 }
 
-TEST(LatenessWindow, a_most_late_cycle_within_the_minute_is_said_to_the_nanosecond) {
+TEST(LatenessWindow, the_latest_cycle_of_the_minute_is_exact_to_the_nanosecond) {
     Late late;
     LatenessWindow window;
     for (int s = 0; s < 5; ++s) {
@@ -61,7 +61,18 @@ TEST(LatenessWindow, a_most_late_cycle_within_the_minute_is_said_to_the_nanoseco
     EXPECT_EQ(window.recent_metrics().max_ns, 123'457);
 }
 
-TEST(LatenessWindow, another_run_begins_anew_and_nothing_grows) {
+TEST(LatenessWindow, the_longest_of_a_minute_is_not_understated_beyond_the_range_of_the_histogram) {
+    Late late;
+    LatenessWindow window;
+    late.second(60'000'000'000, 1);  // longest of the run, before the first record
+    window.add(late.topic());
+    late.second(30'000'000'000, 2);
+    window.add(late.topic());
+    EXPECT_GE(window.recent_metrics().max_ns, 30'000'000'000);
+    EXPECT_GE(window.recent_metrics().p50_ns, 30'000'000'000);
+}
+
+TEST(LatenessWindow, another_run_starts_over_and_memory_does_not_grow) {
     Late late;
     LatenessWindow window;
     const std::size_t before = window.memory_bytes();
@@ -79,7 +90,7 @@ TEST(LatenessWindow, another_run_begins_anew_and_nothing_grows) {
     EXPECT_EQ(window.recent_metrics().cycles, 0U);
 }
 
-TEST(LatenessBars, hold_every_cycle_at_its_place) {
+TEST(LatenessBars, contain_every_cycle_in_its_bin) {
     Late late;
     late.second(100, 7);
     late.second(60'000, 5);
@@ -102,7 +113,7 @@ TEST(LatenessBars, hold_every_cycle_at_its_place) {
     EXPECT_EQ(bars.last, LatenessBars::kBars - 1);
 }
 
-TEST(CounterRate, is_of_the_last_second_and_of_one_run) {
+TEST(CounterRate, covers_the_last_second_of_one_run) {
     CounterRate rate;
     EXPECT_FALSE(rate.known());
     for (int i = 0; i < 50; ++i)
@@ -116,7 +127,7 @@ TEST(CounterRate, is_of_the_last_second_and_of_one_run) {
     EXPECT_NEAR(rate.per_s(), 20.0, 1e-6);
 }
 
-TEST(KnobChanges, of_one_reason_in_a_row_are_one_and_each_says_why) {
+TEST(KnobChanges, consecutive_changes_for_one_reason_are_merged_with_their_reason) {
     KnobChanges log;
     log.add(1.0, 0, 0.8, LevelReason::rate_low);
     log.add(1.1, 1, 0.5, LevelReason::rate_low);
@@ -129,18 +140,18 @@ TEST(KnobChanges, of_one_reason_in_a_row_are_one_and_each_says_why) {
     EXPECT_FLOAT_EQ(log.at(0).from, 0.4F);
     EXPECT_FLOAT_EQ(log.at(0).to, 0.55F);
     EXPECT_EQ(log.at(2).steps, 3U);
-    EXPECT_TRUE(std::isnan(log.at(2).from));  // nobody saw what it had before
+    EXPECT_TRUE(std::isnan(log.at(2).from));  // the previous level is unknown
     EXPECT_EQ(knob_change_text(log.at(0)), "0.40 to 0.55 in 2 steps: force rate above goal");
     EXPECT_EQ(knob_change_text(*log.newest(1)), "to 0.50: force rate below goal");
     EXPECT_EQ(log.in_force(0, 3.0), &log.at(2));
     EXPECT_EQ(log.in_force(0, 0.5), nullptr);
     EXPECT_EQ(log.newest(2), nullptr);
-    // The other way, for the same reason, is another change.
+    // A change in the other direction is another change, even for the same reason.
     log.add(5.2, 0, 0.3, LevelReason::rate_high);
     EXPECT_EQ(log.size(), 4U);
 }
 
-TEST(KnobChanges, what_cannot_be_is_left_out_and_what_is_forgotten_is_counted) {
+TEST(KnobChanges, invalid_changes_are_ignored_and_dropped_ones_are_counted) {
     KnobChanges log;
     log.add(std::nan(""), 0, 0.5, LevelReason::hold);
     log.add(1.0, kPathsMax, 0.5, LevelReason::hold);
@@ -153,7 +164,7 @@ TEST(KnobChanges, what_cannot_be_is_left_out_and_what_is_forgotten_is_counted) {
     EXPECT_EQ(log.size(), KnobChanges::kKept);
     EXPECT_EQ(log.forgotten(), 500U);
     EXPECT_EQ(log.memory_bytes(), before);
-    log.add(1.0, 0, 0.9, LevelReason::hold);  // before the newest of its path
+    log.add(1.0, 0, 0.9, LevelReason::hold);  // older than the newest of its path
     EXPECT_EQ(log.forgotten(), 500U);
 }
 

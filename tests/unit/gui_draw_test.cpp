@@ -1,4 +1,4 @@
-// What lands in the pixels: impostors against a slow reference, the depth cue, copies, looks.
+// Rendered pixels: impostors against a slow reference, depth cue, copies, looks.
 #include <gtest/gtest.h>
 
 #include <filesystem>
@@ -46,8 +46,8 @@ protected:
     Eigen::Matrix4f projection() const {
         return camera_.projection(static_cast<float>(kWidth) / static_cast<float>(kHeight));
     }
-    // Walks along the ray of every pixel until the distance to the shape is nothing: slow, and it has no
-    // formula in common with the shaders.
+    // Marches along the ray of each pixel until the distance to the shape is zero. Slow, and without any formula of the
+    // shaders.
     void expect_shape(const Distance& distance) const {
         const Eigen::Matrix4d p = projection().cast<double>();
         const std::vector<float> depth = depths();
@@ -66,13 +66,13 @@ protected:
                 const bool hit = nearest <= 1e-4;
                 hits += hit ? 1 : 0;
                 if (hit != (seen < 1.0)) {
-                    // Single precision may differ about a pixel that the outline all but misses.
+                    // Single precision may differ at pixels that the outline barely touches.
                     if (nearest > 1e-2) ++wrong;
                     continue;
                 }
                 if (!hit) continue;
                 const double z_a = p(2, 3) / (2.0 * seen - 1.0 + p(2, 2));  // distance along the view
-                // At a grazing ray the depth is as steep as can be: judged by the distance to the shape.
+                // At grazing rays the depth is very steep, so the distance to the shape is compared.
                 EXPECT_NEAR(distance(ray * (z_a / -ray.z())), 0.0, 0.02) << "pixel " << x << ", " << y;
             }
         EXPECT_GT(hits, 20);
@@ -88,7 +88,7 @@ Eigen::Vector3d in_eye(const Eigen::Matrix4f& eye, std::array<float, 3> a) {
     return (eye.cast<double>() * Eigen::Vector4d(a[0], a[1], a[2], 1.0)).head<3>();
 }
 
-TEST_F(GuiDraw, a_sphere_covers_its_outline_and_has_its_depth_in_every_pixel) {
+TEST_F(GuiDraw, a_sphere_has_the_right_outline_and_depth) {
     ImpostorPrograms programs;
     const Eigen::Matrix4f eye = camera_.view();
     for (const Sphere& sphere :
@@ -105,7 +105,7 @@ TEST_F(GuiDraw, a_sphere_covers_its_outline_and_has_its_depth_in_every_pixel) {
     }
 }
 
-TEST_F(GuiDraw, a_stick_covers_its_outline_and_has_its_depth_in_every_pixel) {
+TEST_F(GuiDraw, a_stick_has_the_right_outline_and_depth) {
     ImpostorPrograms programs;
     const Eigen::Matrix4f eye = camera_.view();
     const Eigen::Vector3f towards = camera_.orientation().conjugate() * Eigen::Vector3f(0.0F, 0.0F, 12.0F);
@@ -128,7 +128,7 @@ TEST_F(GuiDraw, a_stick_covers_its_outline_and_has_its_depth_in_every_pixel) {
     }
 }
 
-TEST_F(GuiDraw, what_reaches_the_eye_is_left_out_and_does_no_harm) {
+TEST_F(GuiDraw, shapes_that_reach_the_eye_are_skipped) {
     ImpostorPrograms programs;
     const Eigen::Matrix4f eye = Eigen::Matrix4f::Identity();
     ImpostorShapes spheres, sticks;
@@ -141,7 +141,7 @@ TEST_F(GuiDraw, what_reaches_the_eye_is_left_out_and_does_no_harm) {
     for (const float d : depths()) ASSERT_EQ(d, 1.0F);
 }
 
-TEST_F(GuiDraw, haze_ends_in_the_background_and_is_nothing_before_it_begins) {
+TEST_F(GuiDraw, haze_fades_from_none_to_the_background) {
     ImpostorPrograms programs;
     haze_.strength = 1.0F;
     haze_.top = Eigen::Vector3f(0.2F, 0.4F, 0.6F);
@@ -165,7 +165,7 @@ TEST_F(GuiDraw, haze_ends_in_the_background_and_is_nothing_before_it_begins) {
     for (int i = 0; i < 3; ++i) EXPECT_NEAR(gone[i], 255.0F * haze_.top[i], 1.5F);
 }
 
-// The middle of what one channel shows within an area, in pixels from its lower left corner; none: (-1, -1).
+// Centre of one channel's pixels within an area, from its lower left corner; (-1, -1) if there are none.
 Eigen::Vector2d middle_of(const Image& image, std::size_t channel, const PixelArea& area) {
     Eigen::Vector2d sum(0.0, 0.0);
     double count = 0.0;
@@ -180,7 +180,7 @@ Eigen::Vector2d middle_of(const Image& image, std::size_t channel, const PixelAr
     return count > 0.0 ? Eigen::Vector2d(sum / count) : Eigen::Vector2d(-1.0, -1.0);
 }
 
-TEST_F(GuiDraw, a_place_in_the_room_lands_on_the_predicted_pixel_of_each_eye_in_every_mode) {
+TEST_F(GuiDraw, a_point_lands_on_the_predicted_pixel_of_each_eye_in_every_mode) {
     constexpr int kOutputWidth = 900, kOutputHeight = 600;
     constexpr float kRadiusA = 0.7F;
     ImpostorPrograms programs;
@@ -215,7 +215,7 @@ TEST_F(GuiDraw, a_place_in_the_room_lands_on_the_predicted_pixel_of_each_eye_in_
         ASSERT_EQ(shown.size(), each ? 2U : 1U);
         for (std::size_t eye = 0; eye < 2; ++eye) {
             const PixelArea area = area_of_eye(mode, eye, kOutputWidth, kOutputHeight);
-            // Where the line from the eye to the place meets the glass, which lies in z = 0.
+            // Intersection of the line from eye to position with the glass in z = 0.
             const Vec3 p = scene.to_screen_m(place_a);
             const Vec3 glass = eyes[eye] + eyes[eye].z() / (eyes[eye].z() - p.z()) * (p - eyes[eye]);
             const Eigen::Vector2d wanted((glass.x() / 0.45 + 0.5) * area.width_px,
@@ -227,7 +227,7 @@ TEST_F(GuiDraw, a_place_in_the_room_lands_on_the_predicted_pixel_of_each_eye_in_
     }
 }
 
-// Pixels that differ from the background.
+// Number of pixels that differ from the background.
 std::size_t drawn(const Image& image) {
     std::size_t count = 0;
     for (std::size_t i = 0; i < image.rgb.size(); i += 3)
@@ -281,7 +281,7 @@ protected:
     std::optional<DrawnHand> second_hand_;
 };
 
-TEST_F(GuiDrawScene, each_style_draws_something_of_its_own) {
+TEST_F(GuiDrawScene, each_style_draws_a_different_image) {
     std::set<std::string> pictures;
     for (const auto style :
          {MoleculeStyle::trace, MoleculeStyle::tube, MoleculeStyle::sticks, MoleculeStyle::spheres})
@@ -294,7 +294,7 @@ TEST_F(GuiDrawScene, each_style_draws_something_of_its_own) {
     EXPECT_EQ(pictures.size(), 8U);
 }
 
-TEST_F(GuiDrawScene, copies_are_drawn_where_they_are_hidden_and_unknown_ones_not_at_all) {
+TEST_F(GuiDrawScene, copies_are_drawn_and_hidden_or_unknown_ones_are_not) {
     layer_->molecules().set_look({MoleculeStyle::spheres, Colouring::chain});
     const std::size_t one = drawn(picture(std::array{home_}));
     DrawnBody copy = home_;
@@ -308,7 +308,7 @@ TEST_F(GuiDrawScene, copies_are_drawn_where_they_are_hidden_and_unknown_ones_not
     EXPECT_EQ(drawn(picture(std::array{home_, copy})), one);
 }
 
-TEST_F(GuiDrawScene, a_second_hand_is_drawn_where_it_is_with_its_force_and_the_wall_it_touches) {
+TEST_F(GuiDrawScene, a_second_hand_is_drawn_with_its_force_and_the_wall_it_touches) {
     EXPECT_EQ(drawn(picture({})), 0U);
     const auto in_half = [](const Image& image, bool right) {
         std::size_t count = 0;
@@ -329,7 +329,7 @@ TEST_F(GuiDrawScene, a_second_hand_is_drawn_where_it_is_with_its_force_and_the_w
     EXPECT_GT(in_half(picture({}), false), 30U);
     second_hand_ = hand;
 
-    // It turns with the tool.
+    // The drawn hand rotates with the tool.
     second_hand_->T_model_hand.q = quat_from_rotation_vector({0.0, 0.0, 2.0});
     EXPECT_NE(picture({}).rgb, right.rgb);
     second_hand_ = hand;
@@ -343,11 +343,11 @@ TEST_F(GuiDrawScene, a_second_hand_is_drawn_where_it_is_with_its_force_and_the_w
     const std::size_t pushed = force({-0.7, 0.0, 0.0}, false);
     EXPECT_GT(pushed, alone + 20);
     EXPECT_GT(force({-0.7, 0.0, 0.0}, true), pushed + 10);
-    EXPECT_EQ(force(Vec3::Zero(), true), alone);  // no force says where the wall is
+    EXPECT_EQ(force(Vec3::Zero(), true), alone);  // without a force the direction of the wall is unknown
     EXPECT_EQ(force(Vec3::Constant(std::nan("")), true), alone);
 }
 
-TEST_F(GuiDrawScene, a_look_belongs_to_one_body_and_a_limit_turns_spheres_into_tubes) {
+TEST_F(GuiDrawScene, a_style_applies_to_one_body_and_a_limit_turns_spheres_into_tubes) {
     DrawnBody copy = home_;
     copy.id = 2;
     layer_->molecules().set_look({MoleculeStyle::tube, Colouring::chain});
@@ -360,7 +360,7 @@ TEST_F(GuiDrawScene, a_look_belongs_to_one_body_and_a_limit_turns_spheres_into_t
     EXPECT_EQ(layer_->molecules().left_out(), 1U);
 }
 
-TEST_F(GuiDrawScene, a_surface_follows_its_level_at_once_however_short_the_frame) {
+TEST_F(GuiDrawScene, a_surface_follows_its_level_at_once_for_any_frame_time) {
     const std::string path = folder_ + "/fine.tact";
     fake::write_helix_scene(path, 64);
     content_ = load_scene(path);
@@ -376,7 +376,7 @@ TEST_F(GuiDrawScene, a_surface_follows_its_level_at_once_however_short_the_frame
     }
 }
 
-TEST_F(GuiDrawScene, contours_share_the_vertices_and_stay_until_better_ones_come) {
+TEST_F(GuiDrawScene, contours_share_the_vertices_and_stay_until_refined) {
     const auto refine = [this](double level, const std::function<bool()>&) {
         return std::make_shared<const ProgressiveMesh>(make_progressive(isosurface(content_->grid, level)));
     };
@@ -400,13 +400,13 @@ TEST_F(GuiDrawScene, contours_share_the_vertices_and_stay_until_better_ones_come
         return view_->contours().state(1).final && view_->contours().state(2).final;
     }));
     EXPECT_EQ(view_->contours().state(1).level, 0.6 * own);
-    EXPECT_NE(picture({}).rgb, alone.rgb);  // the outer one hides it
+    EXPECT_NE(picture({}).rgb, alone.rgb);  // the outer contour hides it
     const std::uint32_t most = view_->vertices_max();
     EXPECT_GT(most, content_->mesh->vertices());
     EXPECT_EQ(view_->vertices(), most);
     view_->approach_vertices(most / 2, 1e9);
     EXPECT_NEAR(static_cast<double>(view_->vertices()), 0.5 * most, 3.0);
-    // Hidden ones are not drawn and not counted.
+    // Hidden contours are neither drawn nor counted.
     contours[1].shown = contours[2].shown = false;
     view_->contours().set(contours);
     view_->approach_vertices(view_->vertices_max(), 1e9);
@@ -415,7 +415,7 @@ TEST_F(GuiDrawScene, contours_share_the_vertices_and_stay_until_better_ones_come
     EXPECT_EQ(picture({}).rgb, alone.rgb);
 }
 
-TEST_F(GuiDrawScene, a_moved_contour_is_seen_at_every_style_and_opacity) {
+TEST_F(GuiDrawScene, a_moved_contour_is_visible_in_every_style_and_opacity) {
     options_.surface = true;
     std::set<std::string> pictures;
     Contour contour;

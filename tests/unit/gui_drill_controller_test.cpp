@@ -1,4 +1,4 @@
-// The window's dashboard of drilling, with a controller that is published by hand: what is shown, said and reported.
+// The window's controller for drilling with a hand-published controller: displayed data, messages, report.
 #include <gtest/gtest.h>
 #include <stdlib.h>
 
@@ -15,7 +15,7 @@ namespace {
 
 constexpr double kVoxelM = 5e-4;
 
-// 16 mm of bone. From x = 10 mm on it is a nerve.
+// A cube of 16 mm of bone; a nerve begins at x = 10 mm.
 void write_ear(const std::filesystem::path& path) {
     BoneBricks bricks;
     bricks.size = {32, 32, 32};
@@ -73,7 +73,7 @@ protected:
         }
         ASSERT_TRUE(gui_->attached());
     }
-    // The burr's centre; its radius is 2 mm.
+    // Publishes the burr's centre; its radius is 2 mm.
     void burr(double x_m, bool turns) {
         ms_ += 20;
         DrillTopic t{};
@@ -125,7 +125,7 @@ protected:
     int ms_ = 0;
 };
 
-TEST_F(DrillControllerTest, shows_tools_and_distances_in_the_hands_space) {
+TEST_F(DrillControllerTest, shows_tools_and_distances_in_world_units) {
     frame({});
     EXPECT_FALSE(drilling_.known);
     EXPECT_TRUE(drilling_.labelled);
@@ -145,9 +145,9 @@ TEST_F(DrillControllerTest, shows_tools_and_distances_in_the_hands_space) {
     EXPECT_TRUE(state_.events.empty());
 }
 
-TEST_F(DrillControllerTest, says_once_that_the_burr_is_near_and_again_only_after_it_was_away) {
+TEST_F(DrillControllerTest, reports_once_that_the_burr_is_near_and_again_only_after_retraction) {
     attach();
-    burr(6.2e-3, false);  // 1.8 mm, and it stands
+    burr(6.2e-3, false);  // 1.8 mm away, burr off
     EXPECT_TRUE(state_.events.empty());
     burr(5e-3, true);
     for (int i = 0; i < 5; ++i) burr(6.2e-3, true);
@@ -156,7 +156,7 @@ TEST_F(DrillControllerTest, says_once_that_the_burr_is_near_and_again_only_after
     for (int i = 0; i < 5; ++i) burr(7.1e-3, true);
     EXPECT_EQ(message("burr 0.9 mm from the facial nerve"), 1);
     EXPECT_EQ(state_.events.front().grade, Grade::bad);
-    burr(6.9e-3, true);  // 1.1 mm: not yet away
+    burr(6.9e-3, true);  // 1.1 mm: not far enough
     burr(7.1e-3, true);
     EXPECT_EQ(state_.events.size(), 2U);
     burr(6.5e-3, true);
@@ -166,11 +166,11 @@ TEST_F(DrillControllerTest, says_once_that_the_burr_is_near_and_again_only_after
     EXPECT_EQ(state_.events.size(), 3U);
 }
 
-TEST_F(DrillControllerTest, an_injury_is_said_shown_and_reported) {
+TEST_F(DrillControllerTest, an_injury_is_displayed_and_reported) {
     attach();
     burr(6e-3, true);
     std::vector<std::uint8_t> before(BoneBricks::kVoxels, 200), after = before;
-    after[5] = 100;  // of the third brick: the nerve
+    after[5] = 100;  // in the third brick: the nerve
     const BrickChange change{2, before, after, true};
     frame({&change, 1});
     EXPECT_EQ(message("facial nerve cut"), 1);
@@ -187,7 +187,7 @@ TEST_F(DrillControllerTest, an_injury_is_said_shown_and_reported) {
     EXPECT_GT(report["drilling_s"].get<double>(), 0.015);
 }
 
-TEST_F(DrillControllerTest, cycles_that_nobody_saw_are_counted) {
+TEST_F(DrillControllerTest, unseen_cycles_are_counted) {
     attach();
     burr(5e-3, true);
     TraceTopic c{};

@@ -1,4 +1,4 @@
-// What is told of drilling: distances to structures, strokes, a trainee's figures, the report.
+// Drilling metrics: distances to structures, strokes, a trainee's results, the report.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -14,7 +14,7 @@
 namespace tact {
 namespace {
 
-// A cube of 16 mm of bone; the plane x = 10 mm is where a nerve begins, x = 0 to the other side is a sinus.
+// A cube of 16 mm of bone; a nerve begins at x = 10 mm, and beyond x = 0 is a sinus.
 struct Ear {
     static constexpr std::uint32_t kEdge = 32;
     static constexpr double kVoxelM = 5e-4;
@@ -70,12 +70,12 @@ DrillTopic tools(double x_m) {
     return t;
 }
 
-TEST(StructureWatch, tells_distance_from_the_head_and_how_fast_it_comes_nearer) {
+TEST(StructureWatch, gives_the_distance_of_the_head_and_its_approach_speed) {
     Ear ear;
     StructureWatch watch(ear.fields, 1.0);
     DrillTopic t = tools(3e-3);
     ASSERT_EQ(watch.look(t, 0).size(), 2U);
-    EXPECT_TRUE(watch.look(t, 1).empty());  // that hand holds nothing
+    EXPECT_TRUE(watch.look(t, 1).empty());  // that hand has no tool
     for (int i = 1; i <= 100; ++i) {        // 20 mm/s
         t.taken_at_ns = 10'000'000LL * i;
         t.hand[0].pos_model_m[0] = 3e-3 + 2e-4 * 0.1 * i;
@@ -87,7 +87,7 @@ TEST(StructureWatch, tells_distance_from_the_head_and_how_fast_it_comes_nearer) 
     EXPECT_NEAR(now[0].closing_m_s, 2e-3, 5e-4);
     EXPECT_NEAR(now[1].distance_m, 5e-3 - 2e-3, 2e-5);
     EXPECT_NEAR(now[1].closing_m_s, -2e-3, 5e-4);
-    t.taken_at_ns += 5'000'000'000;  // a pause: no speed
+    t.taken_at_ns += 5'000'000'000;  // after a pause the speed is unknown
     t.hand[0].pos_model_m[0] = 9e-3;
     EXPECT_EQ(watch.look(t, 0)[0].closing_m_s, 0.0);
     EXPECT_NEAR(watch.look(t, 0)[0].distance_m, -1e-3, 2e-5);
@@ -100,13 +100,13 @@ TEST(StructureWatch, a_long_head_is_measured_along_its_axis) {
     burr.shape = DrillShape::cylinder;
     burr.radius_m = 1e-3F;
     burr.length_m = 8e-3F;
-    // +z of the tool to +x of the model: the far end is 4 mm ahead of the middle.
+    // The tool's +z points along +x of the model: the far end is 4 mm ahead of the centre.
     burr.quat_model_tool_xyzw[1] = burr.quat_model_tool_xyzw[3] = std::sqrt(0.5);
     EXPECT_NEAR(distance_m(ear.fields[0], head_balls(burr, 1.0), 1.0), 1e-3, 2e-5);
     burr.shape = DrillShape::cone;
     burr.tip_radius_m = 5e-4F;
     EXPECT_NEAR(distance_m(ear.fields[1], head_balls(burr, 1.0), 1.0), 1e-3, 2e-5);
-    // Twice as large in the hand's space.
+    // In world units the distance doubles.
     EXPECT_NEAR(distance_m(ear.fields[0], head_balls(tools(5e-3).hand[0], 2.0), 2.0), 8e-3, 4e-5);
 }
 
@@ -114,19 +114,19 @@ TEST(Strokes, are_counted_from_turning_point_to_turning_point) {
     Strokes strokes;
     const auto at = [](double t) { return Vec3(5e-3 * std::sin(2.0 * std::numbers::pi * t), 1e-4 * t, 0.0); };
     for (int i = 0; i <= 4250; ++i) strokes.step(1e-3 * i, at(1e-3 * i), true);
-    // From the middle to one end, eight times from end to end, and one that is under way.
+    // One half stroke from the centre, eight full strokes, and one in progress.
     const StrokeMetrics f = strokes.metrics();
     EXPECT_EQ(f.count, 9U);
     EXPECT_NEAR(f.length_m, 5e-3 + 8 * 10e-3, 1e-3);
     EXPECT_NEAR(f.mean_speed_m_s(), 0.02, 2e-3);
 }
 
-TEST(Strokes, end_where_nothing_is_cut_for_a_while_and_short_ones_are_none) {
+TEST(Strokes, end_after_a_pause_in_cutting_and_short_ones_do_not_count) {
     Strokes strokes;
     for (int i = 0; i < 1000; ++i) strokes.step(1e-3 * i, Vec3(2e-5 * i, 0, 0), i < 300);
     EXPECT_EQ(strokes.metrics().count, 1U);
     EXPECT_NEAR(strokes.metrics().length_m, 2e-5 * 450,
-                1e-4);  // the pause belongs to it until it is known as one
+                1e-4);  // a pause counts until it is recognised
     Strokes trembling;
     for (int i = 0; i < 1000; ++i) trembling.step(1e-3 * i, Vec3(3e-4 * std::sin(0.1 * i), 0, 0), true);
     EXPECT_EQ(trembling.metrics().count, 0U);
@@ -143,7 +143,7 @@ TraceTopic cycle(int ms, double x_m, double force_n, std::uint32_t flags) {
     return t;
 }
 
-TEST(DrillMetrics, count_times_forces_and_nearness_of_every_cycle) {
+TEST(DrillMetrics, add_up_times_forces_and_nearness_of_every_cycle) {
     Ear ear;
     DrillMetrics m(ear.bricks, ear.labels, ear.fields, ear.meta);
     m.tools(tools(5e-3));
@@ -151,14 +151,14 @@ TEST(DrillMetrics, count_times_forces_and_nearness_of_every_cycle) {
     const auto for_ms = [&](int n, double x_m, double force_n, std::uint32_t flags) {
         for (int i = 0; i < n; ++i) m.cycle(cycle(++ms, x_m, force_n, flags));
     };
-    for_ms(1001, 5e-3, 3.0, 0);                              // stands
+    for_ms(1001, 5e-3, 3.0, 0);                              // burr off
     for_ms(1000, 5e-3, 1.0, kTraceBurrTurns | kTraceCuts);   // 3 mm from both
     for_ms(500, 6.5e-3, 2.5, kTraceBurrTurns);               // 1.5 mm from the nerve
     for_ms(250, 7.5e-3, 1.0, kTraceBurrTurns | kTraceCuts);  // 0.5 mm
-    ms += 10000;                                             // nobody looked
+    ms += 10000;                                             // no data
     m.unseen(10000);
     for_ms(1, 7.5e-3, 1.0, kTraceBurrTurns);
-    m.cycle(cycle(++ms, std::nan(""), 1.0, kTraceBurrTurns));  // no number is not used
+    m.cycle(cycle(++ms, std::nan(""), 1.0, kTraceBurrTurns));  // a non-finite position is ignored
     const DrillMetricsRow f = m.metrics();
     EXPECT_NEAR(f.seen_s, 2.75, 0.003);
     EXPECT_NEAR(f.drilling_s, 1.75, 0.003);
@@ -179,23 +179,23 @@ struct Brick {
     std::vector<std::uint8_t> before = std::vector<std::uint8_t>(BoneBricks::kVoxels, 200), after = before;
 };
 
-TEST(DrillMetrics, tell_bone_by_structure_by_nearness_and_what_is_injured) {
+TEST(DrillMetrics, split_removed_bone_by_structure_and_nearness_and_count_injuries) {
     Ear ear;
     DrillMetrics m(ear.bricks, ear.labels, ear.fields, ear.meta);
-    // The third brick along x: voxels 16 to 23, of which 20 to 23 are the nerve, whose surface is at 10 mm.
+    // The third brick along x: voxels 16 to 23; 20 to 23 are the nerve, whose surface is at 10 mm.
     Brick b;
-    b.after[0] = 100;  // voxel 16, 2 mm away, as far as fields tell
+    b.after[0] = 100;  // voxel 16, 2 mm away: the range of the fields
     b.after[3] = 150;  // voxel 19, 0.5 mm
     EXPECT_EQ(m.brick(2, b.before, b.after, true), 0);
     Brick c;
-    c.after[5] = 190;  // the nerve itself
+    c.after[5] = 190;  // in the nerve
     m.cycle(cycle(5000, 5e-3, 0.0, 0));
     EXPECT_EQ(m.brick(2, c.before, c.after, true), 1);
     EXPECT_EQ(m.brick(2, c.before, c.after, true), 0);  // the same injury
     m.cycle(cycle(7000, 5e-3, 0.0, 0));
     EXPECT_EQ(m.brick(2, c.before, c.after, true), 1);
-    EXPECT_EQ(m.brick(2, c.before, c.after, false), 0);  // it was so before
-    // A structure that is not critical cannot be injured; more bone than before is none taken.
+    EXPECT_EQ(m.brick(2, c.before, c.after, false), 0);  // not a new cut
+    // A structure that is not critical cannot be injured, and added bone is not removed bone.
     Brick d;
     d.after[0] = 0;
     d.after[1] = 255;
@@ -208,11 +208,11 @@ TEST(DrillMetrics, tell_bone_by_structure_by_nearness_and_what_is_injured) {
     EXPECT_EQ(f.removed_levels, 390U);
     EXPECT_EQ(f.injuries, 2U);
     EXPECT_EQ(f.structure[1].injuries, 2U);
-    EXPECT_EQ(f.near_levels[0], 50U + 40U + 200U);  // beyond the surface distances are below zero
+    EXPECT_EQ(f.near_levels[0], 50U + 40U + 200U);  // inside the surface distances are negative
     EXPECT_GE(f.near_levels[1], f.near_levels[0]);
 }
 
-TEST(DrillReport, holds_what_was_counted_and_null_where_nothing_is_known) {
+TEST(DrillReport, contains_the_metrics_and_null_for_unknown_ones) {
     Ear ear;
     DrillMetrics m(ear.bricks, ear.labels, ear.fields, ear.meta);
     m.tools(tools(5e-3));
@@ -234,18 +234,18 @@ TEST(DrillReport, holds_what_was_counted_and_null_where_nothing_is_known) {
     EXPECT_NEAR(j["structures"][0]["nearest_mm"].get<double>(), 3.0, 0.03);
     EXPECT_EQ(j["structures"][0]["injuries"], 1);
     EXPECT_FALSE(j["structures"][2].contains("nearest_mm"));  // not critical
-    // Without labels nobody can be told to keep away.
+    // Without labels there is no critical structure to avoid.
     const BoneLabelsView none;
     DrillMetrics bare(ear.bricks, none, {}, ear.meta);
     (void)bare.brick(2, b.before, b.after, true);
     j = drill_report(bare.metrics(), none, BurrVisibility{});
-    EXPECT_TRUE(j["burr_visible_share"].is_null());  // it never turned
+    EXPECT_TRUE(j["burr_visible_share"].is_null());  // the burr never ran
     EXPECT_TRUE(j["near_critical"].is_null());
     EXPECT_TRUE(j["injuries"].is_null());
     EXPECT_NEAR(j["removed_bone_mm3"].get<double>(), 55.0 / 255.0 * 0.125, 1e-9);
 }
 
-TEST(DrillReport, is_written_whole_or_not_at_all) {
+TEST(DrillReport, is_written_completely_or_not_at_all) {
     const auto path =
         std::filesystem::temp_directory_path() / ("drilling-" + std::to_string(getpid()) + ".json");
     write_drill_report(path, {{"a", 1}});

@@ -1,4 +1,4 @@
-// Stairs along edges made smooth: compared with how much of each pixel really lies beyond the edge.
+// Smoothing of stair-stepped edges, compared with the exact coverage of each pixel.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -13,7 +13,7 @@ namespace {
 constexpr int kSize = 128, kMargin = 9;
 using EdgesDrawn = Canvas<kSize, kSize>;
 
-// White below y = at + slope x, or left of x = at + slope y; in stairs, as a renderer without samples draws it.
+// White below y = at + slope x, or left of x = at + slope y, drawn in steps as without multisampling.
 struct Edge {
     double at, slope;
     bool steep;
@@ -30,7 +30,7 @@ struct Edge {
         }
         glDisable(GL_SCISSOR_TEST);
     }
-    // Of a pixel, y from below: how much of it is white.
+    // Fraction of a pixel that is white; y from below.
     [[nodiscard]] double share(int x, int y) const {
         if (steep) std::swap(x, y);
         double sum = 0.0;
@@ -54,7 +54,7 @@ double error(const Edge& edge, const Image& image) {
     return std::sqrt(sum / std::max(count, 1));
 }
 
-TEST_F(EdgesDrawn, of_stairs_are_near_the_edge_that_was_meant) {
+TEST_F(EdgesDrawn, smoothed_stairs_are_close_to_the_ideal_edge) {
     EdgeSmoothing edges;
     for (const Edge edge : {Edge{30.3, 0.13, false}, Edge{30.3, 0.37, false}, Edge{90.8, -0.21, false},
                             Edge{30.6, 0.18, true}, Edge{100.1, -0.33, true}}) {
@@ -73,7 +73,7 @@ TEST_F(EdgesDrawn, change_nothing_else) {
     const Image before = read_pixels(kSize, kSize);
     EdgeSmoothing edges;
     glViewport(0, 0, kSize / 2, kSize);
-    edges.smooth(0, 0, kSize / 2, kSize);  // the right half is somebody else's
+    edges.smooth(0, 0, kSize / 2, kSize);  // the right half is outside the area
     const Image after = read_pixels(kSize, kSize);
     int changed = 0;
     for (int y = 0; y < kSize; ++y)

@@ -1,5 +1,4 @@
-// A scene and a controller for tests of the visual process: a region that is published by pass on a real
-// link.
+// A scene and a controller for tests of the visual process: the controller's region is passed over a real link.
 #pragma once
 
 #include <cmath>
@@ -64,7 +63,7 @@ inline DensityGrid density_of(const Structure& s, std::uint32_t size, double spa
     return g;
 }
 
-// Returns the checksum of the scene. One body, one surface.
+// Writes a scene with one body and one surface. Returns its checksum.
 inline std::uint64_t write_helix_scene(const std::filesystem::path& path, std::uint32_t grid = 28) {
     const Structure s = helix(18);
     const DensityGrid g = density_of(s, grid, 40.0 / (grid - 1), 3.0);
@@ -114,7 +113,7 @@ public:
         region_.mark_ready();
         server_ = std::make_unique<LinkServer>(session, region_.fd());
     }
-    // Serves the link; true once a visual process is attached.
+    // Serves the link. True once a visual process is attached.
     bool serve(int timeout_ms) {
         LinkServer::News news = server_->poll(timeout_ms);
         if (news.gui_left) gui_ = MappedRegion<GuiRegion>();

@@ -1,4 +1,4 @@
-// The fit beside the frame loop: the same numbers as asked for directly, and no work while nothing moves.
+// The fit beside the frame loop: the same metrics as a direct call, and no work without motion.
 #include <gtest/gtest.h>
 
 #include <thread>
@@ -31,7 +31,7 @@ std::shared_ptr<SceneContent> content() {
 
 std::vector<FitBody> at_home(const SceneContent& c) { return {{1, 0, docking_of(c).bodies[0].home()}}; }
 
-TEST(FitWorker, gives_the_numbers_of_the_newest_place) {
+TEST(FitWorker, gives_the_metrics_of_the_newest_pose) {
     const auto c = content();
     FitWorker worker(c, Duration(0));
     const std::vector<FitBody> home = at_home(*c);
@@ -54,12 +54,12 @@ TEST(FitWorker, gives_the_numbers_of_the_newest_place) {
     EXPECT_LT(moved_away.all.cc_mean, first.all.cc_mean);
 }
 
-TEST(FitWorker, measures_each_body_and_leaves_out_what_the_scene_does_not_have) {
+TEST(FitWorker, measures_each_body_and_ignores_unknown_structures) {
     const auto c = content();
     FitWorker worker(c, Duration(0));
     std::vector<FitBody> three = at_home(*c);
     three.push_back({7, 0, {three[0].T_model_body.p_m + Vec3(6e-10, 0.0, 0.0), Quat::Identity()}});
-    three.push_back({8, 1, three[0].T_model_body});  // no such structure
+    three.push_back({8, 1, three[0].T_model_body});  // structure 1 does not exist
     worker.request(three);
     const FitOutcome outcome = next(worker, {});
     ASSERT_TRUE(outcome.good) << outcome.error;
@@ -69,7 +69,7 @@ TEST(FitWorker, measures_each_body_and_leaves_out_what_the_scene_does_not_have) 
     EXPECT_GT(outcome.of[0].cc_mean, outcome.of[1].cc_mean);
 }
 
-TEST(FitWorker, rests_while_nothing_moves) {
+TEST(FitWorker, does_no_work_without_motion) {
     const auto c = content();
     FitWorker worker(c, Duration(0));
     const std::vector<FitBody> home = at_home(*c);
@@ -82,7 +82,7 @@ TEST(FitWorker, rests_while_nothing_moves) {
     EXPECT_FALSE(worker.take(outcome));
 }
 
-TEST(FitWorker, says_when_it_had_to_assume_the_resolution) {
+TEST(FitWorker, reports_an_assumed_resolution) {
     const auto c = content();
     c->meta.resolution_m = 0.0;
     FitWorker worker(c, Duration(0));
@@ -92,9 +92,9 @@ TEST(FitWorker, says_when_it_had_to_assume_the_resolution) {
     EXPECT_NEAR(outcome.resolution_m, 3.0 * 40.0 / 23.0 * 1e-10, 1e-15);
 }
 
-TEST(FitWorker, ends_at_once_without_a_wish) { const FitWorker worker(content()); }
+TEST(FitWorker, ends_at_once_without_a_request) { const FitWorker worker(content()); }
 
-TEST(Moved, is_about_what_can_be_seen_in_the_numbers) {
+TEST(Moved, ignores_motion_below_the_displayed_precision) {
     const std::vector<FitBody> a(1), none;
     std::vector<FitBody> b(1);
     EXPECT_FALSE(moved(a, b));

@@ -1,4 +1,4 @@
-// Undo, redo, acceptance and snapshots against a plain model of what a person expects.
+// Undo, redo, acceptance and snapshots against a simple reference model.
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
 
@@ -12,7 +12,7 @@ namespace {
 
 using Move = FitHistory::Move;
 
-// Bodies and a controller that applies, seen once a frame.
+// Bodies and a controller that applies moves, observed once per frame.
 struct Scene {
     std::map<std::uint32_t, double> x_a{{1, 0.0}, {2, 0.0}};
     FitHistory::Boundary boundary{1, 0, 0};
@@ -32,7 +32,7 @@ struct Scene {
         x_a[id] = to_a;
         look();
     }
-    // The hand goes on for some frames before the controller applies, one command after the other.
+    // The hand moves on for a frame before the controller applies the commands one by one.
     void apply(const FitHistory::Places& moves) {
         const auto before = x_a;
         for (auto& [id, x] : x_a) x += 0.3;
@@ -48,12 +48,12 @@ struct Scene {
     }
 };
 
-TEST(FitHistory, undo_goes_back_one_gesture_and_redo_forth_again) {
+TEST(FitHistory, undo_reverts_one_gesture_and_redo_repeats_it) {
     Scene s;
     s.drag(1, 3.0);
     s.drag(1, 5.0);
     s.grip();
-    s.drag(1, 9.0);  // under way
+    s.drag(1, 9.0);  // in progress
     EXPECT_EQ(s.history.undoable(), 2U);
     s.apply(s.history.undo());
     EXPECT_NEAR(s.x_a[1], 5.0, 1e-9);
@@ -67,7 +67,7 @@ TEST(FitHistory, undo_goes_back_one_gesture_and_redo_forth_again) {
     EXPECT_EQ(s.history.redoable(), 0U);
 }
 
-TEST(FitHistory, two_undos_before_the_controller_obeyed_the_first_are_two) {
+TEST(FitHistory, two_undos_before_the_controller_applied_the_first_both_count) {
     Scene s;
     for (const double x : {3.0, 6.0}) {
         s.drag(1, x);
@@ -85,30 +85,30 @@ TEST(FitHistory, two_undos_before_the_controller_obeyed_the_first_are_two) {
 TEST(FitHistory, a_grip_without_a_move_is_no_gesture) {
     Scene s;
     for (int i = 0; i < 5; ++i) s.grip();
-    s.drag(1, 0.005);  // less than can be seen
+    s.drag(1, 0.005);  // below the visible threshold
     s.grip();
     EXPECT_EQ(s.history.undoable(), 0U);
 }
 
-TEST(FitHistory, a_hand_that_goes_on_holding_can_undo_twice_and_redo) {
+TEST(FitHistory, undo_and_redo_work_while_the_hand_holds_the_body) {
     Scene s;
     s.drag(1, 10.0);
     s.grip();
     s.drag(1, 20.0);
     s.apply(s.history.undo());
-    s.drag(1, 10.3);  // it trembles
+    s.drag(1, 10.3);  // a tremor
     s.apply(s.history.undo());
     EXPECT_NEAR(s.x_a[1], 0.0, 1e-9);
     s.drag(1, -0.4);
     EXPECT_EQ(s.history.redoable(), 2U);
     s.apply(s.history.redo());
     EXPECT_NEAR(s.x_a[1], 10.0, 1e-9);
-    s.drag(1, 14.0);  // this is meant
+    s.drag(1, 14.0);  // an intended move
     s.apply(s.history.undo());
     EXPECT_NEAR(s.x_a[1], 10.0, 1e-9);
 }
 
-TEST(FitHistory, another_gesture_ends_what_could_be_redone) {
+TEST(FitHistory, another_gesture_clears_redo) {
     Scene s;
     s.drag(1, 3.0);
     s.grip();
@@ -119,7 +119,7 @@ TEST(FitHistory, another_gesture_ends_what_could_be_redone) {
     EXPECT_EQ(s.history.redoable(), 0U);
 }
 
-TEST(FitHistory, revert_leads_to_what_was_accepted_and_can_be_undone) {
+TEST(FitHistory, revert_restores_the_accepted_poses_and_can_be_undone) {
     Scene s;
     s.drag(1, 3.0);
     s.history.accept();
@@ -136,7 +136,7 @@ TEST(FitHistory, revert_leads_to_what_was_accepted_and_can_be_undone) {
     EXPECT_NEAR(s.x_a[2], 4.0, 1e-9);
 }
 
-TEST(FitHistory, snapshots_are_gone_back_to_by_name) {
+TEST(FitHistory, snapshots_are_restored_by_name) {
     Scene s;
     s.drag(1, 3.0);
     EXPECT_TRUE(s.history.snapshot("a"));
@@ -148,7 +148,7 @@ TEST(FitHistory, snapshots_are_gone_back_to_by_name) {
     EXPECT_EQ(s.history.snapshots(), std::vector<std::string>{"a"});
 }
 
-TEST(FitHistory, bodies_that_came_or_went_are_left_alone) {
+TEST(FitHistory, added_or_removed_bodies_are_not_moved) {
     Scene s;
     s.drag(1, 3.0);
     s.grip();
@@ -161,7 +161,7 @@ TEST(FitHistory, bodies_that_came_or_went_are_left_alone) {
     EXPECT_EQ(moves[0].id, 1U);
 }
 
-TEST(FitHistory, another_controller_begins_anew) {
+TEST(FitHistory, another_controller_clears_the_history) {
     Scene s;
     s.drag(1, 3.0);
     s.grip();
@@ -171,11 +171,11 @@ TEST(FitHistory, another_controller_begins_anew) {
     EXPECT_TRUE(s.history.revert().empty());
 }
 
-TEST(FitHistory, a_refused_move_is_not_waited_for_forever) {
+TEST(FitHistory, waiting_for_a_refused_move_is_bounded) {
     Scene s;
     s.drag(1, 3.0);
     s.grip();
-    static_cast<void>(s.history.undo());  // and nobody applies
+    static_cast<void>(s.history.undo());  // the controller does not apply it
     for (int i = 0; i < FitHistory::kPatience; ++i) s.look();
     s.drag(1, 5.0);
     s.apply(s.history.undo());
@@ -193,15 +193,15 @@ TEST(FitHistory, memory_is_bounded) {
     EXPECT_EQ(s.history.snapshots().size(), FitHistory::kSnapshotsMax);
 }
 
-RC_GTEST_PROP(FitHistory, any_sequence_is_what_a_list_of_states_does, ()) {
+RC_GTEST_PROP(FitHistory, any_sequence_matches_a_list_of_states, ()) {
     Scene s;
-    std::vector<double> done, undone;  // of body 1, before each gesture
+    std::vector<double> done, undone;  // positions of body 1 before each gesture
     double at = 0.0;
     const auto steps = *rc::gen::container<std::vector<int>>(rc::gen::inRange(0, 3));
     int drags = 0;
     for (const int step : steps) {
         if (step == 0) {
-            s.drag(1, drags += 3);  // more than a hand trembles
+            s.drag(1, drags += 3);  // more than a tremor
             s.grip();
             done.push_back(at);
             undone.clear();

@@ -1,4 +1,4 @@
-// Hours of data: what the dashboard keeps of them does not grow, and a picture of them allocates no more than one of minutes.
+// Hours of data: the dashboard's memory does not grow, and a frame allocates no more than after minutes.
 #include <gtest/gtest.h>
 #include <malloc.h>
 
@@ -42,14 +42,14 @@ void operator delete[](void* p, std::size_t) noexcept { given_back(p); }
 namespace tact {
 namespace {
 
-// A controller of 1 kHz and a window of 60 pictures a second, without either.
+// Simulates a controller at 1 kHz and a window at 60 frames/s.
 class Hours : public testing::Test {
 protected:
     Hours() {
         ImGui::SetAllocatorFunctions([](std::size_t size, void*) { return taken(size); },
                                      [](void* p, void*) { given_back(p); });
     }
-    // A sixtieth of a second, without its picture.
+    // Advances by 1/60 s without drawing.
     void tick(DashboardState& state) {
         ++frame_;
         const double now_s = static_cast<double>(frame_) / 60.0;
@@ -71,7 +71,7 @@ protected:
             state.have_health = state.attached = true;
             add_health(h, state.history);
             state.device_rate[0].add(state.now_ns, frame_ * 16);
-            // Levels that never rest.
+            // Levels that change all the time.
             state.history.knobs.add(now_s, frame_ / 6 % 3, 0.5 + 0.4 * std::sin(now_s),
                                     frame_ % 12 == 0 ? LevelReason::rate_low : LevelReason::rate_high);
         }
@@ -109,7 +109,7 @@ protected:
     LatenessTopic lateness_{};
 };
 
-TEST_F(Hours, take_no_more_memory_than_the_first_minutes) {
+TEST_F(Hours, take_no_more_memory_than_minutes) {
     test::TestDashboard dashboard(1280.0F, 720.0F, 1.0F);
     dashboard.state.have_levels = true;
     dashboard.state.levels = levels_;
@@ -123,14 +123,14 @@ TEST_F(Hours, take_no_more_memory_than_the_first_minutes) {
         const long long before = live_bytes;
         hours(dashboard, 1.0);
         dashboard.frame();
-        // Buffers of what is drawn follow what is seen, a plot that has filled for one.
+        // Draw buffers grow with the drawn data, for example once a plot is full.
         EXPECT_LT(live_bytes - before, 512 * 1024) << "strip " << strip;
     }
     EXPECT_GT(cycle_, 7'000'000);
     EXPECT_GT(dashboard.state.history.knobs.forgotten(), 1000U);
 }
 
-TEST_F(Hours, no_allocation_for_a_sample_once_it_runs) {
+TEST_F(Hours, a_running_dashboard_adds_samples_without_allocation) {
     auto state = std::make_unique<DashboardState>();
     for (int i = 0; i < 600; ++i) tick(*state);
     const long long before = allocations;

@@ -1,4 +1,4 @@
-// Dropped files, by the way that the window's callback takes: told in words, baked by `tact`, cancelled, refused.
+// Dropped files through the window's callback: messages, baking by `tact`, cancelling, refusals.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -44,7 +44,7 @@ protected:
     BrowserState state_;
 };
 
-TEST_F(Import, a_mesh_is_baked_into_the_cache_and_its_scene_asked_for) {
+TEST_F(Import, a_mesh_is_baked_into_the_cache_and_its_scene_requested) {
     const auto scene_switch = folder_ / "scene_switch";
     std::filesystem::create_directory(scene_switch);
     BrowserController dashboard(scene_switch);
@@ -60,7 +60,7 @@ TEST_F(Import, a_mesh_is_baked_into_the_cache_and_its_scene_asked_for) {
     EXPECT_EQ(state_.message_grade, Grade::bad);
 }
 
-TEST_F(Import, rows_that_are_pressed_are_marked_and_imported_together) {
+TEST_F(Import, clicked_rows_are_marked_and_imported_together) {
     BrowserController dashboard({});
     state_.open = true;
     state_.folder = folder_;
@@ -84,7 +84,7 @@ TEST_F(Import, rows_that_are_pressed_are_marked_and_imported_together) {
     press(folder_ / "wrong.ply");
     EXPECT_TRUE(row("wrong.ply").marked && !state_.marks_import);
     EXPECT_EQ(state_.marks_text, "2 marked. One mesh at a time.");
-    state_.import_wanted = true;  // the button is not to be pressed now
+    state_.import_wanted = true;  // the button is disabled now
     dashboard.follow(state_);
     EXPECT_FALSE(state_.importing);
     press(folder_ / "wrong.ply");
@@ -102,16 +102,16 @@ TEST_F(Import, rows_that_are_pressed_are_marked_and_imported_together) {
     EXPECT_TRUE(state_.marks_text.empty());
 }
 
-TEST_F(Import, what_can_be_dropped_is_said_of_what_cannot) {
+TEST_F(Import, an_unknown_file_type_is_answered_with_the_known_ones) {
     BrowserController dashboard({});
     dashboard.drop({"/a/notes.txt"}, state_);
     EXPECT_TRUE(state_.open);
-    EXPECT_NE(state_.message.find("'notes.txt' is of no kind that Tact reads"), std::string::npos)
+    EXPECT_NE(state_.message.find("'notes.txt' has an ending that Tact does not read"), std::string::npos)
         << state_.message;
-    EXPECT_NE(state_.message.find("What can be dropped: a scene"), std::string::npos) << state_.message;
+    EXPECT_NE(state_.message.find("Files to drop: a scene"), std::string::npos) << state_.message;
 }
 
-TEST_F(Import, what_tact_prep_says_of_a_wrong_file_is_shown_as_it_is) {
+TEST_F(Import, the_error_of_tact_prep_is_shown_unchanged) {
     BrowserController dashboard({});
     dashboard.drop({folder_ / "wrong.ply"}, state_);
     until_done(dashboard);
@@ -129,7 +129,7 @@ TEST_F(Import, a_cancelled_import_leaves_nothing) {
     EXPECT_EQ(scenes(), 0U);
 }
 
-TEST_F(Import, a_list_of_scenes_that_cannot_be_read_is_kept_aside) {
+TEST_F(Import, an_unreadable_list_of_scenes_is_kept_aside) {
     setenv("XDG_STATE_HOME", (folder_ / "state").c_str(), 1);
     const auto list = folder_ / "state" / "tact" / "recent.json";
     std::filesystem::create_directories(list.parent_path());
@@ -137,13 +137,13 @@ TEST_F(Import, a_list_of_scenes_that_cannot_be_read_is_kept_aside) {
     {
         BrowserController dashboard(folder_);
         dashboard.used("/a/b.tact", state_);
-    }  // waits for the disk
+    }  // waits for the file to be written
     EXPECT_EQ(read_recents(list).at(0).path, "/a/b.tact");
     std::ifstream aside(list.string() + ".damaged");
     EXPECT_EQ(std::string(std::istreambuf_iterator<char>(aside), {}), "by hand, and wrong");
 }
 
-TEST_F(Import, without_a_launcher_the_window_says_how_to_open_a_scene) {
+TEST_F(Import, without_a_launcher_the_window_explains_how_to_open_a_scene) {
     BrowserController dashboard({});
     dashboard.drop({"/a/b.tact"}, state_);
     EXPECT_TRUE(state_.open);

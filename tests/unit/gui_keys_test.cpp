@@ -1,4 +1,4 @@
-// The table of shortcuts: every row can be reached and none stands in another's way.
+// The table of shortcuts: every row can be reached, and no two rows conflict.
 #include <gtest/gtest.h>
 
 #include <set>
@@ -20,7 +20,7 @@ KeySituation where_applies(KeyWhen when) {
     return now;
 }
 
-TEST(Keys, every_row_is_found_by_its_stroke_where_it_applies_and_by_no_other) {
+TEST(Keys, every_row_is_found_only_by_its_stroke_in_its_situation) {
     for (const KeyRow& row : key_rows()) {
         if (row.action == KeyAction::none) continue;
         const char last = row.last != '\0' ? row.last : row.stroke.character;
@@ -45,7 +45,7 @@ TEST(Keys, no_two_rows_that_may_apply_at_once_share_a_stroke) {
             if (&a != &b) {
                 EXPECT_FALSE(collide(a, b)) << a.keys << ": " << a.what << " and " << b.what;
             }
-    // The check itself sees one.
+    // The check detects a conflict.
     const KeyRow digits{
         {KeyCode::character, '1', false, false}, '9', KeyWhen::bodies, KeyAction::home, "", ""};
     const KeyRow five{{KeyCode::character, '5', false, false}, 0, KeyWhen::always, KeyAction::mark, "", ""};
@@ -55,7 +55,7 @@ TEST(Keys, no_two_rows_that_may_apply_at_once_share_a_stroke) {
     EXPECT_FALSE(collide(digits, in_bone));
 }
 
-TEST(Keys, every_act_has_a_key_and_every_row_words) {
+TEST(Keys, every_action_has_a_key_and_every_row_a_text) {
     std::set<KeyAction> acts;
     for (const KeyRow& row : key_rows()) {
         acts.insert(row.action);
@@ -65,14 +65,14 @@ TEST(Keys, every_act_has_a_key_and_every_row_words) {
     EXPECT_EQ(acts.size(), static_cast<std::size_t>(KeyAction::count));
 }
 
-TEST(Keys, a_long_sheet_has_two_columns_where_both_have_room) {
-    EXPECT_EQ(sheet_columns(13, 40, 2), 1);  // a short one stays together
+TEST(Keys, a_long_sheet_has_two_columns_if_both_fit) {
+    EXPECT_EQ(sheet_columns(13, 40, 2), 1);  // a short sheet stays in one column
     EXPECT_EQ(sheet_columns(24, 40, 2), 2);
-    EXPECT_EQ(sheet_columns(24, 40, 1), 1);  // a second one would be cut off at the sides
-    EXPECT_EQ(sheet_columns(13, 8, 2), 2);   // too high for the view, though short
+    EXPECT_EQ(sheet_columns(24, 40, 1), 1);  // a second column would be cut off at the sides
+    EXPECT_EQ(sheet_columns(13, 8, 2), 2);   // short, but too high for the view
 }
 
-TEST(Keys, the_sheet_takes_esc_before_the_bodies_do) {
+TEST(Keys, the_sheet_handles_esc_before_the_bodies) {
     KeySituation now = where_applies(KeyWhen::bodies);
     const KeyStroke escape{KeyCode::escape, '\0', false, false};
     EXPECT_EQ(find_key(escape, now).row->action, KeyAction::revert);

@@ -1,4 +1,4 @@
-// Keys pressed on the X server, through the window, to what they do: to the controller's commands and to the log.
+// Keys pressed on an X server, through the window, to their effects: commands to the controller and the log.
 #include <gtest/gtest.h>
 #include <signal.h>
 #include <sys/wait.h>
@@ -17,20 +17,20 @@ namespace tact {
 namespace {
 
 using std::chrono::milliseconds;
-constexpr std::chrono::seconds kPatience(60);  // reached only when something is wrong
+constexpr std::chrono::seconds kPatience(60);  // reached only on failure
 
 class KeysInTheWindow : public testing::Test {
 protected:
     void SetUp() override {
         for (const char* const program : {"Xvfb", "xdotool"})
             if (launch::find_in_path(program).empty())
-                GTEST_SKIP() << program << " is not installed: no key can be pressed here";
+                GTEST_SKIP() << program << " is not installed: keys cannot be sent";
         char name[] = "/tmp/tact-keys-test-XXXXXX";
         folder_ = mkdtemp(name);
         setenv("TACT_RUNTIME_DIR", folder_.c_str(), 1);
         setenv("LIBGL_ALWAYS_SOFTWARE", "1", 1);
         setenv("SPDLOG_LEVEL", "debug", 1);
-        setenv("ASAN_OPTIONS", "detect_leaks=0", 1);  // graphics drivers keep memory to the end on purpose
+        setenv("ASAN_OPTIONS", "detect_leaks=0", 1);  // graphics drivers keep memory until exit on purpose
         x_server_ = std::make_unique<launch::XServer>(folder_, 800, 600);
         for (const auto& [key, value] : x_server_->environment())
             value.empty() ? unsetenv(key.c_str()) : setenv(key.c_str(), value.c_str(), 1);
@@ -49,7 +49,7 @@ protected:
             LoadTopic load{};
             return controller_->gui()->load.read(load) && load.vertices_drawn > 0;
         })) << log_text();
-        // No window manager is there to give it the keyboard.
+        // There is no window manager to give the window the keyboard focus.
         ASSERT_EQ(std::system("xdotool search --sync --name '^Tact' windowfocus --sync >/dev/null 2>&1"), 0);
     }
     void TearDown() override {
@@ -140,7 +140,7 @@ std::string name_for_x(const KeyStroke& stroke) {
     }
 }
 
-TEST_F(KeysInTheWindow, every_row_of_a_docking_scene_is_pressed_and_taken) {
+TEST_F(KeysInTheWindow, every_key_of_a_docking_scene_is_handled) {
     const KeySituation now{.sheet = false, .bodies = true, .bone = false, .stereo = true, .controller = true};
     const KeyRow* close = nullptr;
     std::size_t pressed = 0;
@@ -152,7 +152,7 @@ TEST_F(KeysInTheWindow, every_row_of_a_docking_scene_is_pressed_and_taken) {
         ++pressed;
     }
     EXPECT_GT(pressed, 15U);
-    // `?` came last: its sheet is open.
+    // `?` was last, so its sheet is open.
     ASSERT_NE(close, nullptr);
     press(name_for_x(close->stroke));
     EXPECT_TRUE(logged(*close)) << log_text();
@@ -160,18 +160,18 @@ TEST_F(KeysInTheWindow, every_row_of_a_docking_scene_is_pressed_and_taken) {
         for (const auto& entry : std::filesystem::directory_iterator(folder_))
             if (entry.path().extension() == ".png") return true;
         return false;
-    })) << "P saved no picture\n"
+    })) << "P saved no image\n"
         << log_text();
 }
 
-TEST_F(KeysInTheWindow, arm_is_sent_from_ready_alone_and_disarm_always) {
+TEST_F(KeysInTheWindow, arm_is_sent_only_from_ready_and_disarm_always) {
     be(RunState::off, nullptr);
     press("ctrl+Return");
     press("m");
     ASSERT_TRUE(commanded(CommandKind::mark)) << log_text();
     EXPECT_EQ(last_.sequence, 1U) << "arm was sent although the controller was off";
     be(RunState::ready, nullptr);
-    // The window may not have read it yet: pressed until it has.
+    // The window may not have read the state yet, so press until it has.
     bool armed = false;
     for (int i = 0; i < 100 && !armed; ++i) {
         press("ctrl+Return");
@@ -189,7 +189,7 @@ TEST_F(KeysInTheWindow, arm_is_sent_from_ready_alone_and_disarm_always) {
     ASSERT_TRUE(commanded(CommandKind::disarm)) << log_text();
 }
 
-TEST_F(KeysInTheWindow, a_digit_takes_the_body_of_that_number) {
+TEST_F(KeysInTheWindow, a_digit_selects_the_body_of_that_number) {
     press("0");
     ASSERT_TRUE(commanded(CommandKind::select_body)) << log_text();
     EXPECT_EQ(last_.body, kNoBody);

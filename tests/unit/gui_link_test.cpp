@@ -1,4 +1,4 @@
-// What the visual process believes of the controller: records checked, levels applied, commands followed.
+// The visual process's side of the link: checks of the controller's records, levels, predicted poses, commands.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -25,7 +25,7 @@ BodiesTopic good_bodies() {
     return b;
 }
 
-TEST(RegionChecks, accept_what_a_controller_writes) {
+TEST(RegionChecks, accept_the_records_of_a_controller) {
     EXPECT_TRUE(sensible(good_bodies()));
     EXPECT_TRUE(sensible(BodiesTopic{}));
     EXPECT_TRUE(sensible(HealthTopic{}));
@@ -35,7 +35,7 @@ TEST(RegionChecks, accept_what_a_controller_writes) {
     EXPECT_TRUE(sensible(tool));
 }
 
-TEST(RegionChecks, refuse_a_touch_that_cannot_be) {
+TEST(RegionChecks, refuse_an_impossible_touch) {
     TouchTopic good{};
     good.planes = 1;
     good.normal_model[0][1] = 1.0F;
@@ -60,7 +60,7 @@ TEST(RegionChecks, refuse_a_touch_that_cannot_be) {
     EXPECT_TRUE(refused([](TouchTopic& t) { t.state = static_cast<TouchState>(3); }));
 }
 
-TEST(RegionChecks, refuse_a_drill_that_cannot_be) {
+TEST(RegionChecks, refuse_an_impossible_drill) {
     DrillTopic good{};
     good.level_m3 = 1e-13;
     DrillHand& burr = good.hand[0];
@@ -84,10 +84,10 @@ TEST(RegionChecks, refuse_a_drill_that_cannot_be) {
     EXPECT_TRUE(refused([](DrillTopic& t) { t.hand[0].quat_model_tool_xyzw[3] = 0.0; }));
     EXPECT_TRUE(refused([](DrillTopic& t) { t.hand[0].suction = 1.5F; }));
     EXPECT_TRUE(refused([](DrillTopic& t) { t.hand[0].depth = std::nanf(""); }));
-    EXPECT_TRUE(refused([](DrillTopic& t) { t.hand[1].kind = DrillKind::suction_tube; }));  // of no size
+    EXPECT_TRUE(refused([](DrillTopic& t) { t.hand[1].kind = DrillKind::suction_tube; }));  // without a size
 }
 
-TEST(RegionChecks, refuse_a_head_that_cannot_be) {
+TEST(RegionChecks, refuse_an_impossible_head) {
     HeadTopic good{};
     good.quat_screen_head_xyzw[3] = 1.0;
     good.state = 2;
@@ -106,7 +106,7 @@ TEST(RegionChecks, refuse_a_head_that_cannot_be) {
     refused([](HeadTopic& h) { h.quality = 1.5; });
 }
 
-TEST(RegionChecks, refuse_devices_a_tracker_and_a_lateness_that_cannot_be) {
+TEST(RegionChecks, refuse_impossible_devices_trackers_and_lateness) {
     EXPECT_TRUE(sensible(DevicesTopic{}));
     EXPECT_TRUE(sensible(TrackerTopic{}));
     EXPECT_TRUE(sensible(LatenessTopic{}));
@@ -131,15 +131,15 @@ TEST(RegionChecks, refuse_devices_a_tracker_and_a_lateness_that_cannot_be) {
     EXPECT_FALSE(sensible(tracker));
     LatenessTopic late{};
     late.counts[7] = 3;
-    EXPECT_FALSE(sensible(late));  // of no cycles
+    EXPECT_FALSE(sensible(late));  // counts without any cycle
     late.total = 3;
     EXPECT_TRUE(sensible(late));
     late.counts[8] = ~std::uint64_t{0};
-    late.total = 2;  // where the sum overflows
+    late.total = 2;  // the sum of the counts overflows
     EXPECT_FALSE(sensible(late));
 }
 
-TEST(RegionChecks, refuse_bodies_that_cannot_be) {
+TEST(RegionChecks, refuse_impossible_bodies) {
     const double kNan = std::nan("");
     BodiesTopic b = good_bodies();
     b.count = 17;
@@ -157,14 +157,14 @@ TEST(RegionChecks, refuse_bodies_that_cannot_be) {
     b.body[0].pos_model_m[0] = 1e9;
     EXPECT_FALSE(sensible(b));
     b = good_bodies();
-    b.body[0].quat_model_body_xyzw[3] = 0.0;  // no rotation at all
+    b.body[0].quat_model_body_xyzw[3] = 0.0;  // not a rotation
     EXPECT_FALSE(sensible(b));
     b = good_bodies();
-    b.body[5].pos_model_m[0] = kNan;  // beyond count: not looked at
+    b.body[5].pos_model_m[0] = kNan;  // beyond count: not checked
     EXPECT_TRUE(sensible(b));
 }
 
-TEST(RegionChecks, refuse_numbers_and_texts_that_cannot_be) {
+TEST(RegionChecks, refuse_impossible_numbers_and_unterminated_texts) {
     HealthTopic h{};
     h.force_rate_hz = std::numeric_limits<double>::infinity();
     EXPECT_FALSE(sensible(h));
@@ -188,7 +188,7 @@ TEST(RegionChecks, refuse_numbers_and_texts_that_cannot_be) {
     l.count = 9;
     EXPECT_FALSE(sensible(l));
     l = {};
-    std::memset(l.law, 'x', sizeof l.law);  // never ends
+    std::memset(l.law, 'x', sizeof l.law);  // no terminating zero
     EXPECT_FALSE(sensible(l));
     l = {};
     l.count = 1;
@@ -202,7 +202,7 @@ TEST(RegionChecks, refuse_numbers_and_texts_that_cannot_be) {
     EXPECT_FALSE(sensible(l));
 }
 
-TEST(RegionChecks, find_a_path_by_its_whole_name) {
+TEST(RegionChecks, find_a_path_by_its_full_name) {
     LevelsTopic l{};
     l.count = 2;
     std::strcpy(l.path[0].path, "gui.mesh2");
@@ -213,7 +213,7 @@ TEST(RegionChecks, find_a_path_by_its_whole_name) {
     EXPECT_EQ(find_path(l, kMeshPath), nullptr);
 }
 
-TEST(MeshLevel, takes_the_governors_items_when_it_knows_this_mesh) {
+TEST(MeshLevel, uses_the_governors_item_count_for_this_mesh) {
     PathLevel p{};
     p.level = 0.5F;
     p.items = 1234;
@@ -221,37 +221,37 @@ TEST(MeshLevel, takes_the_governors_items_when_it_knows_this_mesh) {
     EXPECT_EQ(vertices_for(p, 10, 10'000), 1234U);
 }
 
-TEST(MeshLevel, takes_the_level_as_a_share_otherwise_and_stays_within_the_mesh) {
+TEST(MeshLevel, uses_the_level_as_a_fraction_otherwise_and_stays_within_the_mesh) {
     PathLevel p{};
     p.level = 0.25F;
     EXPECT_EQ(vertices_for(p, 10, 10'000), 2500U);
     p.items = 50;
-    p.items_max = 100;  // of another mesh
+    p.items_max = 100;  // the items of another mesh
     EXPECT_EQ(vertices_for(p, 10, 10'000), 2500U);
     p.level = 0.0F;
     EXPECT_EQ(vertices_for(p, 10, 10'000), 10U);
     p.level = 1.0F;
     EXPECT_EQ(vertices_for(p, 10, 10'000), 10'000U);
     p.items = 20'000;
-    p.items_max = 10'000;  // more than there are
+    p.items_max = 10'000;  // more than the mesh has
     EXPECT_EQ(vertices_for(p, 10, 10'000), 10'000U);
 }
 
-TEST(MeshLevel, a_surface_is_never_coarser_than_can_be_recognized) {
+TEST(MeshLevel, a_surface_keeps_enough_vertices_to_be_recognizable) {
     EXPECT_EQ(fewest_shown(66, 60'000), 1000U);
     EXPECT_EQ(fewest_shown(66, 6000), 500U);
     EXPECT_EQ(fewest_shown(3000, 9000), 3000U);  // a base mesh cannot have fewer
     EXPECT_EQ(fewest_shown(0, 0), 0U);
 }
 
-TEST(MeshLevel, adapting_takes_at_most_a_quarter_of_a_frame_and_never_very_long) {
+TEST(MeshLevel, the_adapting_time_is_a_quarter_of_a_frame_within_limits) {
     EXPECT_EQ(adapt_budget_s(0.0), 0.002);  // the first frame
     EXPECT_EQ(adapt_budget_s(0.016), 0.004);
     EXPECT_EQ(adapt_budget_s(3.0), 0.05);
     EXPECT_EQ(adapt_budget_s(std::nan("")), 0.002);
 }
 
-TEST(PosePredictor, follows_a_steady_motion_to_the_time_of_the_picture) {
+TEST(PosePredictor, extrapolates_a_steady_motion_to_the_time_of_display) {
     PosePredictor predictor;
     const Vec3 speed(1e-8, -2e-8, 0.5e-8);
     const double spin = 1.5;
@@ -265,7 +265,7 @@ TEST(PosePredictor, follows_a_steady_motion_to_the_time_of_the_picture) {
     EXPECT_LT(seen.q.angularDistance(wanted.q), 1e-4);
 }
 
-TEST(PosePredictor, does_not_run_away_from_a_controller_that_went_silent) {
+TEST(PosePredictor, stops_extrapolating_when_the_controller_is_silent) {
     PosePredictor predictor;
     for (int i = 0; i <= 100; ++i)
         predictor.add(1 + i * 1'000'000LL, {Vec3(1e-8 * i, 0, 0), Quat::Identity()});
@@ -277,7 +277,7 @@ TEST(PosePredictor, does_not_run_away_from_a_controller_that_went_silent) {
     EXPECT_EQ(predictor.at(9'010'000'000LL).p_m, Vec3::Zero());
 }
 
-TEST(CommandSender, numbers_commands_and_tells_what_became_of_them) {
+TEST(CommandSender, numbers_commands_and_reports_their_results) {
     OwnedRegion<GuiRegion> region;
     CommandSender sender(region->commands);
     using Stage = CommandSender::Stage;
@@ -296,15 +296,25 @@ TEST(CommandSender, numbers_commands_and_tells_what_became_of_them) {
     health.command_sequence = 1;
     health.command_result = static_cast<std::uint32_t>(CommandResult::done);
     sender.update(health, 300);
-    EXPECT_EQ(sender.stage(), Stage::sent);  // that was the first one
+    EXPECT_EQ(sender.stage(), Stage::sent);  // the answer is to the first command
     sender.update(health, 200 + CommandSender::kPatience_ns + 1);
     EXPECT_EQ(sender.stage(), Stage::unanswered);
     health.command_sequence = 2;
     health.command_result = static_cast<std::uint32_t>(CommandResult::refused_value);
     sender.update(health, 400);
     EXPECT_EQ(sender.stage(), Stage::refused);
+    // A disarm overtakes what was sent before it; the answers to that come later.
+    ASSERT_TRUE(sender.send({.kind = CommandKind::disarm}, 500));
+    health.state_sequence = 3;
+    health.state_result = static_cast<std::uint16_t>(CommandResult::done);
+    sender.update(health, 600);
+    EXPECT_EQ(sender.stage(), Stage::done);
+    ASSERT_TRUE(sender.send({.kind = CommandKind::mark}, 700));
+    health.state_sequence = 4;  // of the window before this one
+    sender.update(health, 800);
+    EXPECT_EQ(sender.stage(), Stage::sent);
     EXPECT_FALSE(sender.send({.kind = CommandKind::set_law, .text = std::string(32, 'x')}, 500));
-    EXPECT_EQ(sender.sequence(), 2U);
+    EXPECT_EQ(sender.sequence(), 4U);
 }
 
 TEST(StatusText, grades_the_rate_against_its_goal) {
@@ -316,7 +326,7 @@ TEST(StatusText, grades_the_rate_against_its_goal) {
     EXPECT_EQ(rate_status(5.0, 0.0).grade, Grade::unknown);
 }
 
-TEST(StatusTexts, of_devices_motors_and_a_tracker_say_the_worst_of_what_is_known) {
+TEST(StatusTexts, of_devices_motors_and_trackers_show_the_worst_known_state) {
     DeviceHand d{};
     EXPECT_EQ(device_status(d, {}, DeviceNotice::none).grade, Grade::unknown);
     d.there = 1;
@@ -346,7 +356,7 @@ TEST(StatusTexts, of_devices_motors_and_a_tracker_say_the_worst_of_what_is_known
     m.heat = 1.01F;
     EXPECT_EQ(motor_status(m).grade, Grade::bad);
     EXPECT_NE(motor_status(m).text.find("1.4 N"), std::string::npos);
-    m.winding_c_max = 100.0F;  // what the driver counts is nearer to the truth
+    m.winding_c_max = 100.0F;  // the driver's winding temperature takes precedence
     m.winding_c = 60.0F;
     EXPECT_EQ(motor_status(m).grade, Grade::good);
     m.winding_c = 90.0F;
@@ -377,7 +387,7 @@ TEST(StatusTexts, of_devices_motors_and_a_tracker_say_the_worst_of_what_is_known
     EXPECT_EQ(display_status(15.0, 0.0).grade, Grade::watch);
 }
 
-TEST(StatusText, every_grade_comes_with_words) {
+TEST(StatusText, every_grade_has_a_text) {
     for (int state = 0; state < 7; ++state)
         for (int reason = 0; reason < 15; ++reason)
             EXPECT_FALSE(
@@ -392,8 +402,20 @@ TEST(StatusText, every_grade_comes_with_words) {
     };
     EXPECT_EQ(overran(0, 1000).grade, Grade::good);
     EXPECT_EQ(overran(1, 1'000'000).grade, Grade::watch);
-    EXPECT_EQ(overran(1, 1'000'000).text, "the last 12 s ago");
+    EXPECT_EQ(overran(1, 1'000'000).text, "last: 12 s ago");
     EXPECT_EQ(overran(100, 1000).grade, Grade::bad);
+    const auto missed = [](std::uint64_t misses, float share) {
+        HealthTopic h{};
+        h.deadline_misses = misses;
+        h.deadline_miss_share = share;
+        h.deadline_missed_at_ns = 1'000'000'000;
+        return deadline_status(h, 13'000'000'000);
+    };
+    EXPECT_EQ(missed(0, 0.0F).grade, Grade::good);
+    EXPECT_EQ(missed(3, 0.0F).text, "last: 12 s ago");
+    EXPECT_EQ(missed(3, 5e-4F).grade, Grade::watch);
+    EXPECT_EQ(missed(300, 0.3F).grade, Grade::bad);
+    EXPECT_EQ(missed(300, 0.3F).text, "30 % in the last second");
     EXPECT_EQ(lateness_status(50'000, 1'000'000).grade, Grade::good);
     EXPECT_EQ(lateness_status(900'000, 1'000'000).grade, Grade::bad);
     EXPECT_EQ(bus_status({.packets = 1000}).grade, Grade::good);
@@ -409,7 +431,7 @@ TEST(StatusText, every_grade_comes_with_words) {
     EXPECT_NE(memory_status(health).text.find("1 allocation,"), std::string::npos);
 }
 
-TEST(CommandSender, carries_the_body_and_its_place) {
+TEST(CommandSender, carries_the_body_and_its_pose) {
     Ring<CommandTopic, 64> ring;
     CommandSender sender(ring);
     Command place{.kind = CommandKind::place_body, .body = 7};
@@ -436,7 +458,7 @@ BodiesTopic topic_of(std::initializer_list<std::pair<std::uint32_t, std::uint16_
     return t;
 }
 
-TEST(BodyList, shows_the_structures_at_home_until_a_controller_speaks) {
+TEST(BodyList, shows_the_structures_at_home_until_a_controller_publishes) {
     BodyList list;
     const std::vector<Pose> homes(3, {Vec3(0, 0, 4e-9), Quat::Identity()});
     list.start(homes);
@@ -466,7 +488,7 @@ TEST(BodyList, follows_bodies_by_id_while_others_come_and_go) {
     EXPECT_EQ(list.find(5)->newest.p_m.x(), 5e-10);
 }
 
-TEST(BodyList, leaves_out_bodies_of_structures_that_the_scene_does_not_have) {
+TEST(BodyList, omits_bodies_of_structures_missing_from_the_scene) {
     BodyList list;
     list.start(std::vector<Pose>(1));
     BodiesTopic t = topic_of({{1, 9}, {2, 0}});
@@ -474,10 +496,10 @@ TEST(BodyList, leaves_out_bodies_of_structures_that_the_scene_does_not_have) {
     list.follow(t);
     ASSERT_EQ(list.bodies().size(), 1U);
     EXPECT_EQ(list.bodies()[0].id, 2U);
-    EXPECT_EQ(list.active(), 0U);  // its place among those that are shown
+    EXPECT_EQ(list.active(), 0U);  // the index among the bodies that are shown
 }
 
-TEST(StatusTexts, what_stops_the_force_is_told_with_what_a_person_is_to_do) {
+TEST(StatusTexts, of_a_stop_give_the_reason_and_the_fix) {
     HealthTopic h{};
     for (const auto state : {RunState::off, RunState::ready, RunState::armed, RunState::active}) {
         h.state = static_cast<std::uint8_t>(state);
@@ -494,7 +516,7 @@ TEST(StatusTexts, what_stops_the_force_is_told_with_what_a_person_is_to_do) {
         fixes.insert(notice.fix);
     }
     EXPECT_GE(fixes.size(), 10U);
-    // The lines' own reason comes first: it is what a hand can change.
+    // The lines' own reason takes precedence: the operator can clear it.
     h.lines = static_cast<std::uint8_t>(LinesShown::stopped);
     h.lines_reason = static_cast<std::uint8_t>(RunReason::emergency_stop);
     EXPECT_NE(stop_notice(h).why.find("emergency stop"), std::string::npos);
@@ -505,14 +527,14 @@ TEST(StatusTexts, what_stops_the_force_is_told_with_what_a_person_is_to_do) {
     EXPECT_TRUE(stop_notice(h).why.empty());
 }
 
-TEST(StatusTexts, of_a_distance_are_red_below_one_millimetre_amber_below_two_and_look_ahead) {
+TEST(StatusTexts, of_a_distance_are_red_below_1_mm_amber_below_2_mm_and_predict_the_approach) {
     EXPECT_EQ(distance_status(-1e-4, 0.0, false).text, "inside");
     EXPECT_EQ(distance_status(-1e-4, 0.0, false).grade, Grade::bad);
     EXPECT_EQ(distance_status(0.99e-3, 0.0, false).grade, Grade::bad);
     EXPECT_EQ(distance_status(1.01e-3, 0.0, false).grade, Grade::watch);
     EXPECT_EQ(distance_status(1.99e-3, 0.0, false).grade, Grade::watch);
     EXPECT_EQ(distance_status(2.01e-3, 0.0, false).grade, Grade::good);
-    // 4 mm away and 10 mm/s: at 1 mm in 0.3 s, if it turns.
+    // 4 mm away, approaching at 10 mm/s: 1 mm in 0.3 s, if the burr turns.
     EXPECT_EQ(distance_status(4e-3, 1e-2, true).text, "1 mm in 0.3 s");
     EXPECT_EQ(distance_status(4e-3, 1e-2, true).grade, Grade::watch);
     EXPECT_EQ(distance_status(4e-3, 1e-2, false).grade, Grade::good);
@@ -521,7 +543,7 @@ TEST(StatusTexts, of_a_distance_are_red_below_one_millimetre_amber_below_two_and
     EXPECT_EQ(distance_status(std::nan(""), 0.0, true).grade, Grade::unknown);
 }
 
-TEST(StatusTexts, of_the_force_on_a_burr_say_how_long_it_was_too_much) {
+TEST(StatusTexts, of_the_force_on_a_burr_give_the_time_above_the_limit) {
     EXPECT_EQ(force_status(1.0, 0.0).text, "always below 2 N");
     EXPECT_EQ(force_status(1.0, 3.21).text, "above 2 N for 3.2 s");
     EXPECT_EQ(force_status(1.0, 3.21).grade, Grade::good);

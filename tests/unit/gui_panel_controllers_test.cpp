@@ -1,4 +1,4 @@
-// The scenes that were used and what a folder holds: kept, bounded, and wrong files told in words.
+// The recent scenes, the contents of a folder, dropped files and the progress of an import.
 #include <gtest/gtest.h>
 #include <sys/stat.h>
 
@@ -30,7 +30,7 @@ protected:
     fs::path folder_;
 };
 
-TEST_F(TestDashboard, what_was_used_is_read_again_newest_first_once_and_no_more_than_fit) {
+TEST_F(TestDashboard, recent_scenes_are_kept_once_newest_first_up_to_a_limit) {
     std::vector<RecentScene> scenes;
     for (std::int64_t i = 0; i < 40; ++i)
         scenes = with_recent(scenes, {std::string("/s/").append(std::to_string(i)), i});
@@ -42,7 +42,7 @@ TEST_F(TestDashboard, what_was_used_is_read_again_newest_first_once_and_no_more_
     EXPECT_TRUE(read_recents(folder_ / "none.json").empty());
 }
 
-TEST_F(TestDashboard, a_list_that_is_wrong_is_told_with_its_mend) {
+TEST_F(TestDashboard, invalid_recent_lists_are_refused_with_a_fix) {
     for (const char* const bad :
          {"", "[", "{}", "{\"scenes\": 3}", "{\"scenes\": [3]}", "{\"scenes\": [{\"path\": \"/a\"}]}",
           "{\"scenes\": [{\"path\": \"a\", \"used_unix_s\": 1}]}",
@@ -54,12 +54,13 @@ TEST_F(TestDashboard, a_list_that_is_wrong_is_told_with_its_mend) {
                   std::string::npos)
             << bad;
     std::ofstream(folder_ / "huge.json") << std::string(kRecentsBytesMost + 1, ' ');
-    EXPECT_NE(error_of([&] { (void)read_recents(folder_ / "huge.json"); }).find("larger"), std::string::npos);
-    EXPECT_NE(error_of([&] { (void)read_recents(folder_); }).find("no regular file"), std::string::npos);
+    EXPECT_NE(error_of([&] { (void)read_recents(folder_ / "huge.json"); }).find("too large"),
+              std::string::npos);
+    EXPECT_NE(error_of([&] { (void)read_recents(folder_); }).find("not a regular file"), std::string::npos);
     EXPECT_THROW((void)recents_text({{"/a\xff", 1}}), StartupError);
 }
 
-TEST_F(TestDashboard, a_file_that_is_set_aside_is_kept_once) {
+TEST_F(TestDashboard, the_latest_file_set_aside_replaces_the_former) {
     const fs::path file = folder_ / "recent.json";
     for (const char* const content : {"first", "second"}) {
         std::ofstream(file) << content;
@@ -73,7 +74,7 @@ TEST_F(TestDashboard, a_file_that_is_set_aside_is_kept_once) {
     EXPECT_NE(error_of([&] { (void)set_aside(file); }).find("fix:"), std::string::npos);
 }
 
-TEST_F(TestDashboard, the_state_folder_is_the_users_own) {
+TEST_F(TestDashboard, the_state_folder_is_below_xdg_state_home_or_home) {
     setenv("XDG_STATE_HOME", "/x/state", 1);
     EXPECT_EQ(state_folder(), "/x/state/tact");
     setenv("XDG_STATE_HOME", "relative", 1);
@@ -81,7 +82,7 @@ TEST_F(TestDashboard, the_state_folder_is_the_users_own) {
     EXPECT_EQ(state_folder(), "/home/someone/.local/state/tact");
 }
 
-TEST_F(TestDashboard, a_row_says_what_a_scene_is_and_what_is_wrong_with_it) {
+TEST_F(TestDashboard, a_row_shows_the_kind_of_a_scene_and_its_faults) {
     const fs::path good = folder_ / "good.tact", broken = folder_ / "broken.tact";
     sample::scene().write(good);
     const auto bytes = sample::scene().to_bytes();
@@ -92,18 +93,18 @@ TEST_F(TestDashboard, a_row_says_what_a_scene_is_and_what_is_wrong_with_it) {
     EXPECT_EQ(rows[0].kind, "docking");
     EXPECT_EQ(rows[0].when, "5 min ago");
     EXPECT_TRUE(rows[0].trouble.empty()) << rows[0].trouble;
-    EXPECT_EQ(rows[1].trouble, "it is not whole");
+    EXPECT_EQ(rows[1].trouble, "the file is incomplete");
     EXPECT_TRUE(rows[2].trouble.starts_with("missing: ")) << rows[2].trouble;
 }
 
-TEST_F(TestDashboard, a_peek_sees_the_same_as_a_whole_read_and_no_changed_byte_of_what_it_reads) {
+TEST_F(TestDashboard, a_peek_gives_the_same_metadata_as_a_full_read_and_refuses_a_changed_header) {
     const fs::path file = folder_ / "scene.tact";
     const auto bytes = sample::scene().to_bytes();
     sample::scene().write(file);
     const SceneMeta all = read_meta(SceneFile::open(file)), peeked = peek_scene(file);
     EXPECT_EQ(std::memcmp(&all, &peeked, sizeof all), 0);
     int refused = 0;
-    for (std::size_t i = 0; i < 28; ++i) {  // the header's fields
+    for (std::size_t i = 0; i < 28; ++i) {  // each byte of the header's fields
         auto changed = bytes;
         changed[i] ^= std::byte{0x40};
         std::ofstream(file, std::ios::binary)
@@ -114,10 +115,10 @@ TEST_F(TestDashboard, a_peek_sees_the_same_as_a_whole_read_and_no_changed_byte_o
     EXPECT_EQ(refused, 28);
 }
 
-TEST_F(TestDashboard, a_folder_shows_the_way_up_its_folders_and_its_scenes) {
+TEST_F(TestDashboard, a_folder_lists_its_parent_its_folders_and_its_scenes) {
     sample::scene().write(folder_ / "b.tact");
-    std::ofstream(folder_ / "notes.txt") << "no scene";
-    std::ofstream(folder_ / "a.tact") << "no scene either";
+    std::ofstream(folder_ / "notes.txt") << "not a scene";
+    std::ofstream(folder_ / "a.tact") << "also not a scene";
     fs::create_directory(folder_ / "more");
     fs::create_directory(folder_ / ".hidden");
     const FolderRows got = folder_rows(folder_, 0);
@@ -131,11 +132,11 @@ TEST_F(TestDashboard, a_folder_shows_the_way_up_its_folders_and_its_scenes) {
     for (std::size_t i = 0; i < kFolderRowsMost + 10; ++i) fs::create_directory(folder_ / std::to_string(i));
     const FolderRows many = folder_rows(folder_, 0);
     EXPECT_LE(many.rows.size(), kFolderRowsMost + 1);
-    EXPECT_EQ(many.rows.back().kind, "docking") << "folders crowded a scene out";
+    EXPECT_EQ(many.rows.back().kind, "docking") << "folders displaced the scene";
     EXPECT_FALSE(many.trouble.empty());
 }
 
-TEST_F(TestDashboard, dropped_files_are_a_scene_an_import_or_told_in_words) {
+TEST_F(TestDashboard, dropped_files_are_a_scene_an_import_or_refused_with_a_reason) {
     using Words = std::vector<std::string>;
     EXPECT_EQ(meaning_of({"/a/x.tact"}).scene, "/a/x.tact");
     EXPECT_EQ(meaning_of({"/a/x.PLY.gz"}).import, (Words{"touch", "/a/x.PLY.gz"}));
@@ -154,7 +155,7 @@ TEST_F(TestDashboard, dropped_files_are_a_scene_an_import_or_told_in_words) {
     }
 }
 
-TEST_F(TestDashboard, what_would_be_made_of_files_is_one_line) {
+TEST_F(TestDashboard, the_import_of_dropped_files_is_described_in_one_line) {
     const auto words = [](const std::vector<std::string>& files) { return meaning_text(meaning_of(files)); };
     EXPECT_EQ(words({"/a/1abc.pdb", "/a/emd.mrc"}), "Dock 1abc.pdb into emd.mrc.");
     EXPECT_EQ(words({"/a/1.pdb", "/a/m.mrc", "/a/2.cif", "/a/3.cif"}), "Dock 1.pdb and 2 more into m.mrc.");
@@ -164,12 +165,12 @@ TEST_F(TestDashboard, what_would_be_made_of_files_is_one_line) {
     EXPECT_EQ(words({"/a/two\nlines.stl"}), "Touch two?lines.stl.");
     std::string name;
     for (int i = 0; i < 30; ++i)
-        name += "\xc3\xa4";  // two bytes each, whole at both ends of what is left out
+        name += "\xc3\xa4";  // two bytes each; the shortened name must cut neither in half
     EXPECT_EQ(words({"/a/b" + name + ".stl"}),
               "Touch b" + name.substr(0, 22) + "..." + name.substr(0, 8) + ".stl.");
 }
 
-TEST_F(TestDashboard, a_folder_shows_the_raw_data_that_tact_reads_by_their_endings) {
+TEST_F(TestDashboard, a_folder_lists_readable_raw_data_by_extension) {
     sample::scene().write(folder_ / "z.tact");
     for (const char* const name :
          {"emd.MRC", "1abc.pdb.gz", "bunny.ply", "ear.nii.gz", "notes.txt", ".hidden.pdb"})
@@ -196,7 +197,7 @@ TEST_F(TestDashboard, a_folder_shows_the_raw_data_that_tact_reads_by_their_endin
     EXPECT_EQ(meaning_of({whole.path}).import, (std::vector<std::string>{"drill", folder_}));
 }
 
-TEST_F(TestDashboard, raw_data_and_folders_share_the_rows_that_scenes_leave) {
+TEST_F(TestDashboard, raw_data_and_folders_share_the_rows_left_by_the_scenes) {
     sample::scene().write(folder_ / "z.tact");
     const auto fill = [&](const char* ending, bool folders) {
         for (std::size_t i = 0; i < kFolderRowsMost; ++i) {
@@ -210,7 +211,7 @@ TEST_F(TestDashboard, raw_data_and_folders_share_the_rows_that_scenes_leave) {
     fill(".pdb", false);
     const auto count = [&](auto&& wanted) {
         const FolderRows got = folder_rows(folder_, 0);
-        EXPECT_EQ(got.rows.size(), kFolderRowsMost + 1);  // and the way up
+        EXPECT_EQ(got.rows.size(), kFolderRowsMost + 1);  // plus the row for the parent folder
         EXPECT_FALSE(got.trouble.empty());
         return static_cast<std::size_t>(std::count_if(got.rows.begin(), got.rows.end(), wanted));
     };
@@ -221,7 +222,7 @@ TEST_F(TestDashboard, raw_data_and_folders_share_the_rows_that_scenes_leave) {
     EXPECT_EQ(count([](const SceneRow& row) { return row.kind == "docking"; }), 1U);
 }
 
-TEST_F(TestDashboard, what_an_import_printed_tells_how_far_it_is) {
+TEST_F(TestDashboard, the_progress_is_read_from_the_output_of_an_import) {
     EXPECT_EQ(share_done(""), std::nullopt);
     EXPECT_EQ(share_done("reading\n[no share]\n[ 12 % of it\n"), std::nullopt);
     EXPECT_EQ(share_done("[ 45 %] simplify\nwarning: a [99 %] b\n"), 0.45);
@@ -232,7 +233,7 @@ TEST_F(TestDashboard, what_an_import_printed_tells_how_far_it_is) {
     EXPECT_EQ(error_text("[  0 %] reading\ntact-prep: no\n  fix: x\n"), "tact-prep: no\n  fix: x");
 }
 
-TEST_F(TestDashboard, sizes_and_times_read_well) {
+TEST_F(TestDashboard, sizes_and_times_have_readable_units) {
     EXPECT_EQ(size_text(12), "12 B");
     EXPECT_EQ(size_text(820'000), "820 kB");
     EXPECT_EQ(size_text(12'345'678), "12.3 MB");

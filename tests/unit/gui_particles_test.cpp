@@ -12,7 +12,7 @@ namespace {
 
 constexpr double kPlenty = 1.0;  // seconds of budget: every particle is moved in every step
 
-// A box of 40 cells of 0.5 mm with a floor of bone, eight cells thick, at the bottom.
+// A box of 40 cells of 0.5 mm, with a floor of bone eight cells thick.
 struct Box {
     BoneBricks bricks{.size = {40, 40, 40}, .voxel_m = 5e-4, .origin_m = Vec3(0.01, -0.02, 0.03)};
     std::vector<std::uint8_t> density;
@@ -32,7 +32,7 @@ std::uint64_t carried(const Particles& p) {
                            [](std::uint64_t sum, const Particle& each) { return sum + each.mass; });
 }
 
-// One a cell, that cell says so, and none is in bone.
+// Every particle has its own cell, which is marked as taken, and none is inside bone.
 void expect_one_a_cell(const Particles& particles) {
     std::set<Cell> seen;
     for (const Particle& p : particles.all()) {
@@ -55,10 +55,10 @@ void settle(Particles& particles, int steps) {
     for (int i = 0; i < steps; ++i) static_cast<void>(particles.step(0.01, kPlenty, Vec3::Zero(), {}));
 }
 
-TEST(SpeedGroups, hold_what_the_law_says) {
+TEST(SpeedGroups, halve_the_speed_from_group_to_group) {
     EXPECT_EQ(speed_group(1.0F), 0U);
     EXPECT_EQ(speed_group(0.51F), 0U);
-    EXPECT_EQ(speed_group(0.5F), 1U);  // 2^-(j+1) is left out, 2^-j is in
+    EXPECT_EQ(speed_group(0.5F), 1U);  // group j holds speeds above 2^-(j+1), up to and including 2^-j
     EXPECT_EQ(speed_group(0.26F), 1U);
     EXPECT_EQ(speed_group(0.25F), 2U);
     EXPECT_EQ(speed_group(1e-9F), kSpeedGroups - 1);
@@ -67,7 +67,7 @@ TEST(SpeedGroups, hold_what_the_law_says) {
     EXPECT_EQ(speed_group(std::nanf("")), kSpeedGroups - 1);
 }
 
-TEST(SpeedGroups, each_is_moved_half_as_often_as_the_one_before) {
+TEST(SpeedGroups, move_half_as_often_as_the_group_before) {
     const GroupCounts held = {40000, 80000, 64000, 128000, 0, 512000, 0, 0, 0, 512000};
     const GroupCounts moves = moves_by_group(held, 60000.0);
     const auto share = [&](std::size_t j) {
@@ -82,7 +82,7 @@ TEST(SpeedGroups, each_is_moved_half_as_often_as_the_one_before) {
     EXPECT_NEAR(static_cast<double>(sum), 60000.0, 1.0);
 }
 
-TEST(SpeedGroups, a_group_that_is_moved_whole_leaves_its_share_to_the_slower) {
+TEST(SpeedGroups, a_group_moved_entirely_leaves_its_moves_to_slower_groups) {
     const GroupCounts held = {100, 100, 100, 100, 100, 100, 100, 100, 100, 100};
     for (const double moves : {0.0, 1.0, 150.0, 420.0, 999.0, 1000.0, 5000.0}) {
         const GroupCounts made = moves_by_group(held, moves);
@@ -94,14 +94,14 @@ TEST(SpeedGroups, a_group_that_is_moved_whole_leaves_its_share_to_the_slower) {
     EXPECT_EQ(std::accumulate(none.begin(), none.end(), std::size_t{0}), 0U);
 }
 
-TEST(Particles, fall_as_far_as_gravity_takes_them) {
+TEST(Particles, fall_with_the_acceleration_of_gravity) {
     const Box box;
     ParticleSettings settings = few();
     settings.drag_per_s = 0.0;
     Particles particles(box.bricks, {}, settings);  // no bone
     ASSERT_TRUE(particles.emit(Matter::dust, box.at(20, 38, 20), Vec3::Zero()));
     const double from = particles.place_m(particles.all()[0]).y();
-    particles.step(0.0, kPlenty, Vec3::Zero(), {});  // it hangs in the air: lets go
+    particles.step(0.0, kPlenty, Vec3::Zero(), {});  // it starts at rest; this step wakes it
     double fallen = 0.0;
     for (int i = 1; i <= 40; ++i) {
         particles.step(1e-3, kPlenty, Vec3::Zero(), {});
@@ -121,7 +121,7 @@ TEST(Particles, leave_through_the_bottom_of_the_site) {
     expect_one_a_cell(particles);
 }
 
-TEST(Particles, dust_makes_a_pile_and_water_a_lake) {
+TEST(Particles, dust_piles_up_and_water_levels_out) {
     const Box box;
     const auto height = [&](Matter matter) {
         Particles particles(box.bricks, box.density, few());
@@ -160,7 +160,7 @@ TEST(Particles, dust_and_water_make_paste) {
     expect_one_a_cell(particles);
 }
 
-TEST(Particles, suction_takes_what_is_near_unless_its_tip_is_in_bone) {
+TEST(Particles, suction_removes_nearby_particles_unless_its_tip_is_in_bone) {
     const Box box;
     Particles particles(box.bricks, box.density, few());
     for (int i = 0; i < 100; ++i) particles.drilled(i % 2 == 0 ? 19 : 21, 9, 20, 255, Vec3::Zero());
@@ -177,7 +177,7 @@ TEST(Particles, suction_takes_what_is_near_unless_its_tip_is_in_bone) {
     EXPECT_TRUE(particles.ledger().balances());
 }
 
-TEST(Particles, lose_no_level_of_bone) {
+TEST(Particles, conserve_the_drilled_bone) {
     const Box box;
     Particles particles(box.bricks, box.density, few());
     SeededRandom random(3);
@@ -189,7 +189,7 @@ TEST(Particles, lose_no_level_of_bone) {
         if (i % 3 == 0) particles.emit(Matter::water, box.at(15, 25, 15), Vec3(0.1, 0, 0));
         if (i % 7 == 0) particles.emit(Matter::blood, box.at(25, 9, 25), Vec3(0.0, 0.1, 0.0));
         const Suction suction{.tip_m = box.at(25, 12, 25), .radius_m = 1e-3};
-        // From plenty to next to nothing, so that some are given up.
+        // From ample time to almost none, so that some are given up.
         particles.step(0.01, i < 300 ? kPlenty : 2e-6, box.at(20, 20, 20), suction);
         ASSERT_TRUE(particles.ledger().balances());
         ASSERT_EQ(particles.ledger().carried, carried(particles));
@@ -217,14 +217,14 @@ TEST(Particles, are_the_same_for_the_same_seed) {
     EXPECT_EQ(run(), run());
 }
 
-// A clock on which a look takes 1.6 us, as sixteen moves of 100 ns would.
+// A clock that advances by 1.6 us with every reading: sixteen moves of 100 ns.
 std::int64_t slow_ns = 0;
 Instant slow_now() {
     slow_ns += 1600;
     return instant_from_ns(slow_ns);
 }
 
-TEST(Particles, are_put_into_the_time_there_is) {
+TEST(Particles, keep_to_the_time_budget) {
     const Box box;
     ParticleSettings settings = few();
     settings.now = &slow_now;
@@ -242,7 +242,7 @@ TEST(Particles, are_put_into_the_time_there_is) {
     EXPECT_NEAR(cost, 400e-6, 40e-6);
 }
 
-TEST(Particles, that_matter_least_are_given_up_where_time_is_short) {
+TEST(Particles, far_from_the_focus_are_removed_first_when_time_is_short) {
     const Box box;
     Particles particles(box.bricks, {}, few());
     for (int i = 0; i < 12000; ++i) {
@@ -263,7 +263,7 @@ TEST(Particles, that_matter_least_are_given_up_where_time_is_short) {
     EXPECT_LT(mean_m(), before_m);
 }
 
-TEST(Particles, keep_to_a_number_by_giving_up_the_least_important) {
+TEST(Particles, keep_to_a_maximum_number_by_removing_the_least_important) {
     const Box box;
     Particles particles(box.bricks, {}, few());
     for (int i = 0; i < 12000; ++i) {
@@ -280,14 +280,15 @@ TEST(Particles, keep_to_a_number_by_giving_up_the_least_important) {
     EXPECT_LE(particles.all().size(), 3000U);
     EXPECT_GE(particles.all().size(), 2800U);
     EXPECT_EQ(given_up + particles.all().size(), 12000U);
-    EXPECT_TRUE(particles.emit(Matter::dust, box.at(38, 38, 38), Vec3::Zero()));  // room for what comes
+    EXPECT_TRUE(particles.emit(Matter::dust, box.at(38, 38, 38),
+                               Vec3::Zero()));  // the cap keeps a reserve for new particles
     particles.keep_at_most(1U << 30U);
     for (int i = 0; i < 10000; ++i)
         static_cast<void>(particles.emit(Matter::water, box.at(38, 38, 2), Vec3::Zero()));
     EXPECT_LE(particles.all().size(), 20000U);
 }
 
-TEST(Particles, are_carried_out_of_a_head_that_turns_along_its_turn) {
+TEST(Particles, are_thrown_out_of_a_rotating_head_in_its_direction) {
     const Box box;
     Particles particles(box.bricks, {}, {.most = 20000, .margin = 4, .gravity_m_s2 = Vec3(0.0, -1e-6, 0.0)});
     const Vec3 centre = box.at(20, 20, 20);
@@ -312,7 +313,7 @@ TEST(Particles, are_carried_out_of_a_head_that_turns_along_its_turn) {
     EXPECT_EQ(particles.step(1e-3, kPlenty, centre, {}, broken).alive, 125U);
 }
 
-TEST(Particles, refuse_what_cannot_be) {
+TEST(Particles, refuse_impossible_positions_and_settings) {
     const Box box;
     Particles particles(box.bricks, box.density, few());
     EXPECT_FALSE(particles.emit(Matter::water, Vec3(std::nan(""), 0, 0), Vec3::Zero()));

@@ -1,4 +1,4 @@
-// The plots' memory: bounded, and no extreme is ever lost to decimation.
+// The memory of the plots: bounded, and the extremes survive decimation.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -25,7 +25,7 @@ Extremes of(const std::vector<PlotBin>& bins) {
     return e;
 }
 
-TEST(PlotSeries, every_window_shows_the_extremes_of_its_samples_and_of_nothing_far_outside) {
+TEST(PlotSeries, every_window_shows_the_extremes_of_its_own_samples) {
     PlotSeries series;
     std::mt19937 random(7);
     std::normal_distribution<float> noise(0.0F, 1.0F);
@@ -57,7 +57,7 @@ TEST(PlotSeries, every_window_shows_the_extremes_of_its_samples_and_of_nothing_f
     }
 }
 
-TEST(PlotSeries, any_window_of_an_hour_finds_the_spike_where_it_was) {
+TEST(PlotSeries, a_spike_is_found_at_its_time_in_a_window_of_an_hour) {
     PlotSeries series;
     for (int i = 0; i < 36'000; ++i) series.add(0.1 * i, i == 20'000 ? 5.0 : 1.0);
     std::vector<PlotBin> bins;
@@ -90,11 +90,11 @@ TEST(PlotSeries, memory_does_not_grow) {
     EXPECT_LT(before, 128U * 1024U);
 }
 
-TEST(PlotSeries, values_that_are_no_numbers_and_times_that_fall_are_left_out) {
+TEST(PlotSeries, non_finite_values_and_decreasing_times_are_dropped) {
     PlotSeries series;
     series.add(1.0, std::nan(""));
     series.add(1.0, std::numeric_limits<double>::infinity());
-    series.add(1.0, 1e300);  // no float
+    series.add(1.0, 1e300);  // beyond the range of float
     series.add(std::nan(""), 1.0);
     series.add(-5.0, 1.0);
     EXPECT_TRUE(series.empty());
@@ -129,7 +129,7 @@ TEST(PlotAxis, log_axis_spans_whole_decades) {
     EXPECT_GT(log_axis(0.0, 0.0).high, log_axis(0.0, 0.0).low);
 }
 
-TEST(Numbers, that_round_to_nothing_have_no_sign) {
+TEST(Numbers, that_round_to_zero_have_no_sign) {
     EXPECT_EQ(fixed(-0.004, 2), "0.00");
     EXPECT_EQ(fixed(-0.0, 4), "0.0000");
     EXPECT_EQ(fixed(-0.4, 0), "0");

@@ -1,4 +1,4 @@
-// What is drawn without a window: bonds, colours and shapes of atoms, marks of touch, the detail of a surface.
+// Geometry that needs no window: bonds, colours and shapes of atoms, touch marks, the detail of a surface.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -29,7 +29,7 @@ void add(Structure& s, std::uint8_t element, std::array<double, 3> a, std::int32
     s.trace.push_back(0);
 }
 
-// As dense as a protein and a good deal denser, over several cells of the search grid to either side of zero.
+// Denser than a protein, over several cells of the search grid on both sides of zero.
 Structure crowd(std::size_t atoms, unsigned seed) {
     std::mt19937 random(seed);
     std::uniform_real_distribution<double> place(-14.0, 14.0);
@@ -41,7 +41,7 @@ Structure crowd(std::size_t atoms, unsigned seed) {
     return s;
 }
 
-TEST(Bonds, are_those_that_trying_every_pair_finds) {
+TEST(Bonds, equal_those_found_by_testing_every_pair) {
     for (unsigned seed = 1; seed <= 5; ++seed) {
         const Structure s = crowd(1200, seed);
         std::vector<Bond> expected;
@@ -53,20 +53,20 @@ TEST(Bonds, are_those_that_trying_every_pair_finds) {
     }
 }
 
-TEST(Bonds, of_a_peptide_are_those_of_the_textbook) {
-    // Glycine and the nitrogen of the next residue; a water-like oxygen and an ion beside them.
+TEST(Bonds, of_a_peptide_are_the_known_ones) {
+    // Glycine and the nitrogen of the next residue; a lone oxygen and an ion beside them.
     Structure s;
     add(s, 7, {0.0, 0.0, 0.0});
     add(s, 6, {1.46, 0.0, 0.0});
     add(s, 6, {2.0, 1.43, 0.0});
     add(s, 8, {1.25, 2.4, 0.0});
     add(s, 7, {3.33, 1.55, 0.0}, 2);
-    add(s, 12, {4.9, 2.6, 0.0}, 3);      // magnesium, 1.9 from the nitrogen
-    add(s, 6, {3.33, 1.55, 1.4}, 2, 1);  // as near as a bond, of another chain
+    add(s, 12, {4.9, 2.6, 0.0}, 3);      // magnesium, 1.9 Å from the nitrogen
+    add(s, 6, {3.33, 1.55, 1.4}, 2, 1);  // within bond length, but in another chain
     EXPECT_EQ(find_bonds(s), (std::vector<Bond>{{0, 1}, {1, 2}, {2, 3}, {2, 4}}));
 }
 
-TEST(Bonds, join_sulphurs_of_distant_residues_and_chains) {
+TEST(Bonds, join_sulphurs_of_different_residues_and_chains) {
     Structure s;
     add(s, 16, {0.0, 0.0, 0.0}, 5, 0);
     add(s, 16, {2.05, 0.0, 0.0}, 90, 1);
@@ -74,21 +74,21 @@ TEST(Bonds, join_sulphurs_of_distant_residues_and_chains) {
     EXPECT_EQ(find_bonds(s), (std::vector<Bond>{{0, 1}}));
 }
 
-TEST(Bonds, of_a_heap_of_atoms_stay_linear) {
-    // All within half an ångström and more: every pair would be a bond, two hundred million of them.
+TEST(Bonds, of_overlapping_atoms_stay_linear_in_number) {
+    // All in a cube of 1.5 Å: almost every pair would be a bond, two hundred million of them.
     std::mt19937 random(7);
     std::uniform_real_distribution<double> place(0.0, 1.5);
     Structure s;
     for (int i = 0; i < 20000; ++i) add(s, 6, {place(random), place(random), place(random)});
     const std::vector<Bond> bonds = find_bonds(s);
     EXPECT_LE(bonds.size(), kBondsOfAtomMax * s.size());
-    // Far out, where coordinates may be at most, nothing overflows.
+    // At the largest coordinates allowed, nothing overflows.
     Structure far;
     for (int i = 0; i < 3; ++i) add(far, 6, {9.9e6, 1.4 * i, -9.9e6});
     (void)find_bonds(far);
 }
 
-TEST(Elements, have_the_colours_of_jmol) {
+TEST(Elements, have_the_jmol_colours) {
     EXPECT_EQ(element_colour(7), (Rgb8{0x30, 0x50, 0xF8}));
     EXPECT_EQ(element_colour(8), (Rgb8{0xFF, 0x0D, 0x0D}));
     EXPECT_EQ(element_colour(26), (Rgb8{0xE0, 0x66, 0x33}));
@@ -97,13 +97,13 @@ TEST(Elements, have_the_colours_of_jmol) {
     EXPECT_FLOAT_EQ(covalent_radius_a(6), 0.76F);
     EXPECT_FLOAT_EQ(covalent_radius_a(30), 1.22F);
     EXPECT_FLOAT_EQ(covalent_radius_a(255), 0.0F);
-    // Longer bonds would reach beyond the cells that find_bonds() looks into.
+    // Longer bonds would reach beyond the cells that find_bonds() searches.
     for (unsigned z = 0; z < 256; ++z)
         EXPECT_LT(2.0 * static_cast<double>(covalent_radius_a(static_cast<std::uint8_t>(z))) + kBondSlackA,
                   4.8);
 }
 
-TEST(Shapes, carbon_has_the_colour_of_its_chain_the_others_their_own) {
+TEST(Shapes, carbon_has_the_colour_of_its_chain_other_elements_their_own) {
     Structure s;
     add(s, 6, {0.0, 0.0, 0.0}, 1, 0);
     add(s, 6, {1.5, 0.0, 0.0}, 1, 1);
@@ -117,7 +117,7 @@ TEST(Shapes, carbon_has_the_colour_of_its_chain_the_others_their_own) {
     EXPECT_NEAR(spheres[1].centre_a[0], 1.5F, 1e-6F);
 }
 
-TEST(Shapes, an_atom_without_bonds_is_seen_among_sticks) {
+TEST(Shapes, an_atom_without_bonds_is_visible_among_sticks) {
     Structure s;
     add(s, 6, {0.0, 0.0, 0.0});
     add(s, 6, {1.5, 0.0, 0.0});
@@ -128,16 +128,16 @@ TEST(Shapes, an_atom_without_bonds_is_seen_among_sticks) {
     EXPECT_GT(sticks[1].radius_a, 2.0F * kStickRadiusA);
 }
 
-TEST(Shapes, the_trace_is_broken_where_the_tube_is) {
+TEST(Shapes, the_trace_and_the_tube_break_at_the_same_places) {
     Structure s;
     for (int i = 0; i < 10; ++i) add(s, 6, {3.8 * i + (i > 4 ? 30.0 : 0.0), 0.0, 0.0}, i, i > 7 ? 1 : 0);
     s.trace.assign(s.size(), 1);
-    EXPECT_EQ(strands_of(s).size(), 3U);  // of five, three and two atoms
+    EXPECT_EQ(strands_of(s).size(), 3U);  // five, three and two atoms
     EXPECT_EQ(trace_of(s).size(), 4U + 2U + 1U);
     EXPECT_EQ(build_tubes(s, 10000).strands, 3U);
 }
 
-// How far the marks reach from a place along a direction, and against it; ångström.
+// The lowest and the highest coordinate of the marks along a direction, from a point; ångström.
 std::pair<float, float> extent(const TubeMesh& mesh, const Eigen::Vector3f& from,
                                const Eigen::Vector3f& along) {
     std::pair<float, float> found{1e9F, -1e9F};
@@ -148,27 +148,27 @@ std::pair<float, float> extent(const TubeMesh& mesh, const Eigen::Vector3f& from
     return found;
 }
 
-TEST(TouchMarks, reach_from_the_probe_to_the_proxy_and_as_far_as_the_plane_pushes) {
+TEST(TouchMarks, extend_from_the_probe_to_the_proxy_and_along_the_push_of_a_plane) {
     DrawnTouch touch;
     touch.probe_model_m = kAngstromM * Vec3(10.0, -4.0, 0.0);
     touch.proxy_model_m = kAngstromM * Vec3(10.0, 6.0, 0.0);
     const Eigen::Vector3f centre(0.0F, 0.0F, 0.0F), up(0.0F, 1.0F, 0.0F);
     const auto [low, high] = extent(build_touch_marks(touch, Vec3::Zero(), 100.0F, 20.0F), centre, up);
-    EXPECT_NEAR(low, -4.0F - 1.4F, 1e-3F);  // a ball that can be seen
+    EXPECT_NEAR(low, -4.0F - 1.4F, 1e-3F);  // the ball has a least radius, so that it stays visible
     EXPECT_NEAR(high, 6.0F, 1e-3F);
     touch.planes = 1;
     touch.normal[0] = Vec3::UnitY();
     touch.push_n[0] = 2.0;
     EXPECT_NEAR(extent(build_touch_marks(touch, Vec3::Zero(), 100.0F, 20.0F), centre, up).second, 46.0F,
                 0.1F);
-    touch.radius_model_m = 5.0 * kAngstromM;  // a ball is touched below its centre
+    touch.radius_model_m = 5.0 * kAngstromM;  // a ball touches below its centre
     EXPECT_NEAR(extent(build_touch_marks(touch, Vec3::Zero(), 100.0F, 20.0F), centre, up).second, 41.0F,
                 0.1F);
     touch.probe_model_m.x() = std::nan("");
     EXPECT_TRUE(build_touch_marks(touch, Vec3::Zero(), 100.0F, 20.0F).index.empty());
 }
 
-TEST(Detail, viridis_goes_from_dark_violet_to_yellow_and_gets_lighter_all_the_way) {
+TEST(Detail, viridis_goes_from_dark_violet_to_yellow_with_rising_lightness) {
     EXPECT_EQ(viridis(-3.0F), viridis(0.0F));
     EXPECT_EQ(viridis(std::nanf("")), viridis(0.0F));
     EXPECT_NEAR(viridis(0.0F)[0], 68, 6);
@@ -184,7 +184,7 @@ TEST(Detail, viridis_goes_from_dark_violet_to_yellow_and_gets_lighter_all_the_wa
     }
 }
 
-TEST(Detail, the_drawn_surface_is_fine_around_the_probe_and_the_colour_says_so) {
+TEST(Detail, the_drawn_surface_is_fine_around_the_probe_and_its_colour_shows_it) {
     SceneWriter out;
     SurfaceInput input;
     input.mesh = smooth_sphere(20);
@@ -208,11 +208,11 @@ TEST(Detail, the_drawn_surface_is_fine_around_the_probe_and_the_colour_says_so) 
     };
     DetailRequest request{Vec3(0.0, 0.0, 0.05), 0.01, {}};
     const DetailMesh seen = settled(request);
-    EXPECT_LT(seen.triangles, 6000U);  // of 8000
+    EXPECT_LT(seen.triangles, 6000U);  // of the 8000 of the full mesh
     EXPECT_EQ(seen.mesh.index.size(), std::size_t{3} * seen.triangles);
     EXPECT_EQ(seen.mesh.vertex.size(), seen.vertices);
     EXPECT_GT(seen.deviation_m, 0.0);
-    // An edge of the full mesh is some 2.6 mm long.
+    // An edge of the full mesh is about 2.6 mm long.
     EXPECT_GT(seen.finest_m, 0.5e-3);
     EXPECT_LT(seen.finest_m, 2.7e-3);
     EXPECT_GE(seen.coarsest_m, 2.0 * seen.finest_m);
@@ -236,7 +236,7 @@ TEST(Detail, the_drawn_surface_is_fine_around_the_probe_and_the_colour_says_so) 
     EXPECT_GT(near / nears, far / fars + 40.0);
     request.form = {FilterForm::Shape::multiple_frustum, 6.0F, 0.05F};
     EXPECT_GT(settled(request).triangles, seen.triangles);
-    // The same request, the same cut, wherever it was before.
+    // The same request gives the same cut, whatever the request before.
     request.form = {};
     EXPECT_EQ(settled(request).triangles, seen.triangles);
 }

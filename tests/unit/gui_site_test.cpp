@@ -1,4 +1,4 @@
-// Dust, water, blood and suction about a burr, and whether it is seen.
+// Dust, water, blood and suction around a burr, and whether the burr is visible.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -14,7 +14,7 @@ namespace {
 
 constexpr std::size_t kVoxels = BoneBricks::kVoxels;
 
-// A block of bone, open above z = 24, with a vessel of label 1 ("Sigmoid Sinus") in x < 8.
+// A block of bone, empty above z = 24, with a vessel of label 1 ("Sigmoid Sinus") at x < 8.
 struct Block {
     BoneVolumeView view;
     BoneLabelsView labels;
@@ -49,7 +49,7 @@ struct Block {
         const Vec3 at = view.bricks.to_model(Vec3(x, y, z));
         std::copy(at.begin(), at.end(), drill.hand[0].pos_model_m);
     }
-    // The voxels of a layer within some voxels of (x, y) lose these levels.
+    // Removes up to so many levels from the voxels of a layer within 3 voxels of (x0, y0). Returns the levels removed.
     std::uint64_t cut(std::uint32_t x0, std::uint32_t y0, std::uint32_t z, std::uint8_t levels,
                       bool now = true) {
         before = density;
@@ -80,7 +80,7 @@ std::size_t count(const SiteEffects& site, Matter matter) {
         std::count_if(all.begin(), all.end(), [matter](const Particle& p) { return p.matter == matter; }));
 }
 
-TEST(SiteEffects, dust_is_what_the_bone_lost) {
+TEST(SiteEffects, the_dust_equals_the_bone_removed) {
     Block bone;
     SiteEffects site(bone.view, bone.labels, 1.0);
     std::uint64_t lost = 0;
@@ -91,13 +91,13 @@ TEST(SiteEffects, dust_is_what_the_bone_lost) {
     EXPECT_EQ(site.particles().ledger().drilled, lost);
     EXPECT_TRUE(site.particles().ledger().balances());
     EXPECT_GT(count(site, Matter::dust), 30U);
-    // What was drilled before the window came is gone, and no dust.
+    // Bone that was drilled before the window opened makes no dust.
     static_cast<void>(bone.cut(24, 24, 12, 200, false));
     site.step(bone.frame());
     EXPECT_EQ(site.particles().ledger().drilled, lost);
 }
 
-TEST(SiteEffects, water_comes_while_the_burr_is_sprayed_and_not_faster_than_the_particles_allow) {
+TEST(SiteEffects, water_flows_during_irrigation_within_the_limit_of_the_particles) {
     Block bone;
     SiteEffects site(bone.view, bone.labels, 1.0);
     for (int i = 0; i < 25; ++i) site.step(bone.frame());
@@ -106,14 +106,14 @@ TEST(SiteEffects, water_comes_while_the_burr_is_sprayed_and_not_faster_than_the_
     for (int i = 0; i < 25; ++i) site.step(bone.frame());
     const std::size_t half_a_second = count(site, Matter::water);
     EXPECT_GT(half_a_second, 500U);
-    EXPECT_LE(half_a_second, 5600U);  // 3e-7 m3/s, drops of 2.7e-11 m3
+    EXPECT_LE(half_a_second, 5600U);  // 3e-7 m3/s in drops of 2.7e-11 m3
     bone.drill.irrigation_m3_s_most = 1.0F;
     SiteEffects flooded(bone.view, bone.labels, 1.0);
     for (int i = 0; i < 25; ++i) flooded.step(bone.frame());
     EXPECT_LE(count(flooded, Matter::water), 7500U);
 }
 
-TEST(SiteEffects, an_opened_vessel_bleeds_and_bone_far_from_one_does_not) {
+TEST(SiteEffects, an_opened_vessel_bleeds_and_distant_bone_does_not) {
     Block bone;
     SiteEffects site(bone.view, bone.labels, 1.0);
     static_cast<void>(bone.cut(30, 24, 23, 240));
@@ -128,7 +128,7 @@ TEST(SiteEffects, an_opened_vessel_bleeds_and_bone_far_from_one_does_not) {
     EXPECT_GT(count(site, Matter::blood), 100U);
 }
 
-TEST(SiteEffects, marrow_stains_and_is_sealed_by_paste) {
+TEST(SiteEffects, marrow_bleeds_until_paste_seals_it) {
     Block bone;
     for (auto& v : bone.density) v = v > 0 ? 120 : 0;
     Bleeding bleeding(bone.view.bricks, {}, {}, 1);
@@ -149,11 +149,11 @@ TEST(SiteEffects, marrow_stains_and_is_sealed_by_paste) {
     for (int i = 0; i < 20; ++i) bleeding.step(0.1, 1000, particles);
     EXPECT_EQ(bleeding.wounds(), 0U);
     EXPECT_EQ(bleeding.drops(), 0U);
-    bleeding.cut(99999, 0, 0, 120);  // no such voxel
+    bleeding.cut(99999, 0, 0, 120);  // outside the volume
     EXPECT_EQ(bleeding.wounds(), 0U);
 }
 
-TEST(SiteEffects, the_sucker_takes_what_is_at_its_tip) {
+TEST(SiteEffects, the_suction_tube_removes_particles_at_its_tip) {
     Block bone;
     SiteEffects site(bone.view, bone.labels, 1.0);
     bone.drill.hand[0].irrigation = 1.0F;
@@ -178,7 +178,7 @@ TEST(SiteEffects, the_sucker_takes_what_is_at_its_tip) {
     EXPECT_TRUE(site.metrics().suction_blocked);
 }
 
-TEST(SiteEffects, the_level_bounds_how_many_there_are) {
+TEST(SiteEffects, the_level_bounds_the_number_of_particles) {
     Block bone;
     SiteEffects site(bone.view, bone.labels, 1.0);
     bone.drill.hand[0].irrigation = 1.0F;
@@ -186,14 +186,14 @@ TEST(SiteEffects, the_level_bounds_how_many_there_are) {
     for (int i = 0; i < 60; ++i) site.step(frame);
     EXPECT_GT(site.metrics().alive, 3000U);
     frame.level = 0.02F;
-    // What is too much goes within the time of a step: how many steps that takes hangs on the machine.
+    // Surplus particles are removed within the time of a step: how many steps that takes depends on the machine.
     for (int i = 0; i < 2000 && site.metrics().alive > 2000; ++i) site.step(frame);
     EXPECT_LE(site.metrics().alive, 2000U);
     EXPECT_EQ(site.metrics().most, SiteEffects::kMost);
     EXPECT_TRUE(site.particles().ledger().balances());
 }
 
-TEST(SiteEffects, shows_no_more_than_a_lower_level_allows_from_its_first_frame_on) {
+TEST(SiteEffects, a_lower_level_takes_effect_on_the_first_frame) {
     Block bone;
     SiteEffects site(bone.view, bone.labels, 1.0);
     site.keep(30000);
@@ -206,14 +206,14 @@ TEST(SiteEffects, shows_no_more_than_a_lower_level_allows_from_its_first_frame_o
     site.step(frame);
     EXPECT_LE(site.particles().shown().size(), SiteEffects::kMost / 100);
     EXPECT_EQ(site.metrics().shown, site.particles().shown().size());
-    EXPECT_GT(site.particles().all().size(), before / 2);  // no frame has the time to give them all up
+    EXPECT_GT(site.particles().all().size(), before / 2);  // one frame has no time to remove them all
     EXPECT_TRUE(site.particles().ledger().balances());
     frame.level = 1.0F;
     site.step(frame);
     EXPECT_EQ(site.particles().shown().size(), site.particles().all().size());
 }
 
-TEST(SiteEffects, keeps_as_many_as_a_measurement_wants_while_they_run_off) {
+TEST(SiteEffects, keeps_the_number_asked_for_by_a_measurement) {
     Block bone;
     SiteEffects site(bone.view, bone.labels, 1.0);
     bone.drill.hand[1].suction = 1.0F;
@@ -224,7 +224,7 @@ TEST(SiteEffects, keeps_as_many_as_a_measurement_wants_while_they_run_off) {
         gone += 2000 - std::min<std::uint64_t>(site.particles().all().size(), 2000);
         EXPECT_GE(site.particles().all().size(), 1800U) << i;
     }
-    EXPECT_GT(gone, 0U);  // and were made up for
+    EXPECT_GT(gone, 0U);  // and were replaced
     EXPECT_GT(count(site, Matter::paste), 300U);
     SiteEffects::Frame half = bone.frame();
     half.level = 0.01F;
@@ -235,7 +235,7 @@ TEST(SiteEffects, keeps_as_many_as_a_measurement_wants_while_they_run_off) {
     EXPECT_LE(site.particles().all().size(), SiteEffects::kMost);
 }
 
-TEST(SiteEffects, survives_what_a_controller_may_send) {
+TEST(SiteEffects, survives_extreme_records_of_a_controller) {
     Block bone;
     SiteEffects site(bone.view, bone.labels, 1.0);
     SiteEffects::Frame frame = bone.frame();
@@ -259,7 +259,7 @@ TEST(SiteEffects, survives_what_a_controller_may_send) {
     EXPECT_TRUE(site.particles().ledger().balances());
 }
 
-TEST(BurrSight, blood_and_bone_hide_the_head_and_water_does_not) {
+TEST(BurrSight, blood_dust_and_bone_hide_the_head_and_water_does_not) {
     const Block bone;
     const auto seen = [&](Matter matter, int layers) {
         Particles particles(bone.view.bricks, bone.density,
@@ -279,30 +279,31 @@ TEST(BurrSight, blood_and_bone_hide_the_head_and_water_does_not) {
     Particles none(bone.view.bricks, bone.density, {.most = 10});
     const Vec3 head = bone.view.bricks.to_model(Vec3(24, 24, 30));
     EXPECT_EQ(share_seen(none, head, 1.5e-3, bone.view.bricks.to_model(Vec3(24, 24, -300))),
-              0.0);  // through bone
+              0.0);  // hidden by bone
     EXPECT_EQ(share_seen(none, head, 1.5e-3, Vec3::Constant(std::nan(""))), 0.0);
 }
 
-TEST(ParticlesBench, says_what_a_move_costs_and_how_well_a_budget_is_kept) {
+TEST(ParticlesBench, reports_the_cost_of_a_move_and_the_budget_error) {
     EXPECT_EQ(ParticlesBenchSettings{}.counts, (std::vector<std::uint32_t>{1000, 10000, 100000, 200000}));
     const auto all = bench_particles({.counts = {1000, 10000, 100000}, .steps = 8, .budget_s = 1e-5});
-    for (const char* const key :
-         {"particle_ns_each", "particle_budget_error", "particle_budget_error_p99", "particle_ns_each_1000",
-          "particle_moves_10000", "particles_alive_100000"}) {
+    for (const char* const key : {"particle_ns_each", "particle_budget_error", "particle_budget_error_p99",
+                                  "particle_ns_each_1000", "particle_moves_10000", "particles_alive_100000",
+                                  "particle_step_us_p50", "particle_step_us_p999_1000"}) {
         ASSERT_TRUE(all.contains(key)) << key;
         EXPECT_TRUE(std::isfinite(all[key].get<double>())) << key;
     }
     EXPECT_GT(all["particle_ns_each"], 0.0);
     EXPECT_LE(all["particle_moves_1000"], 1000.0);
+    EXPECT_LE(all["particle_step_us_p50_1000"], all["particle_step_us_max_1000"]);
     EXPECT_EQ(all["particle_budget_error"], all["particle_budget_error_100000"]);
 }
 
-TEST(SiteEffects, counts_how_long_the_burr_was_seen_while_it_drilled) {
+TEST(SiteEffects, counts_the_time_the_burr_was_visible_while_drilling) {
     Block bone;
     SiteEffects site(bone.view, bone.labels, 1.0);
     DrillHand& burr = bone.drill.hand[0];
     for (int i = 0; i < 10; ++i) site.step(bone.frame());
-    EXPECT_EQ(site.metrics().drilling_s, 0.0);  // it stands
+    EXPECT_EQ(site.metrics().drilling_s, 0.0);  // the burr stands still
     burr.burr_rad_s = 3000.0F;
     burr.depth = 0.3F;
     for (int i = 0; i < 50; ++i) site.step(bone.frame());

@@ -1,4 +1,4 @@
-// Stereo through a screen of known place, the head's way onto it, and the file that says where all of it is.
+// Stereo through a screen whose position is known, the head's pose, and the stage file.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -16,8 +16,8 @@ namespace {
 
 constexpr double kWidthPx = 1920.0, kHeightPx = 1080.0;
 
-// Where the straight line from an eye to a place in the room meets the screen's glass, in pixels from its lower left corner:
-// what a person would see there through a window.
+// Where the straight line from an eye to a point in the room crosses the screen, in pixels from its lower left corner:
+// where the point would appear through a pane of glass.
 Eigen::Vector2d through_glass(const ScreenPlace& s, const Vec3& eye_m, const Vec3& place_m) {
     const Vec3 along = s.lower_right_m - s.lower_left_m, up = s.upper_left_m - s.lower_left_m;
     Eigen::Matrix3d m;
@@ -29,7 +29,7 @@ Eigen::Vector2d through_glass(const ScreenPlace& s, const Vec3& eye_m, const Vec
 Eigen::Vector2d drawn_at(const EyeView& eye, const Vec3& scene_a) {
     const Eigen::Vector4f clip = eye.projection * eye.eye_from_scene * scene_a.cast<float>().homogeneous();
     EXPECT_GT(clip.w(), 0.0F);
-    EXPECT_LT(std::abs(clip.z()), clip.w());  // between near and far
+    EXPECT_LT(std::abs(clip.z()), clip.w());  // between the near and the far plane
     return {0.5 * kWidthPx * (1.0 + static_cast<double>(clip.x() / clip.w())),
             0.5 * kHeightPx * (1.0 + static_cast<double>(clip.y() / clip.w()))};
 }
@@ -40,7 +40,7 @@ Pose head_pose(SeededRandom& random) {
             quat_from_rotation_vector(Vec3(within(0.5), within(0.6), within(0.3)))};
 }
 
-// A wall that leans back, turned and off the origin: nothing is where a symmetric frustum would have it.
+// A screen that leans back, turned and off the origin: a symmetric frustum would be wrong everywhere.
 ScreenPlace leaning() {
     const Quat turn = quat_from_rotation_vector(Vec3(-0.4, 0.3, 0.1));
     const Vec3 at(0.2, -0.1, -0.15);
@@ -48,7 +48,7 @@ ScreenPlace leaning() {
             at + turn * Vec3(-0.6, 0.3375, 0.0)};
 }
 
-TEST(Screen, a_place_in_the_room_is_drawn_where_each_eye_looks_through_the_glass_at_it) {
+TEST(Screen, a_point_in_the_room_is_drawn_on_the_line_of_sight_of_each_eye) {
     SeededRandom random(11);
     for (const ScreenPlace& screen : {ScreenPlace::of_size(0.53, 0.298), leaning()}) {
         ASSERT_TRUE(screen.possible());
@@ -66,7 +66,7 @@ TEST(Screen, a_place_in_the_room_is_drawn_where_each_eye_looks_through_the_glass
                 const EyeView view = through_screen(screen, scene, eye_m, 150.0, Vec3::Zero());
                 for (const Vec3& scene_a :
                      {Vec3(0.0, 0.0, 0.0), Vec3(80.0, -60.0, 90.0), Vec3(-100.0, 70.0, -90.0)}) {
-                    // The hand's world, by way of the model, as the controller reckons.
+                    // The hand's world, through the model, as the controller computes it.
                     const Vec3 world_m = centre_world_m + world_per_model * 1e-10 * scene_a;
                     const Eigen::Vector2d wanted = through_glass(screen, eye_m, T_screen_world * world_m),
                                           drawn = drawn_at(view, scene_a);
@@ -78,11 +78,11 @@ TEST(Screen, a_place_in_the_room_is_drawn_where_each_eye_looks_through_the_glass
                 }
             }
         }
-        EXPECT_GT(moved_px, 50.0);  // the heads were not all in one place
+        EXPECT_GT(moved_px, 50.0);  // the heads were in different places
     }
 }
 
-TEST(Screen, what_is_on_the_glass_stays_in_place_for_every_eye) {
+TEST(Screen, a_point_on_the_screen_stays_in_place_for_every_eye) {
     SeededRandom random(4);
     const ScreenPlace screen = leaning();
     Camera camera;
@@ -98,7 +98,7 @@ TEST(Screen, what_is_on_the_glass_stays_in_place_for_every_eye) {
                       0.05);
 }
 
-TEST(Screen, orbiting_shows_what_the_window_shows_to_an_eye_in_its_middle) {
+TEST(Screen, orbiting_agrees_with_the_window_for_a_centred_eye) {
     Camera camera;
     camera.frame(40.0F);
     camera.rotate(150.0F, 40.0F, 700.0F);
@@ -114,7 +114,7 @@ TEST(Screen, orbiting_shows_what_the_window_shows_to_an_eye_in_its_middle) {
         EXPECT_LT((drawn_at(stereo, p) - drawn_at(window, p)).norm(), 0.1);
 }
 
-TEST(Screen, eyes_are_swapped_and_an_eye_in_the_glass_is_taken_out_of_it) {
+TEST(Screen, eyes_can_be_swapped_and_an_eye_in_the_screen_is_moved_out_of_it) {
     const Pose head{Vec3(0.1, 0.0, 0.6), Quat::Identity()};
     const auto plain = eyes_of(head, {}), swapped = eyes_of(head, {.swapped = true});
     EXPECT_LT(plain[0].x(), plain[1].x());
@@ -142,7 +142,7 @@ HeadTopic head_at(double x_m, double speed_m_s, std::int64_t taken_at_ns, std::u
 constexpr std::int64_t kMs = 1'000'000;
 const Pose kRest{Vec3(0.0, 0.0, 0.6), Quat::Identity()};
 
-TEST(HeadView, takes_a_moving_head_to_the_time_of_display) {
+TEST(HeadView, predicts_a_moving_head_to_the_time_of_display) {
     HeadView view(kRest);
     for (std::int64_t t = 1; t < 2000; t += 10) {
         const HeadTopic h = head_at(0.5e-9 * static_cast<double>((t - 4) * kMs), 0.5, (t - 4) * kMs);
@@ -150,13 +150,13 @@ TEST(HeadView, takes_a_moving_head_to_the_time_of_display) {
     }
     EXPECT_EQ(view.sight(), HeadSight::seen);
     EXPECT_NEAR(view.pose().p_m.x(), 0.5 * 1e-3 * (1991 + 26), 1e-4);
-    // No farther than the horizon, however late the picture is.
+    // No farther than the horizon, however late the frame is.
     const HeadTopic h = head_at(1.0, 0.5, 1996 * kMs);
     view.follow(&h, 2000 * kMs, 9000 * kMs);
     EXPECT_LT(view.pose().p_m.x(), 1.0 + 0.5 * 0.05 + 1e-3);
 }
 
-TEST(HeadView, a_lost_head_freezes_the_view_and_its_return_is_no_leap) {
+TEST(HeadView, a_lost_head_freezes_the_view_and_its_return_is_smooth) {
     HeadView view(kRest);
     EXPECT_EQ(view.follow(nullptr, kMs, 20 * kMs).p_m, kRest.p_m);
     EXPECT_EQ(view.sight(), HeadSight::none);
@@ -173,22 +173,22 @@ TEST(HeadView, a_lost_head_freezes_the_view_and_its_return_is_no_leap) {
     };
     frames(200, [](std::int64_t now) { return head_at(0.2, 0.0, now - 3 * kMs); });
     EXPECT_NEAR(view.pose().p_m.x(), 0.2, 1e-6);
-    // Frozen where it was, also when the topic holds a speed.
+    // Frozen at its last pose, although the topic reports a speed.
     const std::int64_t lost_at = t;
     EXPECT_LT(frames(60, [&](std::int64_t) { return head_at(0.2, 1.0, lost_at, 1); }), 1e-6);
     EXPECT_EQ(view.sight(), HeadSight::lost);
     EXPECT_NEAR(view.pose().p_m.x(), 0.2, 1e-6);
-    // Back at another place: a glide of a few centimetres a frame at the most, over within a second.
+    // Back at another place: the view follows by a few centimetres per frame at most and arrives within a second.
     EXPECT_LT(frames(60, [](std::int64_t now) { return head_at(-0.1, 0.0, now - 3 * kMs); }), 0.05);
     EXPECT_EQ(view.sight(), HeadSight::seen);
     EXPECT_NEAR(view.pose().p_m.x(), -0.1, 1e-3);
-    // The controller ends.
+    // The controller exits.
     view.follow(nullptr, t, t + 20 * kMs);
     EXPECT_EQ(view.sight(), HeadSight::lost);
     EXPECT_NEAR(view.pose().p_m.x(), -0.1, 1e-3);
 }
 
-TEST(StageFile, says_where_all_is) {
+TEST(StageFile, every_key_is_read) {
     const StageSettings s = read_stage_text(R"(
 mode = "two-windows"
 monitors = [1, 2]
@@ -222,11 +222,11 @@ quat_screen_world_xyzw = [0.0, 1.0, 0.0, 0.0]
     EXPECT_TRUE(read_stage_text("mode = \"side-by-side\"\nmonitors = [0]", "a").own_windows());
 }
 
-TEST(StageFile, what_is_wrong_is_named) {
+TEST(StageFile, the_faulty_key_is_named_in_the_error) {
     const auto says = [](const char* text, const char* word) {
         try {
             static_cast<void>(read_stage_text(text, "wall.toml"));
-            ADD_FAILURE() << text << ": taken";
+            ADD_FAILURE() << text << ": accepted";
         } catch (const StartupError& e) {
             const std::string what = e.what();
             EXPECT_NE(what.find("wall.toml"), std::string::npos);
@@ -249,7 +249,7 @@ TEST(StageFile, what_is_wrong_is_named) {
     EXPECT_THROW(static_cast<void>(read_stage_file("no/such/file.toml")), StartupError);
 }
 
-TEST(Stereo, each_eye_has_its_part_of_the_output) {
+TEST(Stereo, each_eye_has_its_area_of_the_output) {
     const PixelArea left = area_of_eye(StereoMode::side_by_side, 0, 1921, 1080),
                     right = area_of_eye(StereoMode::side_by_side, 1, 1921, 1080);
     EXPECT_EQ(left.width_px, right.width_px);

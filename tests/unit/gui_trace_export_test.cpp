@@ -1,4 +1,4 @@
-// The traces as a file: whole or not at all, and what became of it is said.
+// The export of the traces: a complete file or none, and a message about the result.
 #include "gui/dashboard/trace_export.hpp"
 
 #include <gtest/gtest.h>
@@ -45,7 +45,7 @@ protected:
     TraceExport out_;
 };
 
-TEST_F(Export, writes_what_is_seen_and_says_where) {
+TEST_F(Export, writes_the_visible_span_and_reports_the_file) {
     traces_.scope.set_span(0.5);
     traces_.scope.zoom(0.5, traces_.scope.end_ns());
     traces_.export_wanted = true;
@@ -55,7 +55,7 @@ TEST_F(Export, writes_what_is_seen_and_says_where) {
     EXPECT_EQ(traces_.message_grade, Grade::good) << traces_.message;
     std::vector<std::filesystem::path> files;
     for (const auto& entry : std::filesystem::directory_iterator(folder_)) files.push_back(entry.path());
-    ASSERT_EQ(files.size(), 1U);  // and nothing partial
+    ASSERT_EQ(files.size(), 1U);  // no partial file beside it
     EXPECT_NE(traces_.message.find(files[0].string()), std::string::npos) << traces_.message;
     std::ifstream in(files[0]);
     std::string line, last;
@@ -63,11 +63,11 @@ TEST_F(Export, writes_what_is_seen_and_says_where) {
     std::getline(in, line);
     EXPECT_EQ(line, "time_s,taken_at_ns,cycle,state,force_n,position_y_m,lateness_s,cost_s");
     for (; std::getline(in, line); ++lines) last = line;
-    EXPECT_EQ(lines, 251U);  // a quarter of a second, both ends
+    EXPECT_EQ(lines, 251U);  // a quarter of a second, with both ends
     EXPECT_NE(last.find(",3000,"), std::string::npos) << last;
 }
 
-TEST_F(Export, a_folder_that_is_gone_is_said_in_words) {
+TEST_F(Export, a_missing_folder_is_reported_with_a_fix) {
     std::filesystem::remove_all(folder_);
     traces_.export_wanted = true;
     out_.follow(traces_);
@@ -76,7 +76,7 @@ TEST_F(Export, a_folder_that_is_gone_is_said_in_words) {
     EXPECT_NE(traces_.message.find("fix:"), std::string::npos) << traces_.message;
 }
 
-TEST_F(Export, no_part_of_a_file_stays_where_it_cannot_be_written) {
+TEST_F(Export, a_failed_write_leaves_no_partial_file) {
     EXPECT_THROW(write_whole_file((folder_ / "none" / "such.csv").string(), "x"), StartupError);
     std::filesystem::create_directory(folder_ / "taken.csv");
     EXPECT_THROW(write_whole_file((folder_ / "taken.csv").string(), "x"), StartupError);

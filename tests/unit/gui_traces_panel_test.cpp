@@ -1,4 +1,4 @@
-// A person's mouse on the traces: pause, trigger, cursors, zoom, export; and the strip that they lie in.
+// Mouse operation of the traces: pause, trigger, cursors, zoom, export; and the strip below the view.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -13,7 +13,7 @@ constexpr char kCard[] = "Over time";
 
 class TracesPanel : public testing::Test {
 protected:
-    // So many cycles of 1 kHz, with a force that swings between -1 and 1 N five times a second.
+    // Adds so many cycles at 1 kHz, with a force that swings between -1 and 1 N five times a second.
     void run(int cycles) {
         for (int i = 0; i < cycles; ++i) {
             TraceTopic t{};
@@ -44,7 +44,7 @@ protected:
     std::int64_t cycle_ = 0;
 };
 
-TEST_F(TracesPanel, open_in_place_of_the_plots_higher_than_they) {
+TEST_F(TracesPanel, replace_the_plots_with_a_higher_strip) {
     const float before =
         layout_for(dashboard_.theme, 1280.0F, 720.0F, middle_card(dashboard_.state, dashboard_.panels), false)
             .plots.height;
@@ -57,7 +57,7 @@ TEST_F(TracesPanel, open_in_place_of_the_plots_higher_than_they) {
     EXPECT_EQ(dashboard_.state.strip, 0);
 }
 
-TEST_F(TracesPanel, pause_holds_the_picture_still_and_run_goes_on) {
+TEST_F(TracesPanel, pause_freezes_the_traces_and_run_resumes) {
     open();
     dashboard_.click(kCard, "Pause");
     EXPECT_TRUE(scope().held());
@@ -69,11 +69,11 @@ TEST_F(TracesPanel, pause_holds_the_picture_still_and_run_goes_on) {
     EXPECT_GT(scope().end_ns(), end_ns);
 }
 
-TEST_F(TracesPanel, armed_for_a_single_capture_it_waits_and_captures_once) {
+TEST_F(TracesPanel, a_single_capture_waits_for_the_trigger_and_captures_once) {
     open();
     TriggerSettings s = scope().trigger();
     s.channel = TraceChannel::force_x;
-    s.level = 5.0;  // never
+    s.level = 5.0;  // a level that is never reached
     scope().set_trigger(s);
     scope().set_span(0.1);
     dashboard_.click(kCard, "single");
@@ -91,7 +91,7 @@ TEST_F(TracesPanel, armed_for_a_single_capture_it_waits_and_captures_once) {
     EXPECT_STREQ(scope().status(), "captured");
 }
 
-TEST_F(TracesPanel, the_edge_is_turned_by_a_click) {
+TEST_F(TracesPanel, a_click_reverses_the_edge) {
     open();
     dashboard_.click(kCard, "normal");
     EXPECT_TRUE(scope().trigger().rising);
@@ -99,14 +99,14 @@ TEST_F(TracesPanel, the_edge_is_turned_by_a_click) {
     EXPECT_FALSE(scope().trigger().rising);
 }
 
-TEST_F(TracesPanel, dragging_moves_a_cursor_where_one_is_and_else_the_picture) {
+TEST_F(TracesPanel, dragging_moves_the_cursor_under_the_mouse_or_else_the_traces) {
     open();
     dashboard_.click(kCard, "Cursors");
     EXPECT_TRUE(scope().cursors);
     const double begun_s = scope().span_s();
     const Layout l =
         layout_for(dashboard_.theme, 1280.0F, 720.0F, middle_card(dashboard_.state, dashboard_.panels), true);
-    // The lanes begin behind their numbers, 44 wide, inside the card's padding.
+    // The lanes begin to the right of their numbers, which are 44 wide, inside the card's padding.
     const float x0 = l.plots.x + 10.0F + 44.0F, x1 = l.plots.x + l.plots.width - 10.0F - 1.0F;
     const float y = l.plots.y + 0.7F * l.plots.height;
     const auto x = [&](double share) { return x0 + static_cast<float>(share) * (x1 - x0); };
@@ -121,7 +121,7 @@ TEST_F(TracesPanel, dragging_moves_a_cursor_where_one_is_and_else_the_picture) {
     EXPECT_NEAR(scope().cursor[0], 0.5, 0.02);
 }
 
-TEST_F(TracesPanel, the_wheel_looks_nearer_about_the_mouse) {
+TEST_F(TracesPanel, the_wheel_zooms_around_the_mouse) {
     open();
     dashboard_.click(kCard, "Pause");
     const ImVec2 at = on_lanes(0.5F);
@@ -132,16 +132,16 @@ TEST_F(TracesPanel, the_wheel_looks_nearer_about_the_mouse) {
     EXPECT_NEAR(scope().span_s(), before, 1e-6);
 }
 
-TEST_F(TracesPanel, export_asks_the_application) {
+TEST_F(TracesPanel, export_is_requested_from_the_application) {
     dashboard_.click(kCard, "Traces");
     dashboard_.click(kCard, "Export");
-    EXPECT_FALSE(dashboard_.state.traces.export_wanted);  // there is nothing yet
+    EXPECT_FALSE(dashboard_.state.traces.export_wanted);  // there is nothing to export yet
     run(100);
     dashboard_.click(kCard, "Export");
     EXPECT_TRUE(dashboard_.state.traces.export_wanted);
 }
 
-TEST_F(TracesPanel, nothing_known_garbage_and_every_mode_are_drawn) {
+TEST_F(TracesPanel, no_data_garbage_and_every_mode_can_be_drawn) {
     for (int strip : {0, 1}) {
         dashboard_.state.strip = strip;
         dashboard_.frame();

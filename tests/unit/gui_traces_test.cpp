@@ -1,4 +1,4 @@
-// Traces: what is kept, what triggers, what is seen and what is written, as a person at an oscilloscope expects it.
+// The traces: the store, the trigger, the scope and the CSV export.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -27,7 +27,7 @@ TraceTopic cycle_at(std::int64_t number, double force_n = 0.0, std::int32_t cost
     return t;
 }
 
-TEST(TraceStore, extremes_of_any_stretch_are_those_of_its_cycles) {
+TEST(TraceStore, extremes_of_any_range_equal_those_of_its_cycles) {
     TraceStore store;
     std::mt19937 random(3);
     std::normal_distribution<double> noise(0.0, 1.0);
@@ -54,7 +54,7 @@ TEST(TraceStore, extremes_of_any_stretch_are_those_of_its_cycles) {
     }
 }
 
-TEST(TraceStore, finds_times_and_gaps_and_refuses_what_cannot_be) {
+TEST(TraceStore, finds_times_and_gaps_and_refuses_impossible_cycles) {
     TraceStore store;
     EXPECT_TRUE(store.empty());
     EXPECT_EQ(store.find(5), 0U);
@@ -65,8 +65,8 @@ TEST(TraceStore, finds_times_and_gaps_and_refuses_what_cannot_be) {
     EXPECT_FALSE(store.gap_before(0));
     EXPECT_FALSE(store.gap_before(2));
     EXPECT_TRUE(store.gap_before(3));
-    EXPECT_FALSE(store.add(cycle_at(8)));  // again
-    EXPECT_FALSE(store.add(cycle_at(5)));  // older
+    EXPECT_FALSE(store.add(cycle_at(8)));  // a repeated cycle
+    EXPECT_FALSE(store.add(cycle_at(5)));  // an older cycle
     TraceTopic far{};
     far.taken_at_ns = std::numeric_limits<std::int64_t>::max();
     EXPECT_FALSE(store.add(far));
@@ -81,13 +81,13 @@ TEST(TraceStore, finds_times_and_gaps_and_refuses_what_cannot_be) {
     EXPECT_TRUE(store.extremes(TraceChannel::cost, 5, 6).any);
 }
 
-// Cycles in which a force rises slowly from -1 to 1 N and falls back, once in 200 cycles.
+// A force that rises slowly from -1 to 1 N and falls again, with a period of 200 cycles.
 double triangle_n(std::int64_t i) {
     const auto phase = static_cast<double>(i % 200);
     return phase < 100.0 ? -1.0 + 0.02 * phase : 1.0 - 0.02 * (phase - 100.0);
 }
 
-TEST(TraceTrigger, fires_where_the_channel_crosses_its_level_in_the_chosen_direction) {
+TEST(TraceTrigger, fires_where_the_channel_crosses_the_level_in_the_chosen_direction) {
     for (const bool rising : {true, false}) {
         TraceTrigger trigger;
         trigger.arm(
@@ -99,14 +99,14 @@ TEST(TraceTrigger, fires_where_the_channel_crosses_its_level_in_the_chosen_direc
         EXPECT_EQ(at, rising ? 75 : 125);
         EXPECT_EQ(trigger.capture().begin_ns, trigger.capture().trigger_ns - 10 * kMs);
         EXPECT_EQ(trigger.capture().end_ns, trigger.capture().trigger_ns + 30 * kMs);
-        EXPECT_EQ(i, at + 30);  // it is told when its end has come
+        EXPECT_EQ(i, at + 30);  // reported once the capture has reached its end
         EXPECT_FALSE(trigger.capture().forced);
         EXPECT_EQ(trigger.state(), TraceTrigger::State::done);
         for (++i; i < 2000; ++i) ASSERT_FALSE(trigger.add(cycle_at(i, triangle_n(i)), kPeriod));
     }
 }
 
-TEST(TraceTrigger, normal_captures_again_and_again_and_automatic_does_not_wait_for_ever) {
+TEST(TraceTrigger, normal_captures_repeatedly_and_automatic_forces_a_capture_after_a_time) {
     TraceTrigger normal;
     normal.arm({TriggerSource::channel, TraceChannel::force_x, true, 0.5, TriggerMode::normal, 0.0, 0.1});
     int captures = 0;
@@ -127,10 +127,10 @@ TEST(TraceTrigger, normal_captures_again_and_again_and_automatic_does_not_wait_f
             EXPECT_TRUE(automatic.capture().forced);
             EXPECT_EQ(automatic.capture().end_ns, cycle_at(i).taken_at_ns);
         }
-    EXPECT_EQ(forced, 4);  // every half second
+    EXPECT_EQ(forced, 4);  // one every half second
 }
 
-TEST(TraceTrigger, fires_on_an_overrun_and_on_the_beginning_of_a_fault) {
+TEST(TraceTrigger, fires_on_an_overrun_and_on_the_start_of_a_fault) {
     TraceTrigger overrun;
     overrun.arm({TriggerSource::overrun, TraceChannel::force, true, 0.0, TriggerMode::normal, 0.5, 0.02});
     std::vector<std::int64_t> at;
@@ -138,7 +138,7 @@ TEST(TraceTrigger, fires_on_an_overrun_and_on_the_beginning_of_a_fault) {
         if (overrun.add(cycle_at(i, 0.0, i == 50 || i == 120 ? 1'200'000 : 900'000), kPeriod))
             at.push_back((overrun.capture().trigger_ns - cycle_at(0).taken_at_ns) / kMs);
     EXPECT_EQ(at, (std::vector<std::int64_t>{50, 120}));
-    // A loop that runs freely has no period to overrun.
+    // A free-running loop has no period to overrun.
     overrun.arm(overrun.settings());
     for (std::int64_t i = 200; i < 400; ++i) ASSERT_FALSE(overrun.add(cycle_at(i, 0.0, 5'000'000), 0));
 
@@ -153,7 +153,7 @@ TEST(TraceTrigger, fires_on_an_overrun_and_on_the_beginning_of_a_fault) {
     EXPECT_EQ(captures, 1);
 }
 
-TEST(TraceTrigger, nonsense_settings_and_values_trigger_nothing) {
+TEST(TraceTrigger, nan_settings_and_values_trigger_nothing) {
     TraceTrigger trigger;
     trigger.arm({TriggerSource::channel, TraceChannel::force_x, true, std::nan(""), TriggerMode::normal,
                  std::nan(""), std::nan("")});
@@ -164,7 +164,7 @@ TEST(TraceTrigger, nonsense_settings_and_values_trigger_nothing) {
     EXPECT_FALSE(trigger.add(cycle_at(7000, 1.0), kPeriod));
 }
 
-TEST(TraceScope, rolls_holds_zooms_and_pans_and_goes_on) {
+TEST(TraceScope, rolls_holds_zooms_pans_and_resumes) {
     TraceScope scope;
     std::int64_t i = 1;
     for (; i <= 5000; ++i) scope.add(cycle_at(i, triangle_n(i)), kPeriod);
@@ -178,14 +178,14 @@ TEST(TraceScope, rolls_holds_zooms_and_pans_and_goes_on) {
     EXPECT_EQ(scope.end_ns(), cycle_at(5000).taken_at_ns);
     EXPECT_EQ(scope.shown().end_ns(), cycle_at(5000).taken_at_ns);
     EXPECT_EQ(scope.live().end_ns(), cycle_at(9000).taken_at_ns);
-    // What is under the mouse stays there.
+    // The point under the mouse stays there.
     const std::int64_t about = scope.begin_ns() + 100 * kMs;
     const double share = 0.2;
     scope.zoom(0.5, about);
     EXPECT_NEAR(1e-9 * static_cast<double>(about - scope.begin_ns()), share * scope.span_s(), 1e-6);
     scope.pan(-1.0);
     EXPECT_LT(scope.end_ns(), cycle_at(4500).taken_at_ns);
-    scope.pan(-1e6);  // not beyond what there is
+    scope.pan(-1e6);  // limited to the stored cycles
     EXPECT_GT(scope.end_ns(), scope.shown().begin_ns());
     scope.pan(1e6);
     EXPECT_LT(scope.begin_ns(), scope.shown().end_ns());
@@ -199,7 +199,7 @@ TEST(TraceScope, rolls_holds_zooms_and_pans_and_goes_on) {
     EXPECT_EQ(scope.end_ns(), cycle_at(9000).taken_at_ns);
 }
 
-TEST(TraceScope, shows_a_capture_where_it_was_triggered_and_keeps_it_until_the_next) {
+TEST(TraceScope, shows_a_capture_until_the_next_one) {
     TraceScope scope;
     TriggerSettings s;
     s.channel = TraceChannel::force_x;
@@ -229,7 +229,7 @@ TEST(TraceScope, shows_a_capture_where_it_was_triggered_and_keeps_it_until_the_n
     EXPECT_STREQ(scope.status(), "paused");
 }
 
-TEST(TraceScope, memory_is_taken_once) {
+TEST(TraceScope, memory_is_allocated_once) {
     TraceScope scope;
     const std::size_t before = scope.memory_bytes();
     EXPECT_LT(before, 12U * 1024U * 1024U);
@@ -241,7 +241,7 @@ TEST(TraceScope, memory_is_taken_once) {
     EXPECT_TRUE(scope.shown().empty());
 }
 
-TEST(TraceCsv, says_what_the_cycles_were_in_si) {
+TEST(TraceCsv, gives_the_cycles_in_si_units) {
     std::vector<TraceTopic> cycles{cycle_at(5, 0.25), cycle_at(6, std::nan(""))};
     cycles[1].pos_world_m[1] = 0.0125F;
     cycles[1].status = static_cast<std::uint32_t>(RunState::fault);
@@ -254,7 +254,7 @@ TEST(TraceCsv, says_what_the_cycles_were_in_si) {
     EXPECT_EQ(line, "0,1005000000,5,active,0.25,0,9.99999975e-05");
     std::getline(in, line);
     EXPECT_EQ(line.substr(0, line.find(",,")), "0.001,1006000000,6,fault");
-    EXPECT_NE(line.find(",,0.0125"), std::string::npos) << line;  // no number: an empty field
+    EXPECT_NE(line.find(",,0.0125"), std::string::npos) << line;  // NaN: an empty field
     EXPECT_FALSE(std::getline(in, line));
     EXPECT_EQ(trace_csv({}, channels), "time_s,taken_at_ns,cycle,state,force_x_n,position_y_m,cost_s\n");
 }

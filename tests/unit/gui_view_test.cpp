@@ -1,4 +1,4 @@
-// Camera, backbone tubes and the force arrow: what is drawn where, without a graphics card.
+// Camera, backbone tubes and the force arrow: their geometry, without a graphics card.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -18,14 +18,14 @@ Eigen::Vector3f on_screen(const Camera& camera, const Eigen::Vector3f& p, float 
     return clip.head<3>() / clip.w();
 }
 
-TEST(MeshPace, moves_get_smaller_at_once_where_they_took_long_and_larger_slowly) {
+TEST(MeshPace, the_budget_shrinks_at_once_after_slow_moves_and_grows_slowly) {
     MeshPace pace;
     EXPECT_DOUBLE_EQ(pace.budget_ns(0.002), 2e6);
     pace.took(1e6, 4e-3);
     EXPECT_DOUBLE_EQ(pace.budget_ns(0.002), 0.5e6);
     pace.took(1e6, 1e-3);
     EXPECT_NEAR(pace.slower(), 3.7, 1e-12);
-    pace.took(100.0, 1.0);  // too small to be a measure
+    pace.took(100.0, 1.0);  // too short a prediction to judge by
     EXPECT_NEAR(pace.slower(), 3.7, 1e-12);
     for (int i = 0; i < 200; ++i) pace.took(1e6, 0.0);
     EXPECT_NEAR(pace.slower(), 0.25, 1e-3);
@@ -33,7 +33,7 @@ TEST(MeshPace, moves_get_smaller_at_once_where_they_took_long_and_larger_slowly)
     EXPECT_EQ(pace.slower(), 16.0);
 }
 
-TEST(Camera, home_shows_the_whole_ball_and_puts_its_centre_in_the_middle) {
+TEST(Camera, home_shows_the_whole_ball_centred) {
     Camera camera;
     camera.frame(80.0F);
     EXPECT_LT(on_screen(camera, Eigen::Vector3f::Zero(), 1.5F).head<2>().norm(), 1e-5F);
@@ -46,7 +46,7 @@ TEST(Camera, home_shows_the_whole_ball_and_puts_its_centre_in_the_middle) {
     }
 }
 
-TEST(Camera, approaching_a_place_puts_it_in_the_middle_without_turning_round) {
+TEST(Camera, approaching_a_point_centres_it_without_rotation) {
     Camera camera;
     camera.frame(50.0F);
     const Eigen::Quaternionf before = camera.orientation();
@@ -54,7 +54,7 @@ TEST(Camera, approaching_a_place_puts_it_in_the_middle_without_turning_round) {
     camera.approach(place, 5.0F);
     EXPECT_TRUE(camera.orientation().isApprox(before));
     EXPECT_LT(on_screen(camera, place, 1.5F).head<2>().norm(), 1e-4F);
-    // A ball of 5 about it all but fills the height.
+    // A ball of radius 5 around it almost fills the height.
     const Eigen::Vector3f up = camera.orientation().conjugate() * Eigen::Vector3f(0.0F, 5.0F, 0.0F);
     const float edge = on_screen(camera, place + up, 1.5F).y();
     EXPECT_GT(edge, 0.8F);
@@ -66,28 +66,28 @@ TEST(Camera, approaching_a_place_puts_it_in_the_middle_without_turning_round) {
     EXPECT_EQ(camera.target_a(), place);
 }
 
-TEST(Camera, dragging_moves_what_is_under_the_mouse) {
+TEST(Camera, dragging_moves_the_scene_with_the_mouse) {
     Camera camera;
     camera.frame(50.0F);
     camera.home();
     const float height = 600.0F;
-    // Pan: the target moves with the mouse by as many pixels.
+    // Pan: the target moves by as many pixels as the mouse.
     const Eigen::Vector3f before = on_screen(camera, Eigen::Vector3f::Zero(), 1.0F);
     camera.pan(30.0F, -12.0F, height);
     const Eigen::Vector3f after = on_screen(camera, Eigen::Vector3f::Zero(), 1.0F);
     EXPECT_NEAR((after.x() - before.x()) * 0.5F * height, 30.0F, 0.1F);
     EXPECT_NEAR((after.y() - before.y()) * 0.5F * height, 12.0F, 0.1F);
-    // Rotate: what is in front goes to the right when the mouse goes right.
+    // Rotate: a point in front moves to the right when the mouse moves right.
     camera.home();
     const Eigen::Vector3f front = camera.orientation().conjugate() * Eigen::Vector3f(0.0F, 0.0F, 40.0F);
     camera.rotate(50.0F, 0.0F, height);
     EXPECT_GT(on_screen(camera, front, 1.0F).x(), 0.05F);
     camera.home();
-    camera.rotate(0.0F, 50.0F, height);  // down
+    camera.rotate(0.0F, 50.0F, height);  // the mouse moves down
     EXPECT_LT(on_screen(camera, front, 1.0F).y(), -0.05F);
 }
 
-TEST(Camera, half_a_turn_over_the_height_of_the_view_and_the_rotation_stays_a_rotation) {
+TEST(Camera, a_drag_over_the_view_height_is_half_a_turn_and_stays_a_unit_rotation) {
     Camera camera;
     const Eigen::Quaternionf before = camera.orientation();
     for (int i = 0; i < 600; ++i) camera.rotate(1.0F, 0.0F, 600.0F);
@@ -95,7 +95,7 @@ TEST(Camera, half_a_turn_over_the_height_of_the_view_and_the_rotation_stays_a_ro
     EXPECT_NEAR(camera.orientation().norm(), 1.0F, 1e-5F);
 }
 
-TEST(Camera, zoom_goes_nearer_and_stays_in_bounds) {
+TEST(Camera, zoom_moves_closer_and_stays_in_bounds) {
     Camera camera;
     camera.frame(50.0F);
     const float at_home = camera.distance_a();
@@ -113,7 +113,7 @@ TEST(Camera, zoom_goes_nearer_and_stays_in_bounds) {
     EXPECT_FLOAT_EQ(camera.distance_a(), at_home);
 }
 
-TEST(Camera, a_pixel_at_the_target_is_as_long_as_it_says) {
+TEST(Camera, the_length_of_a_pixel_at_the_target_is_correct) {
     Camera camera;
     camera.frame(50.0F);
     const float height = 480.0F;
@@ -122,7 +122,7 @@ TEST(Camera, a_pixel_at_the_target_is_as_long_as_it_says) {
     EXPECT_NEAR(10.0F / px, camera.a_per_px(height), 1e-3F);
 }
 
-TEST(RoundLength, is_one_two_or_five_and_not_above_what_is_asked) {
+TEST(RoundLength, is_one_two_or_five_and_never_above_the_argument) {
     EXPECT_DOUBLE_EQ(round_length(47.0), 20.0);
     EXPECT_DOUBLE_EQ(round_length(50.0), 50.0);
     EXPECT_DOUBLE_EQ(round_length(0.19), 0.1);
@@ -141,7 +141,7 @@ TEST(Tubes, pass_through_every_trace_atom_and_break_where_the_chain_changes) {
             nearest = std::min(nearest, (Eigen::Vector3f(v.position_a[0], v.position_a[1], v.position_a[2]) -
                                          1e10F * Eigen::Vector3f(s.x_m[i], s.y_m[i], s.z_m[i]))
                                             .norm());
-        EXPECT_LT(nearest, 0.8F) << i;  // a tube's radius away
+        EXPECT_LT(nearest, 0.8F) << i;  // the radius of a tube
     }
     for (const std::uint32_t i : mesh.index) ASSERT_LT(i, mesh.vertex.size());
 }
@@ -159,14 +159,14 @@ TEST(Tubes, normals_are_unit_and_triangles_face_outward) {
     }
 }
 
-TEST(Tubes, stay_within_their_vertices_where_that_can_be) {
+TEST(Tubes, stay_within_the_vertex_limit) {
     for (const std::size_t atoms : {10U, 300U, 3000U}) {
         const TubeMesh mesh = build_tubes(fake::helix(atoms), 20'000);
         EXPECT_LE(mesh.vertex.size(), 20'000U + 2U * 9U) << atoms;
     }
 }
 
-TEST(Tubes, structure_without_a_trace_makes_none) {
+TEST(Tubes, a_structure_without_a_trace_has_no_tubes) {
     Structure s = fake::helix(10);
     std::fill(s.trace.begin(), s.trace.end(), std::uint8_t{0});
     EXPECT_TRUE(build_tubes(s, 1000).vertex.empty());
@@ -190,12 +190,12 @@ TEST(Arrow, points_from_the_body_along_the_force_with_outward_faces) {
         volume +=
             static_cast<double>(at(mesh.index[t]).dot(at(mesh.index[t + 1]).cross(at(mesh.index[t + 2])))) /
             6.0;
-    EXPECT_GT(volume, 0.0);  // a closed surface whose faces look outward
+    EXPECT_GT(volume, 0.0);  // a closed surface whose faces point outward
     EXPECT_TRUE(build_arrow(from, 0.5F * along.normalized(), 1.0F, {255, 0, 0}).vertex.empty());
     EXPECT_TRUE(build_arrow(from, along * std::nanf(""), 1.0F, {255, 0, 0}).vertex.empty());
 }
 
-TEST(CodebookLevel, is_the_largest_not_above_the_points_felt_that_is_still_legible) {
+TEST(CodebookLevel, is_the_largest_legible_one_within_the_points_of_the_force) {
     Codebook book;
     for (const std::size_t n : {25U, 50U, 100U, 400U, 800U}) {
         Codebook::Level level;

@@ -1,4 +1,4 @@
-// Waits for what another thread or process is to bring about.
+// Waits for a change made by another thread or process.
 #pragma once
 
 #include <chrono>
@@ -8,7 +8,7 @@
 
 namespace tact::test {
 
-// Long, as a loaded machine under sanitizers is slow; reached only when something is wrong.
+// Long, because a loaded machine is slow under sanitizers; reached only by a failing test.
 template <class F>
 bool wait_for(F&& happened) {
     const Instant until = Monotonic::now() + std::chrono::seconds(120);

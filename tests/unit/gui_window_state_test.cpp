@@ -1,4 +1,4 @@
-// What an operator set in the window, in a file that is read and written.
+// The operator's settings of the window, in a file.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -34,7 +34,7 @@ WindowState one_of_all() {
     return s;
 }
 
-TEST(WindowStateFile, what_is_written_is_read_again) {
+TEST(WindowStateFile, a_written_state_reads_back_unchanged) {
     const WindowState s = one_of_all(), again = read_window_state_text(window_state_text(s), "written");
     EXPECT_EQ(again.width_px, 1920);
     EXPECT_EQ(again.height_px, 1080);
@@ -56,7 +56,7 @@ TEST(WindowStateFile, what_is_written_is_read_again) {
     EXPECT_EQ(again.distance_a, s.distance_a);
 }
 
-TEST(WindowStateFile, every_key_may_be_left_out) {
+TEST(WindowStateFile, every_key_is_optional) {
     const WindowState s = read_window_state_text("", "empty");
     EXPECT_EQ(s.width_px, 1280);
     EXPECT_TRUE(s.toggles.force);
@@ -64,7 +64,7 @@ TEST(WindowStateFile, every_key_may_be_left_out) {
     EXPECT_EQ(window_state_text(s).find("[scene]"), std::string::npos);
 }
 
-TEST(WindowStateFile, what_is_wrong_is_named) {
+TEST(WindowStateFile, faults_are_reported_with_their_key_or_line) {
     const auto refused = [](const std::string& text) {
         try {
             static_cast<void>(read_window_state_text(text, "window.toml"));
@@ -76,21 +76,21 @@ TEST(WindowStateFile, what_is_wrong_is_named) {
     const auto says = [&](const std::string& text, const std::string& words) {
         EXPECT_NE(refused(text).find(words), std::string::npos) << refused(text);
     };
-    says("size_px = [1, 2]", "size_px: a number from 240");
+    says("size_px = [1, 2]", "size_px: must be a number from 240");
     says("size_px = [640.0, nan]", "size_px");
     says("span = \"a week\"", "'a week' is none of 1 min, 10 min, 1 h, 6 h, 24 h");
     says("traces = 1", "true or false");
     says("armed = true", "armed: there is no such key");
     says("[show]\nforces = true", "show.forces: there is no such key");
-    says("[scene]\nchecksum = \"12\"", "16 digits");
-    says("[scene]\nquat_eye_scene_xyzw = [0, 0, 0, 0]", "its length is not 1");
+    says("[scene]\nchecksum = \"12\"", "16 hexadecimal digits");
+    says("[scene]\nquat_eye_scene_xyzw = [0, 0, 0, 0]", "its norm must be 1");
     says("[scene]\ndistance_a = -1", "scene.distance_a");
     says("[scene]\ntarget_a = [0, 0]", "a list of 3 numbers");
     says("= 3", "line 1");
     says("\n\ntraces = [", "line 3");
 }
 
-TEST(WindowStateFile, a_file_that_is_not_there_is_a_beginning_and_a_broken_one_stays) {
+TEST(WindowStateFile, a_missing_file_gives_the_defaults_and_a_broken_one_is_kept) {
     const std::filesystem::path folder =
         std::filesystem::temp_directory_path() / ("tact-dashboard-test-" + std::to_string(getpid()));
     std::filesystem::create_directory(folder);
@@ -108,7 +108,7 @@ TEST(WindowStateFile, a_file_that_is_not_there_is_a_beginning_and_a_broken_one_s
     std::filesystem::remove_all(folder);
 }
 
-TEST(WindowStateFile, a_camera_comes_back_to_where_it_was) {
+TEST(WindowStateFile, a_camera_is_restored_and_impossible_places_are_ignored) {
     Camera camera, other;
     camera.frame(100.0F);
     other.frame(100.0F);

@@ -1,4 +1,4 @@
-// tact-gui as a process, on an X server of its own: waits, attaches, applies, survives, draws.
+// tact-gui as a process on an X server of its own: start, attach, levels, restart of the controller, screenshots.
 #include <fcntl.h>
 #include <gtest/gtest.h>
 #include <signal.h>
@@ -22,7 +22,7 @@ namespace {
 using std::chrono::milliseconds;
 using std::chrono::seconds;
 
-// Long, as a loaded machine under sanitizers draws slowly; reached only when something is wrong.
+// Long, because a loaded machine draws slowly under sanitizers; reached only by a failing test.
 constexpr seconds kPatience(120);
 
 template <class F>
@@ -37,7 +37,7 @@ bool wait_for(F&& happened) {
 
 class Process {
 public:
-    // Output goes to the file. Extra descriptors above 2 stay open where they are not close-on-exec.
+    // Output goes to the file. Descriptors above 2 stay open unless they are close-on-exec.
     Process(const std::vector<std::string>& command, const std::string& output) {
         pid_ = fork();
         if (pid_ != 0) return;
@@ -62,7 +62,7 @@ public:
         if (pid_ > 0 && waitpid(pid_, &status_, WNOHANG) == pid_) pid_ = 0;
         return pid_ > 0;
     }
-    // Exit code, or 128 + signal; 999 when it does not end.
+    // The exit code, or 128 + signal; 999 if the process does not end.
     int wait() {
         if (!wait_for([&] { return !running(); })) return 999;
         return WIFEXITED(status_) ? WEXITSTATUS(status_) : 128 + WTERMSIG(status_);
@@ -77,12 +77,12 @@ class GuiWindow : public testing::Test {
 protected:
     void SetUp() override {
         if (launch::find_in_path("Xvfb").empty())
-            GTEST_SKIP() << "Xvfb is not installed: nothing can be drawn here";
+            GTEST_SKIP() << "Xvfb is not installed: there is no display to draw on";
         char name[] = "/tmp/tact-gui-test-XXXXXX";
         folder_ = mkdtemp(name);
         setenv("TACT_RUNTIME_DIR", folder_.c_str(), 1);
         setenv("LIBGL_ALWAYS_SOFTWARE", "1", 1);
-        // Graphics drivers and X libraries keep memory to the end on purpose.
+        // Graphics drivers and X libraries deliberately keep memory until exit.
         setenv("ASAN_OPTIONS", "detect_leaks=0", 1);
         x_server_ = std::make_unique<launch::XServer>(folder_, 800, 600);
         for (const auto& [key, value] : x_server_->environment())
@@ -107,7 +107,7 @@ protected:
         vertices_ = read_mesh(SceneFile::open(path), 0).vertices();
         return path;
     }
-    // Serves until the GUI draws the scene.
+    // Serves the link until the GUI has drawn the scene.
     bool drawing(fake::Controller& controller) {
         return wait_for([&] {
             LoadTopic load{};
@@ -127,7 +127,7 @@ protected:
         return colours;
     }
 
-    // Of a window that has drawn a few frames of what is published meanwhile.
+    // The colours of a window that has drawn a few frames while something was published.
     std::set<std::uint32_t> shown(fake::Controller& controller, const std::function<void()>& publish) {
         const std::string picture = folder_ + "/shown.png";
         const auto process = gui({"--screenshot", picture, "--hidden"});
@@ -151,7 +151,7 @@ protected:
     std::uint32_t vertices_ = 0;
 };
 
-TEST_F(GuiWindow, starts_without_a_controller_and_writes_the_picture_at_the_end) {
+TEST_F(GuiWindow, starts_without_a_controller_and_writes_the_screenshot_at_the_end) {
     const std::string picture = folder_ + "/alone.png";
     for (const bool hidden : {false, true}) {
         std::vector<std::string> arguments{scene(), "--seconds", "1", "--screenshot", picture};
@@ -164,7 +164,7 @@ TEST_F(GuiWindow, starts_without_a_controller_and_writes_the_picture_at_the_end)
     }
 }
 
-TEST_F(GuiWindow, writes_what_frames_took_at_the_end) {
+TEST_F(GuiWindow, writes_the_frame_times_at_the_end) {
     const std::string report = folder_ + "/frames.json";
     EXPECT_EQ(gui({scene(), "--hidden", "--seconds", "1", "--frames", report})->wait(), 0) << log();
     std::ifstream file(report);
@@ -176,7 +176,7 @@ TEST_F(GuiWindow, writes_what_frames_took_at_the_end) {
     EXPECT_NE(log().find("--frames"), std::string::npos) << log();
 }
 
-TEST_F(GuiWindow, starts_with_the_looks_of_the_command_line) {
+TEST_F(GuiWindow, applies_the_appearance_options_of_the_command_line) {
     const std::string picture = folder_ + "/looks.png";
     EXPECT_EQ(
         gui({scene(), "--hidden", "--seconds", "1", "--screenshot", picture, "--molecule", "spheres",
@@ -205,7 +205,7 @@ TEST_F(GuiWindow, the_frame_after_a_level_change_draws_that_many_vertices) {
         })) << log();
         EXPECT_EQ(load.vertices_drawn, items);
         EXPECT_EQ(load.vertices_max, vertices_);
-        // The frame under way may have looked already; the one after it must have seen the change.
+        // The frame in progress may have read the level already; the next one must have the change.
         for (std::uint64_t frame = load.frame; frame < before + 3;) {
             ASSERT_TRUE(controller.gui()->load.read(load));
             if (load.frame == frame) continue;
@@ -217,7 +217,7 @@ TEST_F(GuiWindow, the_frame_after_a_level_change_draws_that_many_vertices) {
     EXPECT_EQ(process->wait(), 0) << log();
 }
 
-TEST_F(GuiWindow, heartbeat_carries_parts_and_processor_time) {
+TEST_F(GuiWindow, the_heartbeat_has_parts_and_processor_time) {
     fake::Controller controller("t", scene(), checksum_);
     const auto process = gui({"--fps-max", "0"});
     ASSERT_TRUE(drawing(controller)) << log();
@@ -232,7 +232,7 @@ TEST_F(GuiWindow, heartbeat_carries_parts_and_processor_time) {
         EXPECT_GE(part, 0.0);
         sum += part;
     }
-    // Drawing on the processor there is no display to wait for: all of it is work.
+    // Software rendering waits for no display: all of the time is work.
     EXPECT_NEAR(sum, last.busy_s, 1e-9);
     EXPECT_GT(last.triangles_drawn, 0U);
     FramesTopic frames{};
@@ -286,7 +286,7 @@ TEST_F(GuiWindow, garbage_in_the_region_is_ignored) {
     EXPECT_EQ(process->wait(), 0) << log();
 }
 
-TEST_F(GuiWindow, a_second_hand_is_in_the_picture_with_the_wall_that_it_touches) {
+TEST_F(GuiWindow, a_second_hand_is_drawn_with_the_wall_it_touches) {
     fake::Controller controller("t", scene(), checksum_);
     std::vector<std::set<std::uint32_t>> pictures;
     for (const bool there : {false, true}) {
@@ -300,7 +300,7 @@ TEST_F(GuiWindow, a_second_hand_is_in_the_picture_with_the_wall_that_it_touches)
             if (there) controller.region().tool[1].publish(tool);
         }));
     }
-    // Violet, whatever the light: nothing else in the picture is.
+    // Violet in any light; nothing else in the image is violet.
     const auto violet = [](const std::set<std::uint32_t>& seen) {
         return std::count_if(seen.begin(), seen.end(), [](std::uint32_t c) {
             const auto r = static_cast<int>(c & 255U), g = static_cast<int>(c >> 8 & 255U),
@@ -313,7 +313,7 @@ TEST_F(GuiWindow, a_second_hand_is_in_the_picture_with_the_wall_that_it_touches)
     EXPECT_GT(violet(pictures[1]), 5);
 }
 
-TEST_F(GuiWindow, an_emergency_stop_stands_over_the_picture) {
+TEST_F(GuiWindow, an_emergency_stop_is_shown_in_a_banner) {
     fake::Controller controller("t", scene(), checksum_);
     std::vector<std::set<std::uint32_t>> pictures;
     for (const bool pressed : {false, true}) {
@@ -328,7 +328,7 @@ TEST_F(GuiWindow, an_emergency_stop_stands_over_the_picture) {
             controller.region().health.publish(health);
         }));
     }
-    // The ground of the banner.
+    // The background of the banner.
     const auto dark_red = [](const std::set<std::uint32_t>& seen) {
         return std::count_if(seen.begin(), seen.end(), [](std::uint32_t c) {
             const auto r = static_cast<int>(c & 255U), g = static_cast<int>(c >> 8 & 255U),
@@ -341,16 +341,16 @@ TEST_F(GuiWindow, an_emergency_stop_stands_over_the_picture) {
     EXPECT_GT(dark_red(pictures[1]), 0);
 }
 
-// A person's mouse, from the X server to the file.
-TEST_F(GuiWindow, the_mouse_holds_the_traces_still_and_exports_what_is_seen) {
+// Mouse input from the X server to the exported file.
+TEST_F(GuiWindow, the_mouse_pauses_the_traces_and_exports_them) {
     if (launch::find_in_path("xdotool").empty())
-        GTEST_SKIP() << "xdotool is not installed: nobody moves a mouse";
+        GTEST_SKIP() << "xdotool is not installed: the mouse cannot be moved";
     x_server_ = std::make_unique<launch::XServer>(folder_, 1280, 720);
     for (const auto& [key, value] : x_server_->environment())
         value.empty() ? unsetenv(key.c_str()) : setenv(key.c_str(), value.c_str(), 1);
     fake::Controller controller("t", scene(), checksum_);
     const std::filesystem::path before = std::filesystem::current_path();
-    std::filesystem::current_path(folder_);  // where the file goes
+    std::filesystem::current_path(folder_);  // the export is written to the working folder
     const auto process = gui({"--traces"}, "1280x720");
     std::filesystem::current_path(before);
     ASSERT_TRUE(drawing(controller)) << log();
@@ -380,7 +380,7 @@ TEST_F(GuiWindow, the_mouse_holds_the_traces_still_and_exports_what_is_seen) {
     mouse("search --onlyvisible --name Tact windowfocus");
     mouse("mousemove 356 398");
     mouse("click 1");  // Pause
-    // Where the letters end depends on the fonts there are: along the row of buttons until one answers.
+    // The position of the button depends on the fonts: the test clicks along the row until a file appears.
     for (int x = 900; x > 560 && exported().empty(); x -= 20) {
         mouse("mousemove " + std::to_string(x) + " 398");
         mouse("mousedown 1");
@@ -397,13 +397,13 @@ TEST_F(GuiWindow, the_mouse_holds_the_traces_still_and_exports_what_is_seen) {
     std::size_t lines = 0;
     for (; std::getline(file, line); ++lines) last = line;
     EXPECT_GT(lines, 100U);
-    // Held still when Pause was pressed: what came after it is not in the file.
+    // Held since Pause was pressed: later cycles are not in the file.
     std::uint64_t cycle_of_last = 0;
     ASSERT_EQ(std::sscanf(last.c_str(), "%*[^,],%*[^,],%lu,", &cycle_of_last), 1) << last;
     EXPECT_LT(cycle_of_last + 100, newest);
 }
 
-TEST_F(GuiWindow, survives_the_controllers_restart_and_attaches_again) {
+TEST_F(GuiWindow, survives_a_restart_of_the_controller_and_attaches_again) {
     const std::string path = scene();
     auto controller = std::make_unique<fake::Controller>("t", path, checksum_);
     const auto process = gui({});
@@ -424,22 +424,22 @@ TEST_F(GuiWindow, survives_the_controllers_restart_and_attaches_again) {
     EXPECT_EQ(process->wait(), 0) << log();
 }
 
-TEST_F(GuiWindow, broken_scene_is_told_and_the_window_stays) {
+TEST_F(GuiWindow, a_broken_scene_is_reported_and_the_window_stays_open) {
     const std::string path = folder_ + "/broken.tact";
-    std::ofstream(path) << "this is no scene";
+    std::ofstream(path) << "this is not a scene";
     EXPECT_EQ(gui({path, "--seconds", "1", "--screenshot", folder_ + "/broken.png"})->wait(), 0) << log();
     EXPECT_NE(log().find("fix:"), std::string::npos) << log();
     EXPECT_GT(colours(folder_ + "/broken.png", 640, 480).size(), 20U);
 }
 
-TEST_F(GuiWindow, without_a_display_it_says_so_and_what_mends_it) {
+TEST_F(GuiWindow, a_missing_display_is_reported_with_a_fix) {
     unsetenv("DISPLAY");
     EXPECT_EQ(gui({"--seconds", "1"})->wait(), 1);
     EXPECT_NE(log().find("no display"), std::string::npos) << log();
     EXPECT_NE(log().find("fix:"), std::string::npos) << log();
 }
 
-TEST_F(GuiWindow, a_series_is_of_the_view_alone_and_its_first_of_the_scene) {
+TEST_F(GuiWindow, a_series_of_screenshots_is_written) {
     const std::string picture = folder_ + "/series.png";
     EXPECT_EQ(gui({scene(), "--hidden", "--seconds", "1.2", "--screenshot", picture, "--picture-every", "0.4",
                    "--zoom", "2"})
@@ -452,7 +452,7 @@ TEST_F(GuiWindow, a_series_is_of_the_view_alone_and_its_first_of_the_scene) {
     EXPECT_FALSE(std::filesystem::exists(folder_ + "/series-09.png"));
 }
 
-TEST_F(GuiWindow, every_stereo_mode_shows_two_eyes_in_the_view_or_in_windows_of_its_own) {
+TEST_F(GuiWindow, every_stereo_mode_draws_two_eyes_in_the_view_or_in_separate_windows) {
     const std::string window = folder_ + "/window.png", picture = folder_ + "/stereo.png",
                       file = folder_ + "/stage.toml";
     for (const char* const mode : {"anaglyph", "side-by-side", "top-bottom"}) {
@@ -464,7 +464,7 @@ TEST_F(GuiWindow, every_stereo_mode_shows_two_eyes_in_the_view_or_in_windows_of_
         EXPECT_GT(colours(window, 640, 480).size(), 100U) << mode;
         EXPECT_TRUE(std::filesystem::remove(picture)) << mode << log();
     }
-    // Windows that are seen, and no picture of the dashboard.
+    // Visible windows, and no screenshot of the dashboard.
     std::ofstream(file) << "monitors = [0]\n";
     EXPECT_EQ(gui({scene(), "--seconds", "0.6", "--stage", file, "--stereo", "side-by-side",
                    "--stage-screenshot", picture})
@@ -485,7 +485,7 @@ TEST_F(GuiWindow, every_stereo_mode_shows_two_eyes_in_the_view_or_in_windows_of_
     EXPECT_NE(bytes(left), bytes(right));
 }
 
-TEST_F(GuiWindow, a_stage_that_cannot_be_is_told_in_words) {
+TEST_F(GuiWindow, an_impossible_stage_is_refused_with_a_reason) {
     const std::string file = folder_ + "/stage.toml";
     std::ofstream(file) << "monitors = [7]\nmode = \"anaglyph\"\n";
     EXPECT_EQ(gui({"--seconds", "0.5", "--stage", file})->wait(), 1);
@@ -494,12 +494,12 @@ TEST_F(GuiWindow, a_stage_that_cannot_be_is_told_in_words) {
     EXPECT_EQ(gui({"--seconds", "0.5", "--stage", file})->wait(), 2);
     EXPECT_NE(log().find("sideways"), std::string::npos) << log();
     EXPECT_NE(gui({"--stereo", "sideways"})->wait(), 0);
-    // Drivers that draw on the processor have no buffers for two eyes.
+    // Software renderers have no buffers for two eyes.
     EXPECT_EQ(gui({"--seconds", "0.5", "--stereo", "quad-buffer"})->wait(), 1);
     EXPECT_NE(log().find("fix:"), std::string::npos) << log();
 }
 
-TEST_F(GuiWindow, picture_that_cannot_be_written_is_an_error_and_arguments_are_checked) {
+TEST_F(GuiWindow, an_unwritable_screenshot_is_an_error_and_arguments_are_checked) {
     EXPECT_EQ(gui({"--seconds", "0.5", "--screenshot", folder_ + "/none/such.png"})->wait(), 1);
     EXPECT_NE(log().find("such.png"), std::string::npos) << log();
     EXPECT_NE(gui({"--size", "5x5"})->wait(), 0);

@@ -11,12 +11,12 @@ tact_test(unit/hal_tracker_frames_test.cpp USES base tracker SYSTEM rapidcheck)
 tact_test(unit/hal_tracker_reader_test.cpp USES base tracker)
 tact_test(unit/emu_board_test.cpp USES base arm phantom emu_board)
 tact_test(unit/emu_script_test.cpp USES base arm tracker emu_script)
-# Parts and faults are read without a kernel that has them; wrong usage and what cannot start have codes of their own.
+# Parts and faults are read without kernel interfaces; wrong usage and failed starts have different exit codes.
 add_test(NAME hal_emu_usage COMMAND sh -c "emu='$<TARGET_FILE:tact-emu>'; \"$emu\" --arm A --arm B --tracker can0:fd:240:4 --check || exit 1
     \"$emu\" --nonsense 2>&1; test $? = 2 || exit 1; \"$emu\" --arm A --arm A; test $? = 1 || exit 1; \"$emu\"; test $? = 1")
 tact_test(unit/hal_phantom_usb_test.cpp USES base arm phantom phantom_usb hal_api emu_board)
 tact_test(unit/hal_phantom_thread_test.cpp USES base arm phantom phantom_usb hal_api emu_board LABELS tsan)
-# A stand-in for the vendor's library, loaded as that is; and one that lacks functions.
+# A substitute for the vendor's library, loaded in its place, and one that lacks functions.
 tact_plugin(fake_hd SOURCES support/fake_hd_library.cpp USES openhaptics)
 tact_plugin(fake_hd_old SOURCES support/fake_hd_old.cpp)
 tact_test(unit/hal_openhaptics_test.cpp USES base openhaptics hal_api LABELS tsan)

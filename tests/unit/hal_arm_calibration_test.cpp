@@ -1,4 +1,4 @@
-// Calibration of each style in simulated time: what it asks for, when it is done, when it begins anew.
+// Calibration of each style in simulated time: its notices, its end, and its restart.
 #include "hal/arm/calibration.hpp"
 
 #include <gtest/gtest.h>
@@ -41,7 +41,7 @@ TEST(ResetPose, needs_a_confirmation_and_half_a_second_of_stillness) {
     EXPECT_LT(b.arm.angles_rad(b.in.counts, b.calibration.zero()).norm(), 1e-12);
 }
 
-TEST(ResetPose, a_button_that_is_down_from_the_start_is_no_confirmation) {
+TEST(ResetPose, a_button_pressed_from_the_start_is_no_confirmation) {
     Bench b("premium-1.5");
     b.in.confirm = true;
     EXPECT_EQ(b.run(2000), CalibrationState::waiting);
@@ -58,7 +58,7 @@ TEST(ResetPose, an_arm_that_moves_has_to_be_confirmed_again) {
     b.run(300);
     b.in.counts[2] += 1000;
     EXPECT_EQ(b.run(1000), CalibrationState::waiting);
-    // A slow drift is a motion too.
+    // A slow drift counts as motion.
     b.in.confirm = false;
     b.run(1);
     b.in.confirm = true;
@@ -70,7 +70,7 @@ TEST(ResetPose, an_arm_that_moves_has_to_be_confirmed_again) {
     EXPECT_EQ(b.calibration.state(), CalibrationState::waiting);
 }
 
-TEST(ResetPose, a_hand_that_trembles_by_a_few_steps_is_still_and_the_middle_counts) {
+TEST(ResetPose, a_tremor_of_a_few_steps_counts_as_still_and_the_mean_is_used) {
     Bench b("premium-1.5");
     b.run(1);
     b.in.confirm = true;
@@ -82,7 +82,7 @@ TEST(ResetPose, a_hand_that_trembles_by_a_few_steps_is_still_and_the_middle_coun
     EXPECT_EQ(b.calibration.zero()[0], 1005);
 }
 
-TEST(ResetPose, a_silence_in_the_middle_does_not_count_as_stillness) {
+TEST(ResetPose, a_gap_in_the_samples_does_not_count_as_stillness) {
     Bench b("premium-1.5");
     b.run(1);
     b.in.confirm = true;
@@ -91,7 +91,7 @@ TEST(ResetPose, a_silence_in_the_middle_does_not_count_as_stillness) {
     EXPECT_EQ(b.run(1), CalibrationState::waiting);
 }
 
-TEST(Inkwell, the_stylus_lying_still_in_it_is_enough) {
+TEST(Inkwell, a_still_stylus_in_the_inkwell_is_enough) {
     Bench b("omni");
     EXPECT_EQ(b.run(1000), CalibrationState::waiting);
     b.in.inkwell = true;
@@ -100,16 +100,16 @@ TEST(Inkwell, the_stylus_lying_still_in_it_is_enough) {
     EXPECT_EQ(b.run(1), CalibrationState::waiting);
     b.in.inkwell = true;
     b.run(400);
-    b.in.counts[0] += 500;  // pushed about: from here on again
+    b.in.counts[0] += 500;  // a push: the time restarts
     EXPECT_EQ(b.run(499), CalibrationState::holding);
     EXPECT_EQ(b.run(2), CalibrationState::done);
     const Vec3 tip = b.arm.tip_m(b.arm.angles_rad(b.in.counts, b.calibration.zero()));
-    EXPECT_LT((tip - Vec3(0.0, -0.0655107, -0.0881142)).norm(), 1e-5);  // where the inkwell is
+    EXPECT_LT((tip - Vec3(0.0, -0.0655107, -0.0881142)).norm(), 1e-5);  // position of the inkwell
     b.in.inkwell = false;
     EXPECT_EQ(b.run(1000), CalibrationState::done);
 }
 
-TEST(Automatic, it_trusts_the_device_that_says_so_for_half_a_second) {
+TEST(Automatic, is_done_after_the_device_reports_it_for_half_a_second) {
     Bench b("desktop");
     EXPECT_EQ(b.run(1000), CalibrationState::waiting);
     b.in.device_calibrated = true;
@@ -127,7 +127,7 @@ TEST(Automatic, it_trusts_the_device_that_says_so_for_half_a_second) {
     EXPECT_EQ(b.run(1), CalibrationState::waiting);
 }
 
-TEST(AnyStyle, counts_that_were_lost_make_it_begin_anew) {
+TEST(AnyStyle, lost_counts_restart_the_calibration) {
     for (const char* model : {"premium-1.5", "omni", "desktop"}) {
         Bench b(model);
         b.in.inkwell = b.in.device_calibrated = true;

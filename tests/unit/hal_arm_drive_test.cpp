@@ -1,4 +1,4 @@
-// Currents: limits that keep the direction, weight first, nothing from nonsense.
+// Motor currents: limits keep the direction, gravity compensation has priority, invalid input gives zero.
 #include "hal/arm/arm_drive.hpp"
 
 #include <gtest/gtest.h>
@@ -41,7 +41,7 @@ INSTANTIATE_TEST_SUITE_P(All, Drives, testing::Values("omni", "premium-1.5", "pr
                              return name;
                          });
 
-TEST_P(Drives, within_the_limits_the_motors_push_exactly_what_is_asked_for) {
+TEST_P(Drives, within_the_limits_the_motors_give_exactly_the_requested_wrench) {
     for_all([&] {
         const Joint6 q = configuration();
         const Wrench w{drawn_vector(0.3), drawn_vector(0.01)};
@@ -52,7 +52,7 @@ TEST_P(Drives, within_the_limits_the_motors_push_exactly_what_is_asked_for) {
     });
 }
 
-TEST_P(Drives, no_motor_gets_more_than_its_limit_and_the_hand_feels_less_of_the_same) {
+TEST_P(Drives, no_motor_exceeds_its_limit_and_the_wrench_keeps_its_direction) {
     for_all([&] {
         const Joint6 q = configuration();
         const Wrench w{drawn_vector(60.0), drawn_vector(2.0)};
@@ -66,13 +66,13 @@ TEST_P(Drives, no_motor_gets_more_than_its_limit_and_the_hand_feels_less_of_the_
         }
         RC_ASSERT(d.share >= 0.0 && d.share <= 1.0);
         RC_ASSERT(d.share * w.force_n.norm() <= p.force_n_max * (1 + 1e-12));
-        if (d.share == 0.0) return;  // not even the weight
+        if (d.share == 0.0) return;  // not even gravity compensation
         const Joint6 shown = torque_of(arm, d.current_a) - hold;
         RC_ASSERT((shown - d.share * arm.torque_n_m(q, w)).norm() < 1e-9);
     });
 }
 
-TEST_P(Drives, what_is_asked_for_a_hair_beyond_a_limit_is_shown_almost_whole) {
+TEST_P(Drives, a_wrench_just_beyond_a_limit_is_barely_reduced) {
     const Joint6 q = joints(0.1, 0.4, 0.3);
     const Joint6 ones = Joint6::Constant(1.0);
     const Wrench w{Vec3(0.0, 1.0, 0.5), Vec3::Zero()};
@@ -81,7 +81,7 @@ TEST_P(Drives, what_is_asked_for_a_hair_beyond_a_limit_is_shown_almost_whole) {
     EXPECT_NEAR(d.share, 0.999, 1e-9);
 }
 
-TEST_P(Drives, nothing_flows_for_what_is_not_a_number) {
+TEST_P(Drives, non_finite_input_gives_zero_current) {
     const double nan = std::numeric_limits<double>::quiet_NaN(),
                  inf = std::numeric_limits<double>::infinity();
     const Wrench w{Vec3(1, 1, 1), Vec3::Zero()};
@@ -100,7 +100,7 @@ TEST_P(Drives, nothing_flows_for_what_is_not_a_number) {
     EXPECT_EQ(drive_currents(arm, zero, w, zero, Joint6::Constant(-1.0)).current_a, zero);
 }
 
-TEST_P(Drives, at_a_singular_posture_currents_stay_within_their_limits) {
+TEST_P(Drives, at_a_singular_configuration_currents_stay_within_their_limits) {
     for_all([&] {
         Joint6 q = configuration();
         q[2] = q[1] + M_PI / 2;
@@ -112,8 +112,8 @@ TEST_P(Drives, at_a_singular_posture_currents_stay_within_their_limits) {
     });
 }
 
-// What the table's motors and levers make of the maker's promise of 8.5 N for a moment and 1.4 N for ever.
-TEST(Premium, its_motors_give_the_forces_that_are_promised) {
+// Forces that follow from the table's motors and levers, against the manufacturer's 8.5 N peak and 1.4 N continuous.
+TEST(Premium, its_motors_give_the_specified_forces) {
     const ArmKinematics arm = sample::arm("premium-1.5");
     const ArmParameters& p = arm.parameters();
     for (const Vec3& way : {Vec3(1, 0, 0), Vec3(0, 1, 0), Vec3(0, 0, 1)}) {

@@ -1,4 +1,4 @@
-// Kinematics of the arms: against geometry, finite differences, virtual work, and what a real arm reported.
+// Kinematics of the arms against geometry, finite differences, virtual work, and data of a real arm.
 #include "hal/arm/arm_kinematics.hpp"
 
 #include <gtest/gtest.h>
@@ -18,7 +18,7 @@ void for_all(Property&& property) {
 
 using sample::joints;
 
-// A configuration within the ends of the arm's joints, the elbow's included.
+// A random configuration within the joint limits, elbow included.
 Joint6 drawn_joints(const ArmParameters& p) {
     const auto unit = [] { return *rc::gen::inRange(0, 1'000'001) * 1e-6; };
     Joint6 q;
@@ -48,19 +48,19 @@ INSTANTIATE_TEST_SUITE_P(All, Arms,
                              return name;
                          });
 
-TEST_P(Arms, in_the_reset_pose_the_tip_is_where_the_origin_is_measured_from) {
+TEST_P(Arms, in_the_reset_pose_the_tip_is_at_the_reference_of_the_origin) {
     EXPECT_LT((arm.tip_m(Joint6::Zero()) + p.origin_m).norm(), 1e-15);
     EXPECT_LT(arm.pose(Joint6::Zero()).q.angularDistance(Quat::Identity()), 1e-12);
 }
 
-TEST_P(Arms, joints_turn_the_way_their_signs_say) {
+TEST_P(Arms, joints_turn_according_to_their_signs) {
     const Vec3 rest = arm.tip_m(Joint6::Zero());
     EXPECT_LT((arm.tip_m(joints(0.1, 0, 0)) - rest).x(), -0.01);  // turret to the left
     EXPECT_GT((arm.tip_m(joints(0, 0.1, 0)) - rest).y(), 0.01);   // thigh up
-    EXPECT_GT((arm.tip_m(joints(0, 0, 0.1)) - rest).z(), 0.01);   // shin up, so towards the user
+    EXPECT_GT((arm.tip_m(joints(0, 0, 0.1)) - rest).z(), 0.01);   // shin up, towards the user
 }
 
-TEST_P(Arms, the_tip_is_found_by_walking_along_the_links) {
+TEST_P(Arms, the_tip_is_the_sum_of_the_links) {
     for_all([&] {
         const Joint6 q = drawn_joints(p);
         const Quat turret(Eigen::AngleAxisd(-q[0], Vec3::UnitY()));
@@ -72,7 +72,7 @@ TEST_P(Arms, the_tip_is_found_by_walking_along_the_links) {
     });
 }
 
-TEST_P(Arms, inverse_undoes_forward_over_the_whole_range_of_the_joints) {
+TEST_P(Arms, inverse_inverts_forward_over_the_whole_range_of_the_joints) {
     const auto holds = [&](const Joint6& q) {
         const Pose pose = arm.pose(q);
         Joint6 back;
@@ -94,14 +94,14 @@ TEST_P(Arms, inverse_undoes_forward_over_the_whole_range_of_the_joints) {
                 q[1] = at(p.low_rad[1], p.high_rad[1], j);
                 q[2] = q[1] + at(p.elbow_low_rad, p.elbow_high_rad, k);
                 if (arm.configuration(q).reach_m < 1e-3)
-                    continue;  // beyond the turret's axis it is the other way round
+                    continue;  // beyond the turret's axis the solution is the mirrored one
                 ASSERT_TRUE(holds(q)) << q.transpose();
             }
         }
     }
 }
 
-TEST_P(Arms, every_place_of_the_workspace_that_can_be_reached_is_found_to_a_nanometre) {
+TEST_P(Arms, every_reachable_position_of_the_workspace_is_found_within_a_nanometre) {
     int reached = 0, all = 0;
     for (double x = -1.0; x <= 1.0; x += 0.1) {
         for (double y = -1.0; y <= 1.0; y += 0.1) {
@@ -115,13 +115,13 @@ TEST_P(Arms, every_place_of_the_workspace_that_can_be_reached_is_found_to_a_nano
             }
         }
     }
-    // The makers' boxes lie whole within reach; the Desktop of this test is made up.
+    // The manufacturers' boxes lie completely within reach; the Desktop of this test has made-up dimensions.
     if (std::string(GetParam()) != "desktop") {
         EXPECT_EQ(reached, all);
     }
 }
 
-TEST_P(Arms, the_published_inverse_in_its_own_frame_says_the_same) {
+TEST_P(Arms, the_inverse_agrees_with_the_published_one) {
     for_all([&] {
         const Joint6 q = drawn_joints(p);
         RC_PRE(arm.configuration(q).reach_m > 0.01);
@@ -158,7 +158,7 @@ TEST_P(Arms, the_jacobian_is_the_derivative_of_the_pose) {
     });
 }
 
-TEST_P(Arms, joints_do_the_work_that_the_wrench_does_at_the_tip) {
+TEST_P(Arms, joint_torques_do_the_work_of_the_wrench_at_the_tip) {
     for_all([&] {
         const Joint6 q = drawn_joints(p);
         Joint6 rad_s;
@@ -171,7 +171,7 @@ TEST_P(Arms, joints_do_the_work_that_the_wrench_does_at_the_tip) {
     });
 }
 
-TEST_P(Arms, torques_are_bounded_by_the_lever_in_every_posture_singular_ones_too) {
+TEST_P(Arms, torques_are_bounded_by_the_lever_in_every_configuration) {
     const double l1 = p.thigh_m, l2 = p.shin_m;
     const auto bounded = [&](const Joint6& q, const Wrench& w) {
         const Joint6 tau = arm.torque_n_m(q, w);
@@ -198,7 +198,7 @@ TEST_P(Arms, torques_are_bounded_by_the_lever_in_every_posture_singular_ones_too
     });
 }
 
-TEST_P(Arms, at_a_singular_posture_only_the_direction_without_motion_is_lost) {
+TEST_P(Arms, at_a_singular_configuration_only_the_immobile_direction_is_lost) {
     const Joint6 stretched = joints(0.4, 0.3, 0.3 + M_PI / 2);
     EXPECT_NEAR(arm.configuration(stretched).elbow_cos, 0.0, 1e-12);
     EXPECT_TRUE(arm.configuration(stretched).near_singular);
@@ -210,7 +210,7 @@ TEST_P(Arms, at_a_singular_posture_only_the_direction_without_motion_is_lost) {
     EXPECT_FALSE(arm.configuration(joints(0.0, 0.5, 0.5)).near_singular);
 }
 
-TEST_P(Arms, what_is_out_of_reach_is_said_and_the_nearest_given) {
+TEST_P(Arms, an_unreachable_position_is_reported_with_the_nearest_reachable_one) {
     const Vec3 shoulder = Vec3(0.0, p.shin_m, -p.thigh_m) - p.origin_m;
     const Vec3 way = Vec3(0.1, -0.2, 1.0).normalized();
     Joint6 q;
@@ -221,7 +221,7 @@ TEST_P(Arms, what_is_out_of_reach_is_said_and_the_nearest_given) {
     EXPECT_FALSE(arm.inverse(wild, q));
 }
 
-TEST_P(Arms, ends_of_the_joints_are_seen_with_how_far_they_are) {
+TEST_P(Arms, the_distance_to_the_joint_limits_is_reported) {
     Joint6 q = 0.5 * (p.low_rad + p.high_rad);
     q[2] = q[1] + 0.5 * (p.elbow_low_rad + p.elbow_high_rad);
     q[0] = p.high_rad[0] - 0.01;
@@ -233,7 +233,7 @@ TEST_P(Arms, ends_of_the_joints_are_seen_with_how_far_they_are) {
     EXPECT_LE(arm.configuration(q).to_limit_rad, -0.03 + 1e-12);
 }
 
-TEST_P(Arms, counts_and_angles_are_each_other_to_half_a_step) {
+TEST_P(Arms, counts_and_angles_convert_within_half_a_step) {
     const Counts6 zero{1000, -70000, 2'000'000'000, 5, 6, 7};
     for_all([&] {
         const Joint6 q = drawn_joints(p);
@@ -250,7 +250,7 @@ TEST_P(Arms, counts_and_angles_are_each_other_to_half_a_step) {
     EXPECT_TRUE(arm.angles_rad(far, {-kMost, -kMost, -kMost, -kMost, -kMost, -kMost}).allFinite());
 }
 
-TEST_P(Arms, weight_is_the_slope_of_the_potential_energy) {
+TEST_P(Arms, gravity_torque_is_the_gradient_of_the_potential_energy) {
     ArmParameterSet f = sample::complete_parameters(GetParam());
     f.gravity_mn_m = {Figure{-16.0, FigureSource::configured}, Figure{-74.0, FigureSource::configured}};
     f.tip_mass_g = {90.0, FigureSource::configured};
@@ -269,8 +269,8 @@ TEST_P(Arms, weight_is_the_slope_of_the_potential_energy) {
     });
 }
 
-TEST(Omni, says_what_a_real_one_reported_in_its_inkwell) {
-    // Joint and gimbal angles, and the transform in columns, as its maker's software gave them.
+TEST(Omni, agrees_with_a_real_one_in_its_inkwell) {
+    // Joint and gimbal angles and the transform by columns, as the manufacturer's software reported them.
     const ArmKinematics arm = sample::arm("omni");
     const Joint6 q = joints(0.0, 0.26889, -0.370813, 0.000108409, 0.797273, -1.94046);
     Eigen::Matrix3d reported;
@@ -286,8 +286,8 @@ TEST(Omni, says_what_a_real_one_reported_in_its_inkwell) {
     EXPECT_LT((back - q).norm(), 1e-9);
 }
 
-// Makers' figures for the resolution at the tip: 0.055 mm and 0.03 mm. They hold in the reset pose.
-TEST(Encoders, one_step_moves_the_tip_by_the_resolution_that_is_promised) {
+// The manufacturers specify a resolution of 0.055 mm and 0.03 mm at the tip; it applies to the reset pose.
+TEST(Encoders, one_step_moves_the_tip_by_the_specified_resolution) {
     const auto step_mm = [](const char* model) {
         const ArmKinematics arm = sample::arm(model);
         double most = 0.0;
@@ -306,7 +306,7 @@ TEST(Encoders, one_step_moves_the_tip_by_the_resolution_that_is_promised) {
     EXPECT_NEAR(six.turn_step_rad(Joint6::Zero()) * 180.0 / M_PI, 0.0080, 1e-6);
 }
 
-TEST(Weight, of_a_premium_15_is_that_of_the_published_masses) {
+TEST(Weight, of_a_premium_15_follows_from_the_published_masses) {
     const double g = 9.81, l1 = 0.215, l2 = 0.170, l3 = 0.0325, l5 = -0.0368, l6 = 0.0527;
     const double a = 0.0202, c = 0.0249, be = 0.2359, df = 0.1906;
     const Joint6 tau = sample::arm("premium-1.5").gravity_n_m(joints(0.0, 0.0, M_PI / 2));
@@ -314,12 +314,12 @@ TEST(Weight, of_a_premium_15_is_that_of_the_published_masses) {
     EXPECT_NEAR(tau[2], 0.5 * g * (l2 * a + 2 * l3 * c - 2 * l6 * df), 5e-4);
 }
 
-TEST(Gimbal, a_pitch_beyond_90_degrees_comes_back_as_it_is) {
+TEST(Gimbal, a_pitch_beyond_90_degrees_gives_the_same_pose) {
     const ArmKinematics arm = sample::arm("premium-1.5-6dof");
     const Joint6 q = joints(0.1, 0.2, 0.3, 0.4, 2.0, -0.5);
     Joint6 back;
     ASSERT_TRUE(arm.inverse(arm.pose(q), back));
-    // 2 rad and its twin with less than 90 degrees are both within the ends: either has the same pose.
+    // 2 rad and its equivalent below 90 degrees are both within the limits: either gives the same pose.
     EXPECT_LT(arm.pose(back).q.angularDistance(arm.pose(q).q), 1e-9);
     const Joint6 locked = joints(0.1, 0.2, 0.3, 0.4, M_PI / 2, -0.5);
     ASSERT_TRUE(arm.inverse(arm.pose(locked), back));
@@ -337,7 +337,7 @@ TEST(Gimbal, a_torque_at_the_stylus_loads_turret_and_shin_too) {
     EXPECT_NEAR(right[4], -0.1, 1e-15);
 }
 
-TEST(Gimbal, without_motors_no_torque_is_tried_for) {
+TEST(Gimbal, without_motors_there_is_no_torque) {
     const ArmKinematics arm = sample::arm("omni");
     EXPECT_EQ(arm.torque_n_m(joints(0.1, 0.2, 0.3), {Vec3::Zero(), Vec3(0.1, 0.2, 0.3)}), Joint6::Zero());
 }

@@ -1,4 +1,4 @@
-// Arms for tests: the table's models, with made-up figures where nobody knows them.
+// Arms for tests: the models of the table, with made-up values for unknown parameters.
 #pragma once
 
 #include "hal/arm/arm_kinematics.hpp"

@@ -1,4 +1,4 @@
-// The table of arms: complete where it says so, refused in words where it is not, documented as it is.
+// The table of arms: complete entries, clear errors for missing ones, and documentation that matches.
 #include "hal/arm/arm_table.hpp"
 
 #include <gtest/gtest.h>
@@ -32,7 +32,7 @@ TEST(ArmTable, a_premium_15_needs_no_configuration) {
     EXPECT_EQ(p.rad_per_count[4], 0.0);
 }
 
-TEST(ArmTable, what_nobody_knows_is_asked_for_by_its_keys) {
+TEST(ArmTable, unknown_parameters_are_requested_by_their_keys) {
     EXPECT_TRUE(
         says(error_of(arm_parameter_set("desktop")),
              {"desktop", "thigh_mm", "counts_per_turn", "drive_ratio", "current_a_max", "fix:", "[arm]"}));
@@ -48,7 +48,7 @@ TEST(ArmTable, what_nobody_knows_is_asked_for_by_its_keys) {
     }
 }
 
-TEST(ArmTable, an_arm_that_is_not_in_it_is_refused_with_those_that_are) {
+TEST(ArmTable, an_unknown_arm_is_refused_with_the_known_ones) {
     try {
         static_cast<void>(arm_parameter_set("delta"));
         FAIL();
@@ -57,7 +57,7 @@ TEST(ArmTable, an_arm_that_is_not_in_it_is_refused_with_those_that_are) {
     }
 }
 
-TEST(ArmTable, figures_that_contradict_each_other_are_refused) {
+TEST(ArmTable, contradictory_parameters_are_refused) {
     const auto with = [](auto&& change) {
         ArmParameterSet f = arm_parameter_set("premium-1.5");
         change(f);
@@ -76,7 +76,7 @@ TEST(ArmTable, figures_that_contradict_each_other_are_refused) {
     EXPECT_TRUE(says(with([](ArmParameterSet& f) { f.elbow_deg[0].value = 75.0; }), {"elbow_deg"}));
 }
 
-TEST(ArmTable, every_figure_lies_within_what_its_key_allows) {
+TEST(ArmTable, every_parameter_lies_in_the_range_of_its_key) {
     for (const std::string& model : arm_models()) {
         ArmParameterSet f = arm_parameter_set(model);
         for (const ArmKey& key : arm_keys(f)) {
@@ -90,7 +90,7 @@ TEST(ArmTable, every_figure_lies_within_what_its_key_allows) {
     }
 }
 
-TEST(ArmTable, the_calibrating_pose_lies_within_the_joints_ends) {
+TEST(ArmTable, the_calibration_pose_lies_within_the_joint_limits) {
     for (const std::string& model : arm_models()) {
         const ArmKinematics arm = sample::arm(model);
         EXPECT_GE(arm.configuration(arm.parameters().calibration_rad).to_limit_rad, 0.0) << model;

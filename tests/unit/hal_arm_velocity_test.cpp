@@ -1,4 +1,4 @@
-// Speed from stepped positions: compared with the truth, at rest and in motion, at times that are not even.
+// Velocity from quantised positions against the true velocity, at rest and in motion, with uneven sample times.
 #include "hal/arm/velocity.hpp"
 
 #include <gtest/gtest.h>
@@ -24,12 +24,12 @@ using std::chrono::milliseconds;
 Instant at_us(double us) { return instant_from_ns(1'000'000'000 + std::llround(us * 1e3)); }
 double stepped(double x, double step) { return std::round(x / step) * step; }
 
-TEST(Velocity, at_rest_it_is_exactly_zero) {
+TEST(Velocity, is_exactly_zero_at_rest) {
     VelocityWindow v;
     for (int i = 0; i < 200; ++i) EXPECT_EQ(v.push(12345.0, at_us(1000.0 * i)), 0.0);
 }
 
-TEST(Velocity, at_rest_on_the_edge_between_two_steps_it_stays_below_two_steps_a_window) {
+TEST(Velocity, at_rest_between_two_steps_it_stays_below_two_steps_per_window) {
     for (const double period_us : {125.0, 250.0, 1000.0, 2000.0}) {
         VelocityWindow v;
         std::mt19937_64 random(7);
@@ -42,7 +42,7 @@ TEST(Velocity, at_rest_on_the_edge_between_two_steps_it_stays_below_two_steps_a_
     }
 }
 
-TEST(Velocity, at_constant_speed_the_whole_window_is_used_and_the_error_is_below_two_steps_of_it) {
+TEST(Velocity, at_constant_speed_it_uses_the_whole_window_with_an_error_below_two_steps) {
     for_all([] {
         const double speed = *rc::gen::inRange(-200'000, 200'001) * 0.01;  // steps a second
         const double offset = *rc::gen::inRange(0, 1000) * 1e-3;
@@ -59,7 +59,7 @@ TEST(Velocity, at_constant_speed_the_whole_window_is_used_and_the_error_is_below
     });
 }
 
-// A Premium's 0.03 mm at 1 kHz, a hand that goes to and fro by 2 cm twice a second: 0.25 m/s, 3.2 m/s^2.
+// A Premium's 0.03 mm at 1 kHz; a hand that moves by 2 cm at 2 Hz: 0.25 m/s, 3.2 m/s^2.
 struct Errors {
     double rms = 0.0, worst = 0.0;
 };
@@ -84,7 +84,7 @@ Errors against_truth(Estimate&& estimate, double period_us, double jitter_us) {
     return e;
 }
 
-TEST(Velocity, of_a_moving_hand_it_is_closer_to_the_truth_than_differences_or_a_low_pass) {
+TEST(Velocity, in_motion_it_beats_finite_differences_and_a_low_pass) {
     for (const double jitter_us : {0.0, 300.0}) {
         VelocityWindow window(3e-5);
         const Errors ours =
@@ -112,12 +112,12 @@ TEST(Velocity, of_a_moving_hand_it_is_closer_to_the_truth_than_differences_or_a_
     }
 }
 
-TEST(Velocity, a_start_from_rest_shows_at_once_and_a_stop_ends_within_a_window) {
+TEST(Velocity, a_start_appears_at_once_and_a_stop_within_a_window) {
     VelocityWindow v(3e-5);
     double t_us = 0.0, x = 0.0;
     for (int i = 0; i < 100; ++i, t_us += 1000.0) v.push(0.0, at_us(t_us));
     for (int i = 1; i <= 5; ++i, t_us += 1000.0) {
-        x += 0.2e-3;  // 0.2 m/s from one sample to the next
+        x += 0.2e-3;  // 0.2 m/s from this sample on
         const double now = v.push(stepped(x, 3e-5), at_us(t_us));
         if (i >= 2) {
             EXPECT_NEAR(now, 0.2, 0.05) << i;
@@ -127,7 +127,7 @@ TEST(Velocity, a_start_from_rest_shows_at_once_and_a_stop_ends_within_a_window) 
     EXPECT_EQ(v.per_s(), 0.0);
 }
 
-TEST(Velocity, never_beyond_what_two_neighbouring_samples_could_mean) {
+TEST(Velocity, stays_within_the_range_that_two_consecutive_samples_allow) {
     for_all([] {
         VelocityWindow v;
         double t_us = 0.0, x = 0.0;
@@ -145,7 +145,7 @@ TEST(Velocity, never_beyond_what_two_neighbouring_samples_could_mean) {
     });
 }
 
-TEST(Velocity, time_that_stands_still_runs_back_or_leaps_does_no_harm) {
+TEST(Velocity, time_that_stops_runs_back_or_jumps_does_no_harm) {
     VelocityWindow v;
     EXPECT_EQ(v.push(0.0, at_us(0)), 0.0);
     EXPECT_NEAR(v.push(10.0, at_us(1000)), 1e4, 1e-6);
@@ -153,10 +153,10 @@ TEST(Velocity, time_that_stands_still_runs_back_or_leaps_does_no_harm) {
     EXPECT_EQ(v.push(50.0, at_us(1000)), before);
     EXPECT_EQ(v.push(50.0, at_us(500)), before);
     EXPECT_EQ(v.push(std::numeric_limits<double>::quiet_NaN(), at_us(2000)), before);
-    EXPECT_EQ(v.push(1e9, at_us(1e6)), 0.0);  // after a second nobody knows how it got there
+    EXPECT_EQ(v.push(1e9, at_us(1e6)), 0.0);  // after a gap of a second the speed is unknown
 }
 
-TEST(ArmVelocity, the_tip_and_its_turning_come_from_the_same_encoders) {
+TEST(ArmVelocity, linear_and_angular_velocity_come_from_the_same_encoders) {
     const ArmKinematics arm = sample::arm("premium-1.5-6dof");
     ArmVelocity velocity(arm);
     const Counts6 zero{100, 200, 300, 400, 500, 600};

@@ -1,4 +1,4 @@
-// How a Falcon gets its firmware, and what is said when it does not.
+// Loading of a Falcon's firmware, and the errors if it fails.
 #include "hal/falcon/boot.hpp"
 
 #include <gtest/gtest.h>
@@ -19,14 +19,14 @@ using emu::LockstepFalcon;
 using falcon::Link;
 using usb::BusFault;
 
-TEST(FtdiPieces, lose_their_status_and_damaged_ones_everything) {
+TEST(FtdiPieces, drop_their_status_and_damaged_ones_all_bytes) {
     const auto piece = [](std::initializer_list<int> values) {
         static std::vector<std::byte> packet;
         packet.clear();
         for (const int v : values) packet.push_back(static_cast<std::byte>(v));
         return falcon::ftdi::piece_of(packet);
     };
-    EXPECT_TRUE(piece({0x31, 0x60}).bytes.empty());  // the usual, with nothing to say
+    EXPECT_TRUE(piece({0x31, 0x60}).bytes.empty());  // a status without data
     EXPECT_FALSE(piece({0x31, 0x60}).damaged);
     ASSERT_EQ(piece({0x31, 0x60, 'A', 'B'}).bytes.size(), 2U);
     EXPECT_EQ(piece({0x31, 0x60, 'A', 'B'}).bytes[0], std::byte{'A'});
@@ -57,7 +57,7 @@ protected:
     [[nodiscard]] std::string path(const std::string& name = "firmware.bin") const {
         return (folder_ / name).string();
     }
-    // What open() says; "" where it opens.
+    // Returns the error of open(), or "" on success.
     static std::string opening(LockstepFalcon& arm) {
         try {
             static_cast<void>(arm.open_only());
@@ -70,15 +70,15 @@ protected:
     std::filesystem::path folder_;
 };
 
-TEST_F(FalconBoot, firmware_that_runs_is_left_as_it_is_and_no_file_is_needed) {
+TEST_F(FalconBoot, running_firmware_is_kept_and_no_file_is_needed) {
     LockstepFalcon arm;
     arm.board().push_through();
     EXPECT_EQ(opening(arm), "");
     EXPECT_EQ(arm.board().loads, 0U);
-    EXPECT_EQ(arm.board().homed, falcon::kHomedAll);  // it was not started anew
+    EXPECT_EQ(arm.board().homed, falcon::kHomedAll);  // no restart
 }
 
-TEST_F(FalconBoot, the_owners_file_goes_through_the_loader_to_the_last_byte) {
+TEST_F(FalconBoot, the_firmware_file_is_loaded_to_the_last_byte) {
     for (const std::size_t size : {1U, 61U, 62U, 63U, 700U}) {
         const std::vector<std::byte> firmware = FalconBoard::firmware_of(size);
         LockstepFalcon arm(write("some.bin", firmware));
@@ -90,14 +90,14 @@ TEST_F(FalconBoot, the_owners_file_goes_through_the_loader_to_the_last_byte) {
     }
 }
 
-TEST_F(FalconBoot, hellos_that_are_missed_are_said_again) {
+TEST_F(FalconBoot, a_missed_hello_is_repeated) {
     LockstepFalcon arm(path());
     arm.board().runs = false;
     arm.board().hellos_missed = 7;
     EXPECT_EQ(opening(arm), "");
 }
 
-TEST_F(FalconBoot, a_byte_that_comes_back_wrong_begins_the_load_anew) {
+TEST_F(FalconBoot, a_wrong_echo_restarts_the_load) {
     LockstepFalcon arm(path());
     arm.board().runs = false;
     arm.board().wrong_echo_at = 321;
@@ -107,7 +107,7 @@ TEST_F(FalconBoot, a_byte_that_comes_back_wrong_begins_the_load_anew) {
     EXPECT_EQ(arm.board().loads, 1U);
 }
 
-TEST_F(FalconBoot, what_fails_is_said_with_its_mend) {
+TEST_F(FalconBoot, failures_are_reported_with_a_fix) {
     LockstepFalcon none;
     none.board().runs = false;
     EXPECT_TRUE(says(opening(none), {"FA-1", "no firmware", "fix: set device.firmware"}));
@@ -115,45 +115,45 @@ TEST_F(FalconBoot, what_fails_is_said_with_its_mend) {
     wrong.board().runs = false;
     wrong.board().wrong_echo_at = 5;
     wrong.board().wrong_echoes = 100;
-    EXPECT_TRUE(says(opening(wrong), {"gives the firmware's bytes back wrong", "fix:"}));
+    EXPECT_TRUE(says(opening(wrong), {"echoes wrong firmware bytes", "fix:"}));
     EXPECT_EQ(wrong.board().wrong_echoes, 97U);
     LockstepFalcon dead(path());
     dead.board().runs = false;
     dead.board().hellos_missed = 1'000'000;
-    EXPECT_TRUE(says(opening(dead), {"its loader does not answer", "power supply"}));
+    EXPECT_TRUE(says(opening(dead), {"the boot loader does not answer", "power supply"}));
     LockstepFalcon stops(path());
     stops.board().runs = false;
     stops.board().mute = true;
     EXPECT_TRUE(says(opening(stops), {"stopped in the middle"}));
     LockstepFalcon other(path());
     other.board().runs = false;
-    other.board().firmware.push_back(std::byte{0});  // it would wait for more
-    EXPECT_TRUE(says(opening(other), {"took the firmware, which then does not answer"}));
+    other.board().firmware.push_back(std::byte{0});  // the board expects one more byte
+    EXPECT_TRUE(says(opening(other), {"accepted the firmware, but the firmware does not answer"}));
     LockstepFalcon stubborn(path());
     stubborn.board().refuses_settings = true;
-    EXPECT_TRUE(says(opening(stubborn), {"serial converter does not take its settings"}));
+    EXPECT_TRUE(says(opening(stubborn), {"serial converter does not accept its settings"}));
 }
 
-TEST_F(FalconBoot, a_file_that_is_not_there_empty_or_too_large_is_an_error_before_the_bus_is_touched) {
+TEST_F(FalconBoot, a_missing_empty_or_too_large_file_is_an_error_before_bus_access) {
     write("empty.bin", {});
     write("large.bin", std::vector<std::byte>(falcon::kFirmwareBytesMax + 1));
     for (const auto& [name, why] :
-         {std::pair{"missing.bin", "No such file"}, std::pair{"empty.bin", "nothing in it"},
+         {std::pair{"missing.bin", "No such file"}, std::pair{"empty.bin", "the file is empty"},
           std::pair{"large.bin", "more than 131072 bytes"}}) {
         LockstepFalcon arm(path(name));
-        EXPECT_TRUE(says(opening(arm), {name, why, "fix: device.firmware"})) << name;
+        EXPECT_TRUE(says(opening(arm), {name, why, "fix: set device.firmware"})) << name;
         EXPECT_EQ(arm.board().opens, 0U);
     }
     LockstepFalcon folder(folder_.string());
-    EXPECT_TRUE(says(opening(folder), {"fix: device.firmware"}));
+    EXPECT_TRUE(says(opening(folder), {"fix: set device.firmware"}));
     write("largest.bin", std::vector<std::byte>(falcon::kFirmwareBytesMax));
     EXPECT_EQ(falcon::read_firmware(path("largest.bin")).size(), falcon::kFirmwareBytesMax);
 }
 
-TEST_F(FalconBoot, what_the_bus_finds_is_said_with_its_mend) {
+TEST_F(FalconBoot, bus_faults_are_reported_with_a_fix) {
     for (const auto& [fault, why] :
          {std::pair{BusFault::missing, "0403:cb48"}, std::pair{BusFault::several, "device.serial"},
-          std::pair{BusFault::twins, "two have this serial"},
+          std::pair{BusFault::twins, "two devices have this serial number"},
           std::pair{BusFault::denied, "install.sh --rights"}, std::pair{BusFault::busy, "lsof"},
           std::pair{BusFault::failed, "dmesg"}}) {
         LockstepFalcon arm;
@@ -162,7 +162,7 @@ TEST_F(FalconBoot, what_the_bus_finds_is_said_with_its_mend) {
     }
 }
 
-TEST_F(FalconBoot, replugged_it_gets_its_firmware_again_and_with_a_jump_too) {
+TEST_F(FalconBoot, firmware_is_reloaded_after_replugging_and_after_a_jump) {
     LockstepFalcon arm(path());
     static_cast<void>(arm.open());
     arm.board().unplug();
@@ -174,7 +174,7 @@ TEST_F(FalconBoot, replugged_it_gets_its_firmware_again_and_with_a_jump_too) {
     arm.board().push_through();
     for (int i = 0; i < 20; ++i) arm.cycle({});
     ASSERT_TRUE(arm.sample.hand_present);
-    // What a jump leaves is not believed: the device starts anew, and wants its marks again.
+    // After a jump the counts are invalid: the device restarts and must find its reference marks again.
     arm.board().shift = {500, 500, 500};
     for (int i = 0; i < 8000 && arm.board().loads < 2; ++i) arm.cycle({});
     for (int i = 0; i < 500; ++i) arm.cycle({});
@@ -183,16 +183,16 @@ TEST_F(FalconBoot, replugged_it_gets_its_firmware_again_and_with_a_jump_too) {
     EXPECT_EQ(arm.sample.notice, DeviceNotice::move_about);
 }
 
-TEST_F(FalconBoot, one_that_cannot_be_started_again_is_tried_again_and_never_shows_a_force) {
+TEST_F(FalconBoot, a_failed_restart_is_retried_without_force) {
     LockstepFalcon arm;
     static_cast<void>(arm.open());
     arm.board().unplug();
     for (int i = 0; i < 10; ++i) arm.cycle({});
-    arm.board().plug();  // without firmware now, and none is configured
+    arm.board().plug();  // now without firmware, and none is configured
     for (int i = 0; i < 4000; ++i) arm.cycle({.wrench_dev = {}, .enable = true});
     EXPECT_NE(arm.news().link, Link::open);
     EXPECT_EQ(arm.sample.notice, DeviceNotice::gone);
-    arm.board().runs = true;  // somebody else gave it its firmware
+    arm.board().runs = true;  // another program loaded the firmware
     for (int i = 0; i < 4000 && arm.news().link != Link::open; ++i) arm.cycle({});
     EXPECT_EQ(arm.news().link, Link::open);
 }

@@ -1,5 +1,5 @@
-// The Falcon's legs: there and back, the Jacobian and the motors' steps against differences and virtual work,
-// and what is no configuration.
+// The Falcon's legs: forward and inverse kinematics, Jacobian and motor torques against finite differences and virtual
+// work, and invalid configurations.
 #include "hal/falcon/kinematics.hpp"
 
 #include <gtest/gtest.h>
@@ -28,8 +28,7 @@ protected:
     const Kinematics k_;
 };
 
-// A leg built by hand in the plane where it does not lean: thigh, short pieces and shin in one line after the
-// other, as the drawings have them.
+// A leg built in its own plane: thigh, short links and shin in series, as in the drawings.
 TEST_F(FalconKinematics, a_leg_is_the_chain_of_its_parts) {
     const Geometry g;
     everywhere(3, [&](const Vec3& p) {
@@ -41,7 +40,7 @@ TEST_F(FalconKinematics, a_leg_is_the_chain_of_its_parts) {
             const Vec3 hip = radial * g.base_m + across * g.base_across_m;
             const Vec3 knee = hip + g.thigh_m * (radial * std::cos(a) + out * std::sin(a));
             const Vec3 end = p + out * g.middle_z_m + radial * g.grip_m + across * g.grip_across_m;
-            // The short pieces point along the shin's shadow on the leg's plane.
+            // The short links point along the projection of the shin onto the leg's plane.
             const Vec3 way = end - knee;
             const Vec3 shadow = (way - across * way.dot(across)).normalized();
             EXPECT_NEAR((way - shadow * g.ends_m).norm(), g.shin_m, 1e-12) << i << ": " << p.transpose();
@@ -49,7 +48,7 @@ TEST_F(FalconKinematics, a_leg_is_the_chain_of_its_parts) {
     });
 }
 
-TEST_F(FalconKinematics, forward_is_the_inverse_of_inverse_from_anywhere_in_the_workspace) {
+TEST_F(FalconKinematics, forward_inverts_inverse_from_anywhere_in_the_workspace) {
     std::mt19937 random(7);
     std::uniform_real_distribution<double> in(-kHalf, kHalf);
     double worst = 0.0;
@@ -64,7 +63,7 @@ TEST_F(FalconKinematics, forward_is_the_inverse_of_inverse_from_anywhere_in_the_
     EXPECT_LT(worst, 1e-9);
 }
 
-TEST_F(FalconKinematics, the_jacobian_is_that_of_finite_differences) {
+TEST_F(FalconKinematics, the_jacobian_matches_finite_differences) {
     constexpr double kStep = 1e-6;
     everywhere(3, [&](const Vec3& p) {
         const ArmConfiguration here = k_.configuration(p);
@@ -79,8 +78,8 @@ TEST_F(FalconKinematics, the_jacobian_is_that_of_finite_differences) {
     });
 }
 
-// A step of torque at the motors and a force at the grip do the same work on any small way.
-TEST_F(FalconKinematics, the_motors_do_the_work_that_the_force_does) {
+// Motor torques and the force at the grip do the same work for any small displacement.
+TEST_F(FalconKinematics, the_motors_do_the_work_of_the_force) {
     const Geometry g;
     const Vec3 force(0.8, -1.1, 0.6);
     everywhere(3, [&](const Vec3& p) {
@@ -90,10 +89,10 @@ TEST_F(FalconKinematics, the_motors_do_the_work_that_the_force_does) {
         EXPECT_EQ(d.share, 1.0);
         for (const Vec3& way : {Vec3(1e-6, 0.0, 0.0), Vec3(0.0, 1e-6, 0.0), Vec3(0.0, 0.0, 1e-6)}) {
             const Vec3 turned = angles(p + way) - angles(p - way);
-            double work = 0.0;  // against the encoders' way
+            double work = 0.0;  // motor torque counts against the encoders
             for (std::size_t i = 0; i < 3; ++i)
                 work -= d.torque[i] * g.motor_n_m_per_step * g.gear * turned[static_cast<Eigen::Index>(i)];
-            // Half a step of each motor is what rounding can do.
+            // Rounding changes each motor by at most half a step.
             const double rounding = 0.5 * g.motor_n_m_per_step * g.gear * turned.cwiseAbs().sum();
             EXPECT_NEAR(work, 2.0 * force.dot(way), rounding + 1e-12) << p.transpose();
         }
@@ -101,7 +100,7 @@ TEST_F(FalconKinematics, the_motors_do_the_work_that_the_force_does) {
     });
 }
 
-TEST_F(FalconKinematics, a_push_to_the_user_turns_all_thighs_alike_and_outwards) {
+TEST_F(FalconKinematics, a_force_towards_the_user_turns_all_thighs_equally_outwards) {
     const ArmConfiguration here = k_.configuration(Vec3::Zero());
     const Drive d = k_.drive(here, Vec3(0.0, 0.0, 1.0));
     EXPECT_EQ(d.torque[0], d.torque[1]);
@@ -113,7 +112,7 @@ TEST_F(FalconKinematics, a_push_to_the_user_turns_all_thighs_alike_and_outwards)
     EXPECT_NEAR(farther.head<2>().norm(), 0.0, 1e-12);
 }
 
-TEST_F(FalconKinematics, a_force_that_is_too_much_is_shortened_and_keeps_its_direction) {
+TEST_F(FalconKinematics, a_force_beyond_the_limit_is_reduced_and_keeps_its_direction) {
     everywhere(2, [&](const Vec3& p) {
         const ArmConfiguration here = k_.configuration(p);
         for (const Vec3& f : {Vec3(100.0, -30.0, 20.0), Vec3(0.0, 8.0, 0.0), Vec3(-6.0, 0.0, 6.0)}) {
@@ -127,10 +126,10 @@ TEST_F(FalconKinematics, a_force_that_is_too_much_is_shortened_and_keeps_its_dir
     });
 }
 
-TEST_F(FalconKinematics, one_count_moves_the_grip_by_no_more_than_the_resolution_it_tells) {
+TEST_F(FalconKinematics, one_count_moves_the_grip_by_the_reported_resolution) {
     const double step = k_.position_step_m();
     EXPECT_GT(step, 30e-6);
-    EXPECT_LT(step, 63e-6);  // its maker's 400 dots an inch
+    EXPECT_LT(step, 63e-6);  // the manufacturer's 400 dpi
     const Counts3 middle = k_.counts(angles(Vec3::Zero()));
     Vec3 here;
     ASSERT_TRUE(k_.forward(k_.angles_rad(middle), Vec3::Zero(), here));
@@ -141,7 +140,7 @@ TEST_F(FalconKinematics, one_count_moves_the_grip_by_no_more_than_the_resolution
         ASSERT_TRUE(k_.forward(k_.angles_rad(next), here, there));
         EXPECT_NEAR((there - here).norm(), step, 0.02 * step);
     }
-    // The counts of a place lead back to within half a step of each leg.
+    // Counts of a position lead back to it within half a step of each leg.
     everywhere(4, [&](const Vec3& p) {
         Vec3 back;
         ASSERT_TRUE(k_.forward(k_.angles_rad(k_.counts(angles(p))), p, back));
@@ -151,11 +150,11 @@ TEST_F(FalconKinematics, one_count_moves_the_grip_by_no_more_than_the_resolution
     });
 }
 
-TEST_F(FalconKinematics, what_is_no_posture_is_refused_and_gives_no_force) {
+TEST_F(FalconKinematics, an_invalid_configuration_is_refused_and_gives_no_force) {
     Vec3 kept(1.0, 2.0, 3.0);
     EXPECT_FALSE(k_.inverse(Vec3(0.3, 0.0, 0.0), kept));
     EXPECT_FALSE(k_.inverse(Vec3(0.0, 0.0, 0.2), kept));
-    // One thigh in, two out by more than the shins reach.
+    // One thigh in, two out by more than the shins can reach.
     EXPECT_FALSE(k_.forward(k_.angles_rad({-2600, 2600, 2600}), Vec3::Zero(), kept));
     const double nan = std::nan("");
     EXPECT_FALSE(k_.forward(Vec3(nan, 0.0, 0.0), Vec3::Zero(), kept));
@@ -167,8 +166,8 @@ TEST_F(FalconKinematics, what_is_no_posture_is_refused_and_gives_no_force) {
     EXPECT_FALSE(k_.drive(k_.configuration(Vec3(0.3, 0.0, 0.0)), Vec3(1.0, 0.0, 0.0)).valid);
 }
 
-// Along the axis to the user both kinds are met: the grip gives way far out, the shins are stretched far in.
-TEST_F(FalconKinematics, towards_a_singularity_the_posture_turns_bad_before_the_numbers_do) {
+// The axis towards the user has both singularities: the grip gives way far out, the shins are stretched far in.
+TEST_F(FalconKinematics, near_a_singularity_the_configuration_is_flagged_before_numbers_degrade) {
     bool was_good = false, turned_bad_near = false, turned_bad_far = false;
     for (double z = -0.07; z < 0.08; z += 1e-4) {
         const ArmConfiguration q = k_.configuration(Vec3(0.0, 0.0, z));
@@ -185,12 +184,12 @@ TEST_F(FalconKinematics, towards_a_singularity_the_posture_turns_bad_before_the_
     everywhere(5, [&](const Vec3& p) { EXPECT_TRUE(k_.configuration(p).good) << p.transpose(); });
 }
 
-TEST_F(FalconKinematics, any_counts_at_all_give_a_place_within_reach_or_none) {
+TEST_F(FalconKinematics, any_counts_give_a_reachable_position_or_none) {
     std::mt19937 random(3);
     std::uniform_int_distribution<int> any(-32768, 32767);
     for (int i = 0; i < 20000; ++i) {
         Counts3 c;
-        const int span = i % 2 == 0 ? 1 : 12;  // half of them near what a Falcon can do
+        const int span = i % 2 == 0 ? 1 : 12;  // half of them near the range of a Falcon
         for (std::int16_t& n : c) n = static_cast<std::int16_t>(any(random) / span);
         Vec3 p = Vec3::Constant(9.0);
         if (!k_.forward(k_.angles_rad(c), Vec3::Zero(), p)) continue;

@@ -1,4 +1,4 @@
-// The Falcon's packets: as they lie on the wire, there and back, and what of a stream is refused.
+// The Falcon's packets: wire format, round trips, and rejected parts of a stream.
 #include "hal/falcon/packets.hpp"
 
 #include <gtest/gtest.h>
@@ -23,8 +23,8 @@ std::vector<std::byte> bytes(const std::string& s) {
     return out;
 }
 
-TEST(FalconPackets, lie_on_the_wire_as_the_public_protocol_has_them) {
-    // 0x0123, -1, 0x7FFF: lowest digit first, four bits and 'A' each.
+TEST(FalconPackets, follow_the_public_protocol) {
+    // 0x0123, -1, 0x7FFF: lowest digit first, each digit four bits plus 'A'.
     EXPECT_EQ(text(encode(Request{{0x0123, -1, 0x7FFF}, led::kRed, true})), "<DCBAPPPPPPPHJA>");
     EXPECT_EQ(text(encode(Request{})), "<AAAAAAAAAAAAAA>");
     EXPECT_EQ(text(encode(Request{{}, 0xFF, false})), "<AAAAAAAAAAAAOA>");
@@ -37,7 +37,7 @@ TEST(FalconPackets, lie_on_the_wire_as_the_public_protocol_has_them) {
     EXPECT_EQ(r, (Reply{{}, 4, kHomedAll}));
 }
 
-TEST(FalconPackets, whatever_is_encoded_is_decoded_again) {
+TEST(FalconPackets, round_trip_through_encode_and_decode) {
     EXPECT_TRUE(rc::check([](std::array<std::int16_t, 3> v, std::uint8_t bits) {
         const Request request{v, static_cast<std::uint8_t>(bits & led::kAll), (bits & 1U) != 0};
         Request request_again;
@@ -51,7 +51,7 @@ TEST(FalconPackets, whatever_is_encoded_is_decoded_again) {
     }));
 }
 
-TEST(FalconPackets, a_byte_out_of_its_range_is_refused_and_nothing_is_taken) {
+TEST(FalconPackets, a_byte_out_of_range_is_refused_and_changes_nothing) {
     const auto good = encode(Reply{{100, -200, 300}, 5, 3});
     const Reply before{{7, 7, 7}, 7, 7};
     for (std::size_t i = 0; i < good.size(); ++i) {
@@ -61,7 +61,7 @@ TEST(FalconPackets, a_byte_out_of_its_range_is_refused_and_nothing_is_taken) {
             Reply r = before;
             const PacketFault fault = decode(bad, r);
             const bool digit = i >= 1 && i <= 12, inside = v >= 'A' && v <= 'P';
-            PacketFault expected = PacketFault::none;  // what byte 14 is for is not known
+            PacketFault expected = PacketFault::none;  // the meaning of byte 14 is unknown
             if ((i == 0 || i == 15) && bad != good) expected = PacketFault::frame;
             if (digit && !inside) expected = PacketFault::digit;
             if (i == 13 && (v < 'A' || v >= 'A' + 128)) expected = PacketFault::bits;
@@ -84,7 +84,7 @@ TEST(FalconPackets, a_byte_out_of_its_range_is_refused_and_nothing_is_taken) {
 
 class Stream : public testing::Test {
 protected:
-    // The replies that come out of these bytes.
+    // Returns the replies decoded from these bytes.
     std::vector<Reply> feed(const std::string& s) {
         std::vector<Reply> out;
         Reply r;
@@ -103,7 +103,7 @@ protected:
                       two_ = text(encode(Reply{{4, 5, 6}, 1, 7}));
 };
 
-TEST_F(Stream, finds_replies_whatever_pieces_they_come_in) {
+TEST_F(Stream, finds_replies_in_any_fragmentation) {
     EXPECT_EQ(feed(one_ + two_).size(), 2U);
     EXPECT_TRUE(feed(one_.substr(0, 5)).empty());
     const auto rest = feed(one_.substr(5));
@@ -114,7 +114,7 @@ TEST_F(Stream, finds_replies_whatever_pieces_they_come_in) {
 }
 
 TEST_F(Stream, a_short_packet_is_refused_and_the_next_one_is_found) {
-    // Packets of fourteen bytes have been seen on real devices.
+    // Real devices send packets of fourteen bytes now and then.
     EXPECT_EQ(feed(one_.substr(0, 13) + ">" + two_).size(), 1U);
     EXPECT_EQ(refused(), 1U);
     EXPECT_EQ(feed(one_.substr(0, 9) + two_).size(), 1U);
@@ -123,13 +123,13 @@ TEST_F(Stream, a_short_packet_is_refused_and_the_next_one_is_found) {
     EXPECT_EQ(stream_.counts().skipped, 4U);
 }
 
-TEST_F(Stream, a_packet_without_its_end_is_refused_also_where_the_next_begins_there) {
+TEST_F(Stream, a_packet_without_end_is_refused_and_the_next_one_is_found) {
     EXPECT_EQ(feed(one_.substr(0, 15) + two_).size(), 1U);
     EXPECT_EQ(feed(one_.substr(0, 15) + "A" + two_).size(), 1U);
     EXPECT_EQ(refused(), 2U);
 }
 
-TEST_F(Stream, noise_costs_at_most_the_packets_that_it_touches) {
+TEST_F(Stream, noise_loses_only_the_packets_that_it_hits) {
     EXPECT_TRUE(rc::check([this](const std::vector<std::uint8_t>& noise) {
         ReplyStream s;
         Reply r;
@@ -143,7 +143,7 @@ TEST_F(Stream, noise_costs_at_most_the_packets_that_it_touches) {
     }));
 }
 
-TEST_F(Stream, reset_forgets_half_a_packet) {
+TEST_F(Stream, reset_discards_half_a_packet) {
     feed(one_.substr(0, 8));
     stream_.reset();
     EXPECT_TRUE(feed(one_.substr(8)).empty());

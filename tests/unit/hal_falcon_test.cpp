@@ -1,4 +1,4 @@
-// The driver of the Falcon against one made of memory: the contract, the marks, its faults, and its thread.
+// The driver of the Falcon on an emulated device: the contract, the reference marks, faults, and the thread.
 #include "hal/falcon/falcon.hpp"
 
 #include <gtest/gtest.h>
@@ -53,7 +53,7 @@ protected:
     const DeviceCommand on_{.wrench_dev = {Vec3(0.0, 0.0, 0.2), Vec3::Zero()}, .enable = true};
 };
 
-TEST_F(FalconArm, until_its_marks_are_found_it_asks_for_them_and_shows_no_force) {
+TEST_F(FalconArm, without_its_marks_it_requests_motion_and_shows_no_force) {
     info_ = arm_.open_only();
     EXPECT_EQ(info_.serial, "FA-1");
     EXPECT_EQ(info_.torque_n_m_max, 0.0);
@@ -68,7 +68,7 @@ TEST_F(FalconArm, until_its_marks_are_found_it_asks_for_them_and_shows_no_force)
         EXPECT_EQ(arm_.sample.T_dev_tool.p_m, Vec3(Vec3::Zero()));
         EXPECT_EQ(board().leds, falcon::led::kRed);
     }
-    // Enable that was up all the time is no edge.
+    // An enable that was up all the time is not an edge.
     board().push_through();
     run(20, on_);
     EXPECT_TRUE(powerless());
@@ -79,12 +79,12 @@ TEST_F(FalconArm, until_its_marks_are_found_it_asks_for_them_and_shows_no_force)
     EXPECT_EQ(board().leds, falcon::led::kGreen);
 }
 
-TEST_F(FalconArm, gives_the_grips_position_and_speed) {
+TEST_F(FalconArm, gives_position_and_speed_of_the_grip) {
     start();
     for (int i = 0; i < 60; ++i) {
         const Vec3 before = board().grip_m();
         run(1, {.wrench_dev = {Vec3(0.5, -0.3, 0.4), Vec3::Zero()}, .enable = true});
-        // A reply is the position of up to a cycle ago.
+        // A reply has the position of up to a cycle ago.
         const double way = (board().grip_m() - before).norm();
         EXPECT_LT((arm_.sample.T_dev_tool.p_m - board().grip_m()).norm(), 2.0 * way + 1e-4);
     }
@@ -96,7 +96,7 @@ TEST_F(FalconArm, gives_the_grips_position_and_speed) {
     EXPECT_EQ(arm_.sample.twist_dev.angular_rad_s, Vec3(Vec3::Zero()));
 }
 
-TEST_F(FalconArm, force_goes_the_way_it_was_asked_for_and_its_size_is_right) {
+TEST_F(FalconArm, force_has_the_requested_direction_and_size) {
     start();
     for (const Vec3& f : {Vec3(0.5, 0.0, 0.0), Vec3(0.0, 0.5, 0.0), Vec3(0.0, 0.0, -0.5)}) {
         run(5, {.wrench_dev = {f, Vec3(9.0, 9.0, 9.0)}, .enable = true});
@@ -104,7 +104,7 @@ TEST_F(FalconArm, force_goes_the_way_it_was_asked_for_and_its_size_is_right) {
     }
 }
 
-TEST_F(FalconArm, torque_never_passes_what_the_motors_stand) {
+TEST_F(FalconArm, torque_never_exceeds_the_motor_limit) {
     start();
     for (int i = 0; i < 30; ++i) {
         arm_.cycle(
@@ -113,7 +113,7 @@ TEST_F(FalconArm, torque_never_passes_what_the_motors_stand) {
     }
 }
 
-TEST_F(FalconArm, buttons_come_with_the_middle_one_as_the_clutch) {
+TEST_F(FalconArm, buttons_are_reported_with_the_middle_one_as_clutch) {
     start();
     for (const auto& [of_reply, of_sample] :
          {std::pair{0U, 0U}, std::pair{4U, 1U}, std::pair{1U, 2U}, std::pair{2U, 4U}, std::pair{8U, 8U}}) {
@@ -123,13 +123,13 @@ TEST_F(FalconArm, buttons_come_with_the_middle_one_as_the_clutch) {
     }
 }
 
-TEST_F(FalconArm, the_delay_is_that_to_the_second_reply_after) {
+TEST_F(FalconArm, the_delay_lasts_until_the_second_reply) {
     start();
     run(20, on_);
     EXPECT_EQ(arm_.sample.delay, milliseconds(2));
 }
 
-TEST_F(FalconArm, ten_milliseconds_without_the_servo_put_zero_on_the_wire_until_a_new_edge) {
+TEST_F(FalconArm, ten_milliseconds_without_the_servo_give_zero_force_until_a_new_edge) {
     start();
     for (int i = 0; i < 8; ++i) arm_.pass(milliseconds(1));
     EXPECT_FALSE(powerless());
@@ -142,20 +142,20 @@ TEST_F(FalconArm, ten_milliseconds_without_the_servo_put_zero_on_the_wire_until_
     EXPECT_FALSE(powerless());
 }
 
-TEST_F(FalconArm, a_zero_that_is_due_does_not_wait_for_a_reply) {
+TEST_F(FalconArm, a_zero_is_sent_without_waiting_for_a_reply) {
     start();
     board().reply_after = milliseconds(6);
     arm_.cycle(on_);
     const unsigned before = board().requests;
     arm_.cycle(on_);
-    ASSERT_EQ(board().requests, before);  // one on its way
+    ASSERT_EQ(board().requests, before);  // a request is pending
     arm_.relax();
     arm_.pass(milliseconds(1));
     EXPECT_TRUE(powerless());
     EXPECT_EQ(board().requests, before + 1);
 }
 
-TEST_F(FalconArm, corrupt_replies_are_counted_and_never_a_position_or_a_force) {
+TEST_F(FalconArm, corrupt_replies_are_counted_and_change_neither_position_nor_force) {
     start();
     run(20, {});
     const Vec3 before = arm_.sample.T_dev_tool.p_m;
@@ -179,8 +179,8 @@ TEST_F(FalconArm, corrupt_replies_are_counted_and_never_a_position_or_a_force) {
     EXPECT_FALSE(powerless());
 }
 
-// There is no checksum: a digit may turn into another one.
-TEST_F(FalconArm, a_plausible_packet_with_counts_that_no_leg_can_have_gone_to_is_left_out) {
+// Packets have no checksum, so a digit may change into another valid one.
+TEST_F(FalconArm, a_valid_packet_with_impossible_counts_is_ignored) {
     start();
     run(20, {});
     const Vec3 before = arm_.sample.T_dev_tool.p_m;
@@ -202,7 +202,7 @@ TEST_F(FalconArm, a_plausible_packet_with_counts_that_no_leg_can_have_gone_to_is
     EXPECT_FALSE(powerless());
 }
 
-TEST_F(FalconArm, encoders_that_stay_where_no_leg_can_have_gone_to_are_a_jump_that_drops_the_force) {
+TEST_F(FalconArm, persistent_impossible_counts_are_a_jump_that_drops_the_force) {
     start();
     board().shift = {400, -300, 350};
     run(30, on_);
@@ -211,7 +211,7 @@ TEST_F(FalconArm, encoders_that_stay_where_no_leg_can_have_gone_to_are_a_jump_th
     EXPECT_EQ(arm_.news().counts.jumps, 1U);
     run(100, on_);
     EXPECT_TRUE(powerless());
-    // Without its firmware it could not be started anew: its marks are not believed until it has lost them.
+    // Without firmware to reload, the driver cannot restart it: marks stay invalid until the device has lost them.
     rearm();
     EXPECT_TRUE(powerless());
     EXPECT_EQ(arm_.sample.notice, DeviceNotice::move_about);
@@ -223,10 +223,10 @@ TEST_F(FalconArm, encoders_that_stay_where_no_leg_can_have_gone_to_are_a_jump_th
     EXPECT_FALSE(powerless());
 }
 
-TEST_F(FalconArm, counts_that_no_grip_can_have_are_lost_ones) {
+TEST_F(FalconArm, impossible_combinations_of_counts_are_lost_counts) {
     start();
     run(30, {});
-    // Slowly enough for legs, into what they cannot be together.
+    // Each leg moves at a possible speed, into a combination that the legs cannot have.
     for (int i = 0; i < 60; ++i) {
         board().shift = {static_cast<std::int16_t>(-40 * i), static_cast<std::int16_t>(40 * i),
                          static_cast<std::int16_t>(40 * i)};
@@ -239,7 +239,7 @@ TEST_F(FalconArm, counts_that_no_grip_can_have_are_lost_ones) {
     EXPECT_FALSE(arm_.sample.hand_present);
 }
 
-TEST_F(FalconArm, marks_that_are_lost_drop_the_force_until_they_are_found_again_and_a_person_rearms) {
+TEST_F(FalconArm, lost_marks_drop_the_force_until_found_again_and_re_armed) {
     start();
     board().homed = 5;
     run(3, on_);
@@ -253,12 +253,12 @@ TEST_F(FalconArm, marks_that_are_lost_drop_the_force_until_they_are_found_again_
     EXPECT_FALSE(powerless());
 }
 
-TEST_F(FalconArm, silence_drops_the_force_and_is_asked_again) {
+TEST_F(FalconArm, silence_drops_the_force_and_the_request_is_repeated) {
     start();
     board().mute = true;
     run(30, on_);
     EXPECT_EQ(arm_.sample.notice, DeviceNotice::silent);
-    EXPECT_TRUE(powerless());  // it still hears
+    EXPECT_TRUE(powerless());  // it still receives
     EXPECT_GT(arm_.news().counts.late, 0U);
     board().mute = false;
     run(50, on_);
@@ -267,7 +267,7 @@ TEST_F(FalconArm, silence_drops_the_force_and_is_asked_again) {
     EXPECT_FALSE(powerless());
 }
 
-TEST_F(FalconArm, a_reply_that_comes_too_late_is_not_taken_for_the_next_one) {
+TEST_F(FalconArm, a_late_reply_is_not_taken_for_the_next_one) {
     start();
     run(20, {});
     board().late_bytes_survive = true;
@@ -283,7 +283,7 @@ TEST_F(FalconArm, a_reply_that_comes_too_late_is_not_taken_for_the_next_one) {
     EXPECT_GT(arm_.news().counts.unasked, 0U);
 }
 
-TEST_F(FalconArm, unplugged_it_is_lost_and_comes_back_without_force_and_without_its_marks) {
+TEST_F(FalconArm, after_replugging_it_returns_without_force_and_without_marks) {
     start();
     board().unplug();
     run(3, on_);
@@ -308,7 +308,7 @@ TEST_F(FalconArm, unplugged_it_is_lost_and_comes_back_without_force_and_without_
     EXPECT_FALSE(powerless());
 }
 
-TEST_F(FalconArm, a_device_that_does_not_take_its_requests_is_looked_for_anew) {
+TEST_F(FalconArm, a_device_that_takes_no_requests_is_reopened) {
     start();
     board().deaf = true;
     run(1000, on_);
@@ -320,7 +320,7 @@ TEST_F(FalconArm, a_device_that_does_not_take_its_requests_is_looked_for_anew) {
     EXPECT_EQ(arm_.news().link, Link::open);
     EXPECT_TRUE(powerless());
     rearm();
-    EXPECT_FALSE(powerless());  // it kept its power, and with it its marks
+    EXPECT_FALSE(powerless());  // it kept its power, and so its marks
 }
 
 TEST_F(FalconArm, a_stall_is_cleared) {
@@ -332,7 +332,7 @@ TEST_F(FalconArm, a_stall_is_cleared) {
     EXPECT_FALSE(powerless());
 }
 
-TEST_F(FalconArm, many_bad_packets_are_said) {
+TEST_F(FalconArm, many_bad_packets_are_reported) {
     start();
     for (int i = 0; i < 1500; ++i) {
         if (i % 8 == 0) {
@@ -343,10 +343,10 @@ TEST_F(FalconArm, many_bad_packets_are_said) {
     }
     run(30, {});
     EXPECT_EQ(arm_.sample.notice, DeviceNotice::states_refused);
-    EXPECT_NE(summary(arm_.news().counts).find("refused for their frame"), std::string::npos);
+    EXPECT_NE(summary(arm_.news().counts).find("refused: frame"), std::string::npos);
 }
 
-// With its own thread and the machine's clock: what passes between the threads, and the end of it.
+// With its own thread and the real clock: data between the threads, and the end of the thread.
 TEST(FalconThread, reads_writes_relaxes_and_ends_while_the_pump_runs) {
     auto owned = std::make_unique<FalconBoard>();
     FalconBoard& board = *owned;
@@ -354,7 +354,7 @@ TEST(FalconThread, reads_writes_relaxes_and_ends_while_the_pump_runs) {
     board.run_in_real_time();
     FalconSettings settings;
     settings.pump_priority = 0;
-    settings.hold_max = std::chrono::seconds(60);  // nothing here depends on the machine's pace
+    settings.hold_max = std::chrono::seconds(60);  // no timing of the test machine may matter
     auto device = std::make_unique<Falcon>(settings, std::move(owned));
     device->relax();
     static_cast<void>(device->open());

@@ -1,4 +1,4 @@
-// The judgement over the safety lines, over all pairs of events, in simulated time.
+// The logic of the safety inputs, over all pairs of events, in simulated time.
 #include "hal/io/line_logic.hpp"
 
 #include <gtest/gtest.h>
@@ -13,7 +13,7 @@ constexpr Duration kMs = std::chrono::milliseconds(1);
 constexpr std::uint8_t kAll = kLineStopA | kLineStopB | kLineDeadMan | kLineAmplifier;
 constexpr LineLogicSettings kFitted{.fitted = kAll};
 
-// The lines, a person and a servo that wants the amplifier on whenever it may.
+// The inputs, a person, and a servo that enables the amplifier whenever it may.
 struct Bench {
     explicit Bench(const LineLogicSettings& settings = kFitted) : logic(settings) {}
     void look() {
@@ -37,7 +37,7 @@ struct Bench {
     LineLogic logic;
     LineReading in{.good = true};
     std::uint8_t wiring = kAll;
-    int amplifier = 0;  // follows; -1: off, 1: on whatever is wanted
+    int amplifier = 0;  // 0: follows enable; -1: always off; 1: always on
     std::uint64_t rearms = 0, drops = 0;
     bool enabled = false;
     Instant now = instant_from_ns(5'000'000'000);
@@ -46,7 +46,7 @@ struct Bench {
 struct Event {
     const char* name;
     void (*happen)(Bench&);
-    LinesCause cause;  // none: nothing stops because of it
+    LinesCause cause;  // none: no stop
     bool lasts;        // until fixed
 };
 void open(Bench& b, int bits) { b.wiring = static_cast<std::uint8_t>(b.wiring & ~bits); }
@@ -67,14 +67,14 @@ constexpr std::array kEvents{
 };
 
 void fix(Bench& b) {
-    open(b, kLineStopA | kLineStopB);  // as a person does who presses and pulls the button
+    open(b, kLineStopA | kLineStopB);  // as a person who presses and releases the button
     b.in.good = true;
     b.amplifier = 0;
     b.looks(50);
     b.wiring = kAll;
 }
 
-TEST(LineLogic, every_pair_of_events_stops_in_the_look_that_sees_it_and_nothing_but_a_re_arm_permits_again) {
+TEST(LineLogic, every_pair_of_events_stops_at_once_and_only_a_re_arm_permits_again) {
     for (const Event& a : kEvents) {
         for (const Event& b : kEvents) {
             for (const int between : {0, 1, 10, 29, 30, 31, 60}) {
@@ -93,7 +93,7 @@ TEST(LineLogic, every_pair_of_events_stops_in_the_look_that_sees_it_and_nothing_
                 b.happen(bench);
                 bench.look();
                 const bool stops = a.cause != LinesCause::none || b.cause != LinesCause::none;
-                // Re-armed after a stop that is over and long enough ago: what a person may do.
+                // A re-arm is accepted after a stop that has ended long enough ago.
                 const bool again = b.cause == LinesCause::none && b.name == std::string("re-armed") &&
                                    !a.lasts && between >= 32;
                 if (!stops) {
@@ -121,7 +121,7 @@ TEST(LineLogic, every_pair_of_events_stops_in_the_look_that_sees_it_and_nothing_
     }
 }
 
-TEST(LineLogic, of_two_events_in_one_look_the_graver_is_the_cause) {
+TEST(LineLogic, of_two_simultaneous_events_the_more_severe_is_the_cause) {
     for (const Event& a : kEvents) {
         for (const Event& b : kEvents) {
             if (a.cause == LinesCause::none || b.cause == LinesCause::none) continue;
@@ -135,7 +135,7 @@ TEST(LineLogic, of_two_events_in_one_look_the_graver_is_the_cause) {
     }
 }
 
-TEST(LineLogic, contacts_have_to_stand_for_the_release_time_without_a_break) {
+TEST(LineLogic, contacts_must_stay_closed_for_the_release_time) {
     Bench bench;
     bench.permit();
     open(bench, kLineDeadMan);
@@ -149,11 +149,11 @@ TEST(LineLogic, contacts_have_to_stand_for_the_release_time_without_a_break) {
     }
     bench.looks(30);
     EXPECT_EQ(bench.logic.state(), LinesState::stopped);
-    bench.look();  // 30 ms after the first good look
+    bench.look();  // 30 ms after the first good sample
     EXPECT_EQ(bench.logic.state(), LinesState::waiting);
 }
 
-TEST(LineLogic, a_re_arm_while_something_stops_is_used_up) {
+TEST(LineLogic, a_re_arm_during_a_stop_has_no_effect) {
     Bench bench;
     bench.permit();
     open(bench, kLineDeadMan);
@@ -167,12 +167,12 @@ TEST(LineLogic, a_re_arm_while_something_stops_is_used_up) {
     EXPECT_EQ(bench.logic.state(), LinesState::waiting);
 }
 
-TEST(LineLogic, channels_that_differ_for_too_long_are_believed_only_after_both_were_open) {
+TEST(LineLogic, disagreeing_channels_are_accepted_only_after_both_were_open) {
     for (const int open_first : {int{kLineStopA}, int{kLineStopB}}) {
         Bench bench;
         bench.permit();
         open(bench, open_first);
-        bench.looks(21);  // the first look begins the time; 20 ms are still allowed
+        bench.looks(21);  // the first sample starts the time; 20 ms are allowed
         EXPECT_EQ(bench.logic.cause(), LinesCause::emergency_stop);
         bench.look();
         EXPECT_EQ(bench.logic.cause(), LinesCause::channels_disagree);
@@ -189,7 +189,7 @@ TEST(LineLogic, channels_that_differ_for_too_long_are_believed_only_after_both_w
     }
 }
 
-TEST(LineLogic, channels_that_open_one_after_the_other_within_the_time_are_an_ordinary_stop) {
+TEST(LineLogic, channels_that_open_in_sequence_within_the_time_are_an_ordinary_stop) {
     Bench bench;
     bench.permit();
     open(bench, kLineStopA);
@@ -204,7 +204,7 @@ TEST(LineLogic, channels_that_open_one_after_the_other_within_the_time_are_an_or
     EXPECT_EQ(bench.logic.state(), LinesState::waiting);
 }
 
-TEST(LineLogic, an_amplifier_that_does_not_follow_the_enable_line_stops_after_its_time) {
+TEST(LineLogic, an_amplifier_that_does_not_follow_enable_stops_after_its_time) {
     Bench off;
     off.permit();
     off.looks(10);
@@ -215,13 +215,13 @@ TEST(LineLogic, an_amplifier_that_does_not_follow_the_enable_line_stops_after_it
     EXPECT_EQ(off.logic.cause(), LinesCause::amplifier);
     Bench on;
     on.looks(200);
-    on.amplifier = 1;  // though nobody enabled it: a welded relay
+    on.amplifier = 1;  // without enable: a welded relay
     on.looks(102);
     EXPECT_EQ(on.logic.state(), LinesState::stopped);
     EXPECT_EQ(on.logic.cause(), LinesCause::amplifier);
 }
 
-TEST(LineLogic, what_is_not_fitted_stops_nothing) {
+TEST(LineLogic, inputs_that_are_not_fitted_stop_nothing) {
     Bench bench({.fitted = kLineStopA});
     bench.wiring = kLineStopA;
     bench.permit();

@@ -1,5 +1,4 @@
-// The contract of safety lines, held by the emulated ones in lockstep and by a pump's thread on an emulated
-// board.
+// The contract of safety inputs and outputs: the emulated ones in lockstep, and a pump thread on an emulated board.
 #include "tests/contract/lines_contract.hpp"
 
 #include <poll.h>
@@ -43,7 +42,7 @@ INSTANTIATE_TEST_SUITE_P(Lockstep, LinesContract,
 INSTANTIATE_TEST_SUITE_P(Thread, LinesContract,
                          testing::Values(LinesCase{"thread", [] { return std::make_unique<ThreadRig>(); }}));
 
-TEST(SimLines, a_contact_that_opened_between_two_looks_stops) {
+TEST(SimLines, a_contact_that_opened_between_two_samples_stops) {
     SimLines lines;
     static_cast<void>(lines.open());
     Instant now = instant_from_ns(1'000'000'000);
@@ -64,7 +63,7 @@ TEST(SimLines, a_contact_that_opened_between_two_looks_stops) {
     EXPECT_EQ(s.cause, LinesCause::emergency_stop);
 }
 
-TEST(SimLines, of_a_controller_are_stopped_and_released_by_signals) {
+TEST(SimLines, signals_stop_and_release_the_inputs_of_a_controller) {
     LinesSettings settings;
     settings.driver = "sim";
     const std::unique_ptr<Lines> lines = make_lines(settings);
@@ -89,7 +88,7 @@ TEST(SimLines, of_a_controller_are_stopped_and_released_by_signals) {
     EXPECT_EQ(s.cause, LinesCause::emergency_stop);
     ++command.rearm;
     ticks(100);
-    EXPECT_EQ(s.state, LinesState::stopped);  // while it is pressed, whatever a person does
+    EXPECT_EQ(s.state, LinesState::stopped);  // while it is pressed, despite re-arming
     raise(SIGUSR2);
     ticks(100);
     EXPECT_EQ(s.state, LinesState::waiting);

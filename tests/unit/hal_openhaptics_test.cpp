@@ -1,4 +1,4 @@
-// The maker's library behind the contract: on a stand-in that is loaded as the real one would be.
+// The manufacturer's library behind the contract: a stand-in that is loaded like the real one.
 #include "hal/openhaptics/open_haptics.hpp"
 
 #include <dlfcn.h>
@@ -28,7 +28,7 @@ FakeHd& fake() {
     return *f;
 }
 
-// Time passes only here, and for each millisecond the library makes one cycle.
+// Time advances only here; the library runs one cycle per millisecond.
 class TickingClock final : public Clock {
 public:
     Instant now() noexcept override { return now_; }
@@ -112,10 +112,10 @@ protected:
     DeviceCommand command;
 };
 
-TEST_F(OpenHapticsTest, a_library_that_is_not_there_is_said_with_every_place_that_was_looked_in) {
+TEST_F(OpenHapticsTest, a_missing_library_is_reported_with_all_searched_paths) {
     try {
         const hd::Library library("");
-        GTEST_SKIP() << "the maker's library is installed here: " << library.path();
+        GTEST_SKIP() << "the manufacturer's library is installed here: " << library.path();
     } catch (const StartupError& e) {
         EXPECT_TRUE(says(e.what(), {"libHD.so", "/usr/lib/libHD.so", "fix:", "device.hd_library"}))
             << e.what();
@@ -128,7 +128,7 @@ TEST_F(OpenHapticsTest, a_library_that_is_not_there_is_said_with_every_place_tha
     }
 }
 
-TEST_F(OpenHapticsTest, a_library_without_one_of_the_functions_is_refused_by_both_names) {
+TEST_F(OpenHapticsTest, a_library_without_a_function_is_refused_with_both_names) {
     try {
         const hd::Library library(TACT_FAKE_HD_OLD);
         ADD_FAILURE();
@@ -137,7 +137,7 @@ TEST_F(OpenHapticsTest, a_library_without_one_of_the_functions_is_refused_by_bot
     }
 }
 
-TEST_F(OpenHapticsTest, millimetres_and_columns_become_a_pose_about_the_middle_of_the_workspace) {
+TEST_F(OpenHapticsTest, millimetres_and_columns_become_a_pose_about_the_workspace_centre) {
     open();
     EXPECT_EQ(info.name, "Fake Arm by OpenHaptics");
     EXPECT_EQ(info.workspace_half_m, Vec3(0.080, 0.060, 0.035));
@@ -160,7 +160,7 @@ TEST_F(OpenHapticsTest, millimetres_and_columns_become_a_pose_about_the_middle_o
     EXPECT_FALSE(sample.hand_present);
 }
 
-TEST_F(OpenHapticsTest, velocity_comes_in_metres_and_the_force_within_what_the_arm_can_show) {
+TEST_F(OpenHapticsTest, velocity_is_in_metres_per_second_and_the_force_within_the_limit) {
     open();
     power();
     cycles(500, Vec3(1.0, 0.0, 0.0), true);
@@ -189,7 +189,7 @@ struct Error {
     bool ends;
 };
 
-TEST_F(OpenHapticsTest, every_error_drops_the_force_in_its_tick_is_counted_and_needs_a_new_enable_edge) {
+TEST_F(OpenHapticsTest, every_error_drops_the_force_at_once_and_needs_a_new_enable_edge) {
     using Kind = hd::FaultKind;
     for (const Error& e :
          {Error{0x200, Kind::motors_warm, false}, Error{0x201, Kind::limit, false},
@@ -212,7 +212,7 @@ TEST_F(OpenHapticsTest, every_error_drops_the_force_in_its_tick_is_counted_and_n
         EXPECT_EQ(c.faults[static_cast<std::size_t>(e.kind)], 1U);
         EXPECT_EQ(c.last_code, e.code);
         EXPECT_EQ(c.last_kind, e.kind);
-        // Neither time nor enable that is up all along brings it back.
+        // The force stays off over time while enable stays up.
         EXPECT_EQ(cycles(300, Vec3(1.0, 0.0, 0.0), true), e.ends ? IoStatus::lost : IoStatus::fault);
         EXPECT_EQ(shown(), Vec3::Zero());
         cycles(200, Vec3(1.0, 0.0, 0.0), false);
@@ -234,7 +234,7 @@ TEST_F(OpenHapticsTest, every_error_drops_the_force_in_its_tick_is_counted_and_n
     }
 }
 
-TEST_F(OpenHapticsTest, a_fault_that_stays_is_not_left_and_an_edge_during_it_counts_for_nothing) {
+TEST_F(OpenHapticsTest, a_fault_persists_with_its_cause_and_ignores_an_edge) {
     open();
     power();
     fake().always = true;
@@ -251,7 +251,7 @@ TEST_F(OpenHapticsTest, a_fault_that_stays_is_not_left_and_an_edge_during_it_cou
     power();
 }
 
-TEST_F(OpenHapticsTest, a_servo_that_stands_still_for_ten_milliseconds_is_answered_with_zero) {
+TEST_F(OpenHapticsTest, a_servo_stopped_for_ten_milliseconds_gives_zero_force) {
     open();
     power();
     clock.wait_until(clock.now() + milliseconds(9));
@@ -263,7 +263,7 @@ TEST_F(OpenHapticsTest, a_servo_that_stands_still_for_ten_milliseconds_is_answer
     EXPECT_EQ(device->counts().watchdog_trips, 1U);
 }
 
-TEST_F(OpenHapticsTest, relax_needs_a_new_edge_although_enable_stayed_up) {
+TEST_F(OpenHapticsTest, after_relax_a_new_enable_edge_is_required) {
     open();
     power();
     device->relax();
@@ -273,7 +273,7 @@ TEST_F(OpenHapticsTest, relax_needs_a_new_edge_although_enable_stayed_up) {
     power();
 }
 
-TEST_F(OpenHapticsTest, poses_that_cannot_be_are_refused_counted_and_grow_old) {
+TEST_F(OpenHapticsTest, impossible_poses_are_refused_and_counted_and_the_last_one_ages) {
     for (auto* const spoil : {&fake().not_a_number, &fake().no_rotation}) {
         fake().reset();
         open();
@@ -300,7 +300,7 @@ TEST_F(OpenHapticsTest, a_scheduler_that_stops_calling_is_a_lost_device) {
     EXPECT_EQ(device->write(command, clock.now()), IoStatus::lost);
 }
 
-TEST_F(OpenHapticsTest, an_arm_that_calibrates_itself_is_updated_and_is_ready) {
+TEST_F(OpenHapticsTest, a_self_calibrating_arm_is_updated_and_ready) {
     fake().needs_update = true;
     open();
     cycles(3, Vec3::Zero(), false);
@@ -310,7 +310,7 @@ TEST_F(OpenHapticsTest, an_arm_that_calibrates_itself_is_updated_and_is_ready) {
     power();
 }
 
-TEST_F(OpenHapticsTest, before_it_is_calibrated_it_stands_at_the_origin_without_hand_and_force_and_asks) {
+TEST_F(OpenHapticsTest, before_calibration_it_is_at_the_origin_without_hand_and_force) {
     fake().styles = hd::kStyleInkwell;
     fake().needs_manual = true;
     fake().position_mm[0] = 12.0;
@@ -330,10 +330,10 @@ TEST_F(OpenHapticsTest, before_it_is_calibrated_it_stands_at_the_origin_without_
     cycles(3, Vec3(1.0, 0.0, 0.0), true);
     EXPECT_EQ(sample.notice, DeviceNotice::none);
     EXPECT_TRUE(sample.hand_present);
-    EXPECT_EQ(sample.state, DeviceState::powered);  // a person enabled it before, and it never fell
+    EXPECT_EQ(sample.state, DeviceState::powered);  // enable was set before and never fell
 }
 
-TEST_F(OpenHapticsTest, an_enable_that_fell_before_the_calibration_or_was_relaxed_brings_nothing) {
+TEST_F(OpenHapticsTest, an_enable_dropped_or_relaxed_before_calibration_powers_nothing) {
     for (const bool relax : {false, true}) {
         fake().reset();
         fake().styles = hd::kStyleInkwell;
@@ -358,12 +358,12 @@ TEST_F(OpenHapticsTest, an_enable_that_fell_before_the_calibration_or_was_relaxe
 TEST_F(OpenHapticsTest, the_reset_pose_is_confirmed_by_a_button_after_half_a_second_of_rest) {
     fake().styles = hd::kStyleEncoderReset;
     fake().needs_manual = true;
-    fake().buttons = 1;  // down from the start
+    fake().buttons = 1;  // pressed from the start
     open();
     cycles(1000, Vec3::Zero(), false);
     EXPECT_EQ(sample.notice, DeviceNotice::hold_reset_pose);
     fake().buttons = 0;
-    for (int i = 0; i < 1000; ++i) {  // an arm that moves
+    for (int i = 0; i < 1000; ++i) {  // the arm moves
         fake().position_mm[1] = 0.02 * i;
         fake().buttons = i % 100 == 99 ? 1 : 0;
         cycle(Vec3::Zero(), false);
@@ -377,7 +377,7 @@ TEST_F(OpenHapticsTest, the_reset_pose_is_confirmed_by_a_button_after_half_a_sec
     EXPECT_EQ(sample.notice, DeviceNotice::none);
 }
 
-TEST_F(OpenHapticsTest, under_force_nothing_is_calibrated_and_lost_counts_are_a_fault_that_asks_again) {
+TEST_F(OpenHapticsTest, no_calibration_under_force_and_lost_counts_request_a_new_one) {
     fake().styles = hd::kStyleInkwell;
     open();
     power();
@@ -402,8 +402,8 @@ TEST_F(OpenHapticsTest, under_force_nothing_is_calibrated_and_lost_counts_are_a_
     power();
 }
 
-// The force of the cycle after a sample moves the sample after that; 2 periods more are the estimate.
-TEST_F(OpenHapticsTest, the_delay_is_the_ticks_that_are_seen_and_two_periods_of_the_reported_rate) {
+// The force of the cycle after a sample moves the next sample; the driver adds an estimate of 2 periods.
+TEST_F(OpenHapticsTest, the_delay_is_the_measured_ticks_plus_two_periods_of_the_reported_rate) {
     struct Row {
         int reported_hz;
         Duration delay;
@@ -420,7 +420,7 @@ TEST_F(OpenHapticsTest, the_delay_is_the_ticks_that_are_seen_and_two_periods_of_
     }
 }
 
-TEST_F(OpenHapticsTest, what_keeps_it_from_opening_is_said_with_its_mend) {
+TEST_F(OpenHapticsTest, open_errors_are_reported_with_a_fix) {
     fake().init_error = 0x600;
     EXPECT_TRUE(
         says(refusal(), {"default haptic device", "no licence", "0x600", "fix:", "device.hd_device"}));
@@ -429,24 +429,24 @@ TEST_F(OpenHapticsTest, what_keeps_it_from_opening_is_said_with_its_mend) {
     EXPECT_TRUE(says(refusal(), {"0x302", "cable"}));
     fake().reset();
     fake().never_calls = true;
-    EXPECT_TRUE(says(refusal(), {"called for no cycle"}));
+    EXPECT_TRUE(says(refusal(), {"started no cycle"}));
     fake().reset();
     fake().not_a_number = true;
     EXPECT_TRUE(says(refusal(), {"no usable position"}));
     fake().reset();
     fake().force_n_max = std::nan("");
-    EXPECT_TRUE(says(refusal(), {"of no arm there is"}));
+    EXPECT_TRUE(says(refusal(), {"is not plausible"}));
     fake().reset();
     fake().raise(0x304);
-    EXPECT_TRUE(says(refusal(), {"scheduler broke off", "fix:"}));
+    EXPECT_TRUE(says(refusal(), {"scheduler stopped", "fix:"}));
     fake().reset();
     fake().model = "Evil\x1b[2J";
     open();
     EXPECT_EQ(info.name, "Evil?[2J by OpenHaptics");
 }
 
-// The library's thread and the servo's, as they really are.
-TEST_F(OpenHapticsTest, samples_and_forces_cross_between_the_threads) {
+// The library's thread and the servo's thread, as in reality.
+TEST_F(OpenHapticsTest, samples_and_forces_pass_between_the_threads) {
     fake().threaded = true;
     OpenHapticsSettings s = settings();
     s.first_sample_max = std::chrono::seconds(60);

@@ -1,5 +1,4 @@
-// The packets of an arm's board: round trips, layout, every flipped bit, order, versions, and its state
-// machine.
+// Packets of an arm's board: round trips, layout, single-bit errors, order, versions, and the amplifier's state machine.
 #include "hal/phantom/packets.hpp"
 
 #include <gtest/gtest.h>
@@ -79,7 +78,7 @@ void every_flipped_bit_is_refused(const Packet& packet) {
     EXPECT_EQ(decode(longer, out), PacketFault::size);
 }
 
-TEST(Packets, come_back_as_they_were_sent) {
+TEST(Packets, round_trip_unchanged) {
     EXPECT_TRUE(rc::check([] {
         const State s = drawn_state();
         State s_out;
@@ -101,7 +100,7 @@ TEST(Packets, every_single_flipped_bit_and_every_wrong_size_is_refused) {
     every_flipped_bit_is_refused(an_info());
 }
 
-TEST(Packets, lie_in_memory_as_the_document_says) {
+TEST(Packets, match_the_documented_layout) {
     State s;
     s.sequence = 0x04030201;
     s.counts[0] = -2;
@@ -127,7 +126,7 @@ TEST(Packets, lie_in_memory_as_the_document_says) {
     EXPECT_EQ(encode(Command{}).size(), 32U);
 }
 
-// By a slow one, bit by bit, from the polynomial: "123456789" has 0xCBF43926.
+// A slow reference, bit by bit, from the polynomial; "123456789" gives 0xCBF43926.
 std::uint32_t slow_crc(std::span<const std::byte> bytes) {
     std::uint32_t c = 0xFFFFFFFFU;
     for (const std::byte b : bytes) {
@@ -156,7 +155,7 @@ void reseal(std::array<std::byte, N>& b) {
     for (std::size_t i = 0; i < 4; ++i) b[N - 4 + i] = static_cast<std::byte>((c >> (8 * i)) & 0xFFU);
 }
 
-TEST(Packets, a_right_checksum_does_not_make_another_kind_version_or_reserved_bit_good) {
+TEST(Packets, a_valid_checksum_does_not_excuse_a_wrong_kind_version_or_reserved_bit) {
     State s;
     Command c;
     Info i;
@@ -190,7 +189,7 @@ TEST(Packets, a_right_checksum_does_not_make_another_kind_version_or_reserved_bi
     EXPECT_EQ(decode(info, i), PacketFault::version);
 }
 
-TEST(Versions, the_highest_that_both_speak_is_taken) {
+TEST(Versions, the_highest_common_version_is_used) {
     Info device;
     device.version_low = 2;
     device.version_high = 4;
@@ -216,7 +215,7 @@ TEST(Sequence, repeated_stale_and_lost_packets_are_counted_across_the_wrap) {
     }
 }
 
-TEST(Sequence, a_clock_that_does_not_go_on_is_refused_and_may_wrap) {
+TEST(Sequence, a_clock_that_does_not_advance_is_refused_and_may_wrap) {
     SequenceGate gate;
     EXPECT_EQ(gate.check(1, 1, 0xFFFFFF00U), Order::taken);
     EXPECT_EQ(gate.check(1, 2, 0xFFFFFF00U), Order::clock);
@@ -225,7 +224,7 @@ TEST(Sequence, a_clock_that_does_not_go_on_is_refused_and_may_wrap) {
     EXPECT_EQ(gate.counts().clock, 2U);
 }
 
-TEST(Sequence, a_device_that_restarted_stays_refused_until_somebody_begins_anew) {
+TEST(Sequence, a_restarted_device_is_refused_until_reset) {
     SequenceGate gate;
     EXPECT_EQ(gate.check(1, 500, 10), Order::taken);
     EXPECT_EQ(gate.check(2, 501, 20), Order::restarted);
@@ -261,7 +260,7 @@ public:
     std::uint32_t now_us;
 };
 
-TEST(Amplifier, an_enable_edge_powers_it_and_nothing_else_does) {
+TEST(Amplifier, only_an_enable_edge_powers_it) {
     Board b;
     EXPECT_TRUE(b.send(true));  // up from the start: no edge
     EXPECT_TRUE(b.powerless());
@@ -270,7 +269,7 @@ TEST(Amplifier, an_enable_edge_powers_it_and_nothing_else_does) {
     b.send(true);
     EXPECT_EQ(b.amplifier.state(), AmplifierState::on);
     EXPECT_EQ(b.amplifier.current_ma()[0], 300);
-    EXPECT_EQ(b.amplifier.current_ma()[5], 100);  // its own limit
+    EXPECT_EQ(b.amplifier.current_ma()[5], 100);  // this motor's own limit
     EXPECT_EQ(b.amplifier.status(), status::kAmplifierOn);
     b.send(false);
     EXPECT_TRUE(b.powerless());
@@ -300,14 +299,14 @@ TEST(Amplifier, a_command_that_comes_after_the_watchdog_does_not_undo_it) {
     Board b;
     b.send(false);
     b.send(true);
-    b.now_us += 50'000;  // nobody ticked meanwhile
+    b.now_us += 50'000;  // without ticks meanwhile
     b.command.sequence += 1;
     b.command.heartbeat += 1;
     EXPECT_TRUE(b.amplifier.receive(encode(b.command), b.now_us));
     EXPECT_TRUE(b.powerless());
 }
 
-TEST(Amplifier, corrupt_repeated_stale_and_foreign_commands_and_a_frozen_heartbeat_are_silence) {
+TEST(Amplifier, corrupt_repeated_stale_foreign_and_frozen_commands_count_as_silence) {
     const auto trips = [](auto&& spoil) {
         Board b;
         b.send(false);
@@ -349,7 +348,7 @@ TEST(Amplifier, corrupt_repeated_stale_and_foreign_commands_and_a_frozen_heartbe
     EXPECT_EQ(b.amplifier.state(), AmplifierState::tripped);
 }
 
-TEST(Amplifier, a_fault_is_latched_until_its_cause_is_gone_and_enable_was_low) {
+TEST(Amplifier, a_fault_is_latched_until_its_cause_ends_and_enable_was_low) {
     for (const std::uint16_t cause : {status::kOverTemperature, status::kBrownOut, status::kSafetyOpen}) {
         Board b;
         b.send(false);
@@ -359,7 +358,7 @@ TEST(Amplifier, a_fault_is_latched_until_its_cause_is_gone_and_enable_was_low) {
         b.wait(100, cause);
         b.command.enable = false;
         ++b.command.sequence;
-        b.amplifier.receive(encode(b.command), b.now_us);  // while the cause is there
+        b.amplifier.receive(encode(b.command), b.now_us);  // while the cause persists
         EXPECT_EQ(b.amplifier.status() & cause, cause);
         b.wait(100);
         b.send(true);

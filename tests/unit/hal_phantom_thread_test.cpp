@@ -1,5 +1,4 @@
-// The driver with its own thread on the bus: mailboxes, start and end. What it decides is in
-// hal_phantom_usb_test.
+// The driver with its own thread on the bus: mailboxes, start and end. hal_phantom_usb_test covers its decisions.
 #include <gtest/gtest.h>
 
 #include <thread>
@@ -11,7 +10,7 @@ namespace {
 
 using std::chrono::milliseconds;
 
-// An arm that calibrates itself, so that nobody has to wait for the person's part.
+// An arm that calibrates itself, so that the tests need no person.
 emu::BoardSettings board() {
     emu::BoardSettings s = emu::usual<emu::BoardSettings>();
     s.arm.calibration = CalibrationStyle::automatic;
@@ -26,7 +25,7 @@ protected:
         bus_ = owned.get();
         PhantomUsbSettings settings = emu::usual<PhantomUsbSettings>();
         settings.arm = board().arm;
-        settings.pump_priority = 0;  // it must not take the processor from the test
+        settings.pump_priority = 0;  // the thread must not preempt the test
         settings.hold_max = milliseconds(5);
         device_ = std::make_unique<PhantomUsb>(settings, std::move(owned));
     }
@@ -35,12 +34,11 @@ protected:
         time_ = bus_->reached();
         bus_->hold_time_at(time_);
     }
-    // A millisecond of the board's time and a cycle of the servo at its end, while the pump goes on. False: the
-    // pump does not move.
+    // Advances the board by 1 ms with the pump running, then runs a servo cycle. Returns false if the pump hangs.
     bool cycle(bool enable) {
         time_ += milliseconds(1);
         bus_->hold_time_at(time_);
-        const Instant end = Monotonic::now() + std::chrono::seconds(100);  // against a hang alone
+        const Instant end = Monotonic::now() + std::chrono::seconds(100);  // only against a hang
         while (bus_->reached() < time_) {
             if (Monotonic::now() > end) return false;
             std::this_thread::yield();
@@ -71,7 +69,7 @@ private:
 
 TEST_F(PhantomThread, owns_the_bus_while_the_servo_and_others_use_the_device) {
     open();
-    EXPECT_EQ(device_->open().serial, "EMU-1");  // twice is once
+    EXPECT_EQ(device_->open().serial, "EMU-1");  // a second open changes nothing
     ASSERT_TRUE(until(false, [&] { return device_->calibration() == CalibrationState::done; }));
     ASSERT_TRUE(until(true, [&] { return sample_.state == DeviceState::powered; }));
     const std::uint64_t before = sample_.sequence;
@@ -81,12 +79,12 @@ TEST_F(PhantomThread, owns_the_bus_while_the_servo_and_others_use_the_device) {
     EXPECT_TRUE(until(true, [&] { return sample_.state == DeviceState::ready; }));
     other.join();
     for (int i = 0; i < 50; ++i) ASSERT_TRUE(cycle(true));
-    EXPECT_EQ(sample_.state, DeviceState::ready);  // an enable that never fell brings nothing back
+    EXPECT_EQ(sample_.state, DeviceState::ready);  // enable never fell, so power does not return
     ASSERT_TRUE(until(false, [&] { return sample_.sequence > before + 100; }));
     EXPECT_TRUE(until(true, [&] { return sample_.state == DeviceState::powered; }));
 }
 
-TEST_F(PhantomThread, ends_with_the_amplifier_on_and_time_standing_still) {
+TEST_F(PhantomThread, ends_with_the_amplifier_on_and_time_stopped) {
     open();
     ASSERT_TRUE(until(false, [&] { return device_->calibration() == CalibrationState::done; }));
     ASSERT_TRUE(until(true, [&] { return sample_.state == DeviceState::powered; }));
@@ -98,11 +96,11 @@ std::vector<std::string>& heard() {
     return all;
 }
 
-TEST(PhantomPriority, that_is_refused_is_said_once_with_its_mend_and_the_driver_goes_on) {
+TEST(PhantomPriority, a_refused_priority_is_reported_once_with_a_fix_and_the_driver_continues) {
     PhantomUsbSettings settings = emu::usual<PhantomUsbSettings>();
     settings.arm = board().arm;
     settings.say = [](const char* text) { heard().emplace_back(text); };
-    for (const int priority : {0, 1000}) {  // the latter is refused even to root
+    for (const int priority : {0, 1000}) {  // root cannot use the latter either
         heard().clear();
         settings.pump_priority = priority;
         PhantomUsb device(settings, std::make_unique<emu::BoardBus>(board()));
@@ -112,11 +110,12 @@ TEST(PhantomPriority, that_is_refused_is_said_once_with_its_mend_and_the_driver_
         EXPECT_NE(heard()[0].find("cannot use SCHED_FIFO at priority 1000 for the arm's USB"),
                   std::string::npos)
             << heard()[0];
-        EXPECT_NE(heard()[0].find("fix: tact doctor tells what is missing"), std::string::npos) << heard()[0];
+        EXPECT_NE(heard()[0].find("fix: run tact doctor to find the missing right"), std::string::npos)
+            << heard()[0];
     }
 }
 
-TEST_F(PhantomThread, ends_at_once_after_it_began_and_after_relax) {
+TEST_F(PhantomThread, ends_at_once_after_open_and_relax) {
     EXPECT_EQ(device_->open().serial, "EMU-1");
     device_->relax();
     device_->relax();

@@ -1,4 +1,4 @@
-// The driver over an emulated board without a bus: the contract, and every row of PROTOCOL.md's table.
+// The driver on an emulated board without a bus: the contract, and each row of the table in PROTOCOL.md.
 #include "hal/phantom/phantom_usb.hpp"
 
 #include <gtest/gtest.h>
@@ -32,7 +32,7 @@ protected:
         for (int i = 0; i < cycles; ++i) status = arm_.cycle(command);
         return status;
     }
-    // How many cycles until the motors are off, at most so many.
+    // Returns the number of cycles until the motors are off, at most `most`.
     int cycles_to_zero(int most) {
         for (int i = 0; i < most; ++i) {
             if (arm_.board().amplifier().state() != phantom::AmplifierState::on) return i;
@@ -43,7 +43,7 @@ protected:
     void expect_latched(DeviceNotice cause) {
         EXPECT_EQ(arm_.sample.notice, cause) << device_notice_text(arm_.sample.notice);
         EXPECT_EQ(arm_.board().amplifier().state() == phantom::AmplifierState::on, false);
-        run(200, on_);  // an enable that stays up brings nothing back
+        run(200, on_);  // power does not return while enable stays up
         EXPECT_NE(arm_.board().amplifier().state(), phantom::AmplifierState::on);
         EXPECT_NE(arm_.sample.notice, DeviceNotice::none);
         EXPECT_EQ(arm_.board().shown().force_n, Vec3(Vec3::Zero()));
@@ -55,7 +55,7 @@ protected:
         run(20, on_);
         EXPECT_EQ(arm_.sample.state, DeviceState::powered);
     }
-    // After these the person calibrates first. Nothing comes on before.
+    // After these faults the person must calibrate again; power stays off until then.
     void expect_calibrates_again() {
         run(20, {});
         EXPECT_EQ(arm_.sample.notice, DeviceNotice::hold_reset_pose)
@@ -79,7 +79,7 @@ protected:
     const DeviceCommand on_{.wrench_dev = {Vec3(0.0, 0.0, 0.1), Vec3::Zero()}, .enable = true};
 };
 
-TEST_F(Phantom, the_person_calibrates_it_and_the_screen_says_what_to_do) {
+TEST_F(Phantom, the_person_calibrates_it_following_the_notices) {
     arm_.device().open();
     std::vector<DeviceNotice> said;
     bool moved = false;
@@ -96,10 +96,10 @@ TEST_F(Phantom, the_person_calibrates_it_and_the_screen_says_what_to_do) {
     const std::vector<DeviceNotice> asked{DeviceNotice::hold_reset_pose, DeviceNotice::keep_still,
                                           DeviceNotice::none};
     EXPECT_EQ(said, asked);
-    EXPECT_TRUE(moved);  // from the reset pose, outside of the workspace, to its middle
+    EXPECT_TRUE(moved);  // from the reset pose, outside the workspace, to its centre
 }
 
-TEST_F(Phantom, gives_the_pose_of_the_hand_within_a_step_and_its_speed) {
+TEST_F(Phantom, gives_the_pose_and_speed_of_the_hand_within_a_step) {
     start();
     run(50, on_);
     for (int i = 0; i < 300; ++i) {
@@ -111,12 +111,12 @@ TEST_F(Phantom, gives_the_pose_of_the_hand_within_a_step_and_its_speed) {
     EXPECT_NEAR(arm_.sample.twist_dev.linear_m_s.z(), 0.02, 0.003);
 }
 
-TEST_F(Phantom, the_delay_from_sample_to_motor_is_measured_by_the_boards_clock) {
+TEST_F(Phantom, the_delay_from_sample_to_motor_is_measured_by_the_board_clock) {
     start();
     EXPECT_EQ(arm_.sample.delay, std::chrono::milliseconds(1));
 }
 
-TEST_F(Phantom, force_goes_the_way_it_was_asked_for_and_its_size_is_right) {
+TEST_F(Phantom, force_has_the_requested_direction_and_size) {
     start();
     for (const Vec3& f : {Vec3(0.5, 0.0, 0.0), Vec3(0.0, 0.5, 0.0), Vec3(0.0, 0.0, -0.5)}) {
         run(5, {.wrench_dev = {f, Vec3::Zero()}, .enable = true});
@@ -124,7 +124,7 @@ TEST_F(Phantom, force_goes_the_way_it_was_asked_for_and_its_size_is_right) {
     }
 }
 
-TEST_F(Phantom, a_refused_state_is_counted_and_the_last_good_one_holds_for_two_cycles) {
+TEST_F(Phantom, a_refused_state_is_counted_and_the_last_valid_one_is_kept_for_two_cycles) {
     start();
     for (int i = 0; i < 10; ++i) {
         arm_.board().faults().corrupt = 2;
@@ -178,7 +178,7 @@ TEST_F(Phantom, more_than_five_percent_bad_within_a_second_is_a_warning_and_no_f
     EXPECT_GE(arm_.news().counts.bad_seconds, 1U);
 }
 
-TEST_F(Phantom, silence_of_the_board_is_latched_and_a_longer_one_is_lost) {
+TEST_F(Phantom, silence_of_the_board_is_a_latched_fault_and_longer_silence_a_lost_device) {
     start();
     arm_.board().faults().frozen = true;
     EXPECT_EQ(run(3, on_), IoStatus::fault);
@@ -189,7 +189,7 @@ TEST_F(Phantom, silence_of_the_board_is_latched_and_a_longer_one_is_lost) {
     expect_recovers();
 }
 
-TEST_F(Phantom, each_fault_of_the_amplifier_is_zero_at_once_and_latched) {
+TEST_F(Phantom, each_amplifier_fault_gives_zero_force_at_once_and_latches) {
     struct Row {
         std::uint16_t bit;
         DeviceNotice notice;
@@ -203,7 +203,7 @@ TEST_F(Phantom, each_fault_of_the_amplifier_is_zero_at_once_and_latched) {
         arm_.board().faults().causes = row.bit;
         EXPECT_EQ(run(2, on_), IoStatus::fault);
         expect_latched(row.notice);
-        arm_.board().faults().causes = 0;  // the cause is gone, the enable is still up
+        arm_.board().faults().causes = 0;  // the cause is gone, enable is still up
         run(50, on_);
         expect_latched(row.notice);
         expect_recovers();
@@ -239,7 +239,7 @@ TEST_F(Phantom, an_encoder_that_jumps_is_latched_and_calibrated_again) {
     expect_calibrates_again();
 }
 
-TEST_F(Phantom, an_encoder_that_is_stuck_while_its_motor_pushes_is_found) {
+TEST_F(Phantom, a_stuck_encoder_is_detected_while_its_motor_pushes) {
     start();
     arm_.board().faults().stuck_encoder = 0;
     const DeviceCommand push{.wrench_dev = {Vec3(0.8, 0.8, 0.8), Vec3::Zero()}, .enable = true};
@@ -250,7 +250,7 @@ TEST_F(Phantom, an_encoder_that_is_stuck_while_its_motor_pushes_is_found) {
     EXPECT_NE(arm_.board().amplifier().state(), phantom::AmplifierState::on);
 }
 
-TEST_F(Phantom, a_hand_that_holds_still_against_the_force_is_no_stuck_encoder) {
+TEST_F(Phantom, a_hand_that_resists_the_force_is_no_stuck_encoder) {
     start();
     arm_.board().faults().stuck_encoder = 0;
     const DeviceCommand push{.wrench_dev = {Vec3(0.8, 0.0, 0.0), Vec3::Zero()}, .enable = true};
@@ -258,7 +258,7 @@ TEST_F(Phantom, a_hand_that_holds_still_against_the_force_is_no_stuck_encoder) {
     EXPECT_EQ(arm_.sample.state, DeviceState::powered) << device_notice_text(arm_.sample.notice);
 }
 
-TEST_F(Phantom, a_broken_drive_is_found_within_fifty_milliseconds) {
+TEST_F(Phantom, a_broken_drive_is_detected_within_fifty_milliseconds) {
     start();
     const DeviceCommand push{.wrench_dev = {Vec3(0.0, 3.0, 0.0), Vec3::Zero()}, .enable = true};
     run(3, push);
@@ -272,7 +272,7 @@ TEST_F(Phantom, a_broken_drive_is_found_within_fifty_milliseconds) {
     expect_recovers();
 }
 
-TEST_F(Phantom, a_board_that_takes_no_commands_any_more_drops_its_amplifier_by_itself) {
+TEST_F(Phantom, a_board_without_commands_turns_its_amplifier_off) {
     start();
     arm_.board().faults().deaf = true;
     EXPECT_LE(cycles_to_zero(30), 11);
@@ -282,7 +282,7 @@ TEST_F(Phantom, a_board_that_takes_no_commands_any_more_drops_its_amplifier_by_i
     expect_recovers();
 }
 
-TEST(PhantomBoards, one_that_is_five_commands_behind_for_ten_milliseconds_is_silent) {
+TEST(PhantomBoards, a_board_five_commands_behind_for_ten_milliseconds_is_a_fault) {
     BoardSettings slow;
     slow.watchdog_ms = 100;
     LockstepPhantom arm(slow, {});
@@ -297,7 +297,7 @@ TEST(PhantomBoards, one_that_is_five_commands_behind_for_ten_milliseconds_is_sil
     EXPECT_EQ(arm.sample.notice, DeviceNotice::commands_not_taken);
 }
 
-TEST_F(Phantom, unplugged_it_is_lost_and_plugged_in_again_it_needs_calibration_and_a_person) {
+TEST_F(Phantom, after_replugging_it_needs_calibration_and_a_person) {
     start();
     arm_.bus().unplug();
     EXPECT_EQ(run(2, on_), IoStatus::lost);
@@ -306,7 +306,7 @@ TEST_F(Phantom, unplugged_it_is_lost_and_plugged_in_again_it_needs_calibration_a
     run(500, on_);
     EXPECT_EQ(arm_.write_status, IoStatus::lost);
     arm_.bus().plug();
-    run(4000, on_);  // the ritual is done, the enable stayed up
+    run(4000, on_);  // calibrated again, enable stayed up
     EXPECT_EQ(arm_.bus().last_serial, "EMU-1");
     EXPECT_EQ(arm_.news().counts.reconnects, 1U);
     EXPECT_EQ(arm_.sample.bus.reconnects, 1U);
@@ -315,7 +315,7 @@ TEST_F(Phantom, unplugged_it_is_lost_and_plugged_in_again_it_needs_calibration_a
     expect_recovers();
 }
 
-TEST_F(Phantom, a_board_that_starts_anew_on_its_own_needs_calibration_again) {
+TEST_F(Phantom, a_board_that_restarts_needs_calibration_again) {
     start();
     arm_.board().restart(static_cast<std::uint32_t>(to_ns(arm_.bus().now()) / 1000));
     run(3000, on_);
@@ -324,7 +324,7 @@ TEST_F(Phantom, a_board_that_starts_anew_on_its_own_needs_calibration_again) {
     expect_recovers();
 }
 
-TEST_F(Phantom, a_stall_is_cleared_and_costs_a_fault_at_most) {
+TEST_F(Phantom, a_stall_is_cleared_without_lasting_fault) {
     start();
     arm_.bus().stalls = 1;
     run(50, on_);
@@ -346,7 +346,7 @@ TEST_F(Phantom, an_out_transfer_that_fails_or_hangs_ends_in_zero_force) {
     expect_latched(DeviceNotice::watchdog_tripped);
 }
 
-TEST_F(Phantom, relax_takes_the_current_off_within_a_packet_and_enable_must_fall_first) {
+TEST_F(Phantom, relax_removes_the_current_within_a_packet_until_enable_has_fallen) {
     start();
     arm_.relax();
     arm_.device().pump().round(Duration{0});
@@ -366,12 +366,12 @@ TEST_F(Phantom, warm_motors_get_less_current_and_never_reach_their_limit) {
     }
     EXPECT_GT(arm_.board().hottest_c(), 80.0);
     EXPECT_LT(arm_.board().hottest_c(), 100.5);
-    // The driver counts the same and says so.
+    // The driver estimates the same temperature and reports it.
     EXPECT_NEAR(static_cast<double>(arm_.sample.winding_c), arm_.board().hottest_c(), 5.0);
     EXPECT_FLOAT_EQ(arm_.sample.winding_c_max, 100.0F);
 }
 
-TEST_F(Phantom, a_nonsense_wrench_carries_the_arm_and_nothing_else) {
+TEST_F(Phantom, a_non_finite_wrench_gives_only_gravity_compensation) {
     start();
     run(5, {.wrench_dev = {Vec3(1e300, -1e300, 1e300), Vec3::Constant(1e300)}, .enable = true});
     EXPECT_LT(arm_.board().shown().force_n.norm(), 8.6);
@@ -379,7 +379,7 @@ TEST_F(Phantom, a_nonsense_wrench_carries_the_arm_and_nothing_else) {
     EXPECT_LT(arm_.board().shown().force_n.norm(), 0.02);
 }
 
-TEST(PhantomOpen, errors_say_what_to_do) {
+TEST(PhantomOpen, errors_give_a_fix) {
     struct Row {
         BusFault fault;
         const char* detail;
@@ -388,14 +388,14 @@ TEST(PhantomOpen, errors_say_what_to_do) {
     for (const Row& row :
          {Row{BusFault::missing, "B-7", "B-7"}, Row{BusFault::several, "A-1, A-2", "A-1, A-2"},
           Row{BusFault::denied, "/dev/bus/usb/001/004", "deploy/install.sh"},
-          Row{BusFault::twins, "", "serial of its own"}, Row{BusFault::slow, "", "high speed"},
+          Row{BusFault::twins, "", "its own serial number"}, Row{BusFault::slow, "", "high-speed"},
           Row{BusFault::busy, "", "another program"}}) {
         LockstepPhantom arm;
         arm.bus().finding = row.fault;
         arm.bus().detail = row.detail;
         try {
             arm.device().open();
-            ADD_FAILURE() << "opened";
+            ADD_FAILURE() << "the board was opened";
         } catch (const StartupError& e) {
             EXPECT_NE(std::string(e.what()).find(row.said), std::string::npos) << e.what();
         }
@@ -407,7 +407,7 @@ std::vector<std::string>& heard() {
     return all;
 }
 
-TEST(PhantomOpen, a_board_that_is_just_being_plugged_is_waited_for_and_that_is_said_once) {
+TEST(PhantomOpen, open_waits_for_a_board_being_plugged_in_and_reports_it_once) {
     PhantomUsbSettings settings = emu::usual<PhantomUsbSettings>();
     settings.serial = "EMU-1";
     settings.say = [](const char* text) { heard().emplace_back(text); };
@@ -424,7 +424,7 @@ TEST(PhantomOpen, a_board_that_is_just_being_plugged_is_waited_for_and_that_is_s
     }
 }
 
-TEST(PhantomOpen, a_board_that_never_comes_is_refused_after_a_bounded_time) {
+TEST(PhantomOpen, a_missing_board_is_refused_after_a_bounded_time) {
     LockstepPhantom arm;
     arm.bus().finding = BusFault::missing;
     const Instant begin = arm.bus().now();
@@ -433,7 +433,7 @@ TEST(PhantomOpen, a_board_that_never_comes_is_refused_after_a_bounded_time) {
     EXPECT_LT(arm.bus().now() - begin, PhantomUsb::kFindMax + std::chrono::seconds(1));
 }
 
-TEST(PhantomOpen, what_waiting_cannot_mend_is_refused_at_once) {
+TEST(PhantomOpen, permanent_faults_are_refused_at_once) {
     for (const BusFault fault : {BusFault::several, BusFault::twins, BusFault::slow, BusFault::failed}) {
         LockstepPhantom arm;
         arm.bus().finding = fault;
@@ -442,7 +442,7 @@ TEST(PhantomOpen, what_waiting_cannot_mend_is_refused_at_once) {
     }
 }
 
-TEST(PhantomOpen, a_board_that_is_not_configured_yet_is_tried_again) {
+TEST(PhantomOpen, a_board_not_configured_yet_is_tried_again) {
     LockstepPhantom arm;
     arm.bus().finding = BusFault::not_ready;
     EXPECT_THROW(arm.device().open(), StartupError);
@@ -455,21 +455,21 @@ TEST(PhantomOpen, a_board_that_does_not_answer_is_refused) {
     EXPECT_THROW(arm.device().open(), StartupError);
 }
 
-TEST(PhantomOpen, an_answer_that_never_comes_is_told_with_what_came_instead) {
+TEST(PhantomOpen, a_missing_answer_is_reported_with_the_packets_received) {
     LockstepPhantom arm;
     arm.board().faults().frozen = true;
     const std::array<std::byte, 65> glued{};
     for (int i = 0; i < 7; ++i) arm.bus().push(usb::BusEventKind::packet, glued);
     try {
         arm.device().open();
-        ADD_FAILURE() << "opened";
+        ADD_FAILURE() << "the board was opened";
     } catch (const StartupError& e) {
-        EXPECT_NE(std::string(e.what()).find("answered 0"), std::string::npos) << e.what();
-        EXPECT_NE(std::string(e.what()).find("7 for their size"), std::string::npos) << e.what();
+        EXPECT_NE(std::string(e.what()).find("answers 0"), std::string::npos) << e.what();
+        EXPECT_NE(std::string(e.what()).find("7 size"), std::string::npos) << e.what();
     }
 }
 
-TEST(PhantomOpen, a_watchdog_longer_than_is_allowed_is_refused) {
+TEST(PhantomOpen, a_watchdog_time_above_the_limit_is_refused) {
     BoardSettings patient;
     patient.watchdog_ms = 3000;
     EXPECT_THROW(LockstepPhantom(patient, {}).device().open(), StartupError);

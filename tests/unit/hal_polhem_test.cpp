@@ -1,5 +1,4 @@
-// Haptikfabriken and Polhem boards: their reports, and the driver of hal/phantom over them, with the emulated
-// arm behind.
+// Haptikfabriken and Polhem boards: their reports, and the driver of hal/phantom on them with an emulated arm.
 #include "hal/polhem/hidraw_port.hpp"
 
 #include <gtest/gtest.h>
@@ -30,7 +29,7 @@ std::vector<std::byte> bytes(std::initializer_list<int> values) {
     return out;
 }
 
-TEST(PolhemReports, lie_on_the_wire_as_their_makers_say) {
+TEST(PolhemReports, match_the_documented_format) {
     const polhem::OutReport out{{-3000, 1, 256}, 0, {0, 0, 7}};
     const auto wire = polhem::encode(out);
     const auto expected = bytes({0x48, 0xF4, 0x01, 0x00, 0x00, 0x01, 0, 0, 0, 0, 0, 0, 7, 0});
@@ -45,7 +44,7 @@ TEST(PolhemReports, lie_on_the_wire_as_their_makers_say) {
     EXPECT_EQ(in, polhem::InReport{});
 }
 
-TEST(PolhemReports, whatever_is_encoded_is_decoded_again) {
+TEST(PolhemReports, round_trip_through_encode_and_decode) {
     EXPECT_TRUE(rc::check([](std::array<std::int16_t, 6> six, std::uint16_t info) {
         const polhem::InReport in{six, info};
         polhem::InReport in_again;
@@ -58,7 +57,7 @@ TEST(PolhemReports, whatever_is_encoded_is_decoded_again) {
     }));
 }
 
-TEST(PolhemReports, counts_go_on_across_the_wrap_of_an_encoder) {
+TEST(PolhemReports, counts_continue_across_the_wrap_of_an_encoder) {
     polhem::Unwrapped u;
     const std::int32_t first = 32000;
     std::int32_t way = 0;
@@ -95,7 +94,7 @@ TEST_F(Polhem, is_calibrated_by_a_person_and_then_gives_the_pose_of_the_hand) {
     EXPECT_EQ(arm_.port().command, 0);
 }
 
-TEST_F(Polhem, force_goes_the_way_it_was_asked_for_and_its_size_is_right) {
+TEST_F(Polhem, force_has_the_requested_direction_and_size) {
     start();
     for (const Vec3& f : {Vec3(0.5, 0.0, 0.0), Vec3(0.0, 0.5, 0.0), Vec3(0.0, 0.0, -0.5)}) {
         run(5, {.wrench_dev = {f, Vec3::Zero()}, .enable = true});
@@ -103,7 +102,7 @@ TEST_F(Polhem, force_goes_the_way_it_was_asked_for_and_its_size_is_right) {
     }
 }
 
-TEST_F(Polhem, currents_never_pass_what_the_board_stands) {
+TEST_F(Polhem, currents_never_exceed_the_board_limit) {
     start();
     for (int i = 0; i < 30; ++i) {
         arm_.cycle({.wrench_dev = {Vec3(100.0, 100.0, -100.0), Vec3::Zero()}, .enable = true});
@@ -112,13 +111,13 @@ TEST_F(Polhem, currents_never_pass_what_the_board_stands) {
     }
 }
 
-TEST_F(Polhem, ten_milliseconds_without_the_servo_put_zero_on_the_wire_long_before_the_boards_own_watchdog) {
+TEST_F(Polhem, ten_milliseconds_without_the_servo_give_zero_force_before_the_board_watchdog) {
     start();
     run(3, on_);
     ASSERT_FALSE(powerless());
     for (int i = 0; i < 13; ++i) arm_.pass(milliseconds(1));
     EXPECT_TRUE(powerless());
-    // The board would take the force back; the driver gives none until a new edge.
+    // The board would accept force again; the driver gives none until a new edge.
     run(700, on_);
     EXPECT_TRUE(powerless());
     run(20, {});
@@ -126,7 +125,7 @@ TEST_F(Polhem, ten_milliseconds_without_the_servo_put_zero_on_the_wire_long_befo
     EXPECT_FALSE(powerless());
 }
 
-TEST_F(Polhem, a_board_that_is_unplugged_is_lost_and_comes_back_without_force_and_uncalibrated) {
+TEST_F(Polhem, a_replugged_board_returns_without_force_and_uncalibrated) {
     start();
     arm_.port().plugged = false;
     run(300, on_);
@@ -141,7 +140,7 @@ TEST_F(Polhem, a_board_that_is_unplugged_is_lost_and_comes_back_without_force_an
     EXPECT_TRUE(powerless());
 }
 
-TEST_F(Polhem, a_board_that_says_nothing_or_takes_nothing_is_a_fault) {
+TEST_F(Polhem, a_board_that_sends_or_accepts_nothing_is_a_fault) {
     start();
     arm_.port().silent = true;
     run(20, on_);
@@ -186,7 +185,7 @@ probe::UsbDevice board_of(const std::string& serial) {
     return d;
 }
 
-TEST(PolhemHidraw, the_board_is_found_by_its_numbers_and_serial_on_its_first_interface) {
+TEST(PolhemHidraw, the_board_is_found_by_usb_ids_and_serial_on_its_first_interface) {
     probe::Bus<probe::UsbDevice> usb;
     std::string node;
     EXPECT_EQ(polhem::find_board(usb, "", node).fault, BusFault::missing);
@@ -211,7 +210,7 @@ TEST(PolhemHidraw, the_board_is_found_by_its_numbers_and_serial_on_its_first_int
     EXPECT_EQ(polhem::find_board(usb, "", node).serial, "no serial");
 }
 
-TEST(PolhemHidraw, reports_cross_a_descriptor_and_its_end_is_said) {
+TEST(PolhemHidraw, reports_pass_a_descriptor_and_its_end_is_reported) {
     int ends[2];
     ASSERT_EQ(socketpair(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC, 0, ends), 0);
     {
@@ -225,7 +224,7 @@ TEST(PolhemHidraw, reports_cross_a_descriptor_and_its_end_is_said) {
         const auto out = polhem::encode(polhem::OutReport{{9, 8, 7}, 0, {}});
         EXPECT_TRUE(port.write(out));
         ASSERT_EQ(recv(ends[1], into.data(), into.size(), 0), 15);
-        EXPECT_EQ(into[0], std::byte{0});  // number of the report
+        EXPECT_EQ(into[0], std::byte{0});  // report number
         EXPECT_TRUE(std::equal(out.begin(), out.end(), into.begin() + 1));
         close(ends[1]);
         EXPECT_EQ(port.read(into, std::chrono::seconds(30)), polhem::kPortGone);

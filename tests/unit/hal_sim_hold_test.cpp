@@ -1,4 +1,4 @@
-// Emulated sensor and hand are carried to a place and rest there: what a calibration is rehearsed with.
+// Emulated sensor and hand move to a position and rest there, for the rehearsal of a calibration.
 #include <gtest/gtest.h>
 
 #include "hal/sim/sim_device.hpp"
@@ -7,7 +7,7 @@
 namespace tact {
 namespace {
 
-TEST(SimHold, the_sensor_is_measured_where_it_is_held_and_on_the_head_afterwards) {
+TEST(SimHold, the_sensor_is_measured_at_the_held_position_and_then_on_the_head) {
     SimTracker tracker;
     tracker.open();
     const Vec3 place(0.2, -0.1, 0.5);
@@ -29,7 +29,7 @@ TEST(SimHold, the_sensor_is_measured_where_it_is_held_and_on_the_head_afterwards
     EXPECT_GT(mean_off_m(place), 0.05);
 }
 
-TEST(SimHold, the_hand_comes_to_rest_where_it_is_held_whatever_its_script) {
+TEST(SimHold, the_hand_comes_to_rest_at_the_held_position_with_any_script) {
     for (const char* const script : {"passive", "wander"}) {
         SimSettings settings;
         settings.hand.script = script;

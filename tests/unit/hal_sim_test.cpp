@@ -24,7 +24,7 @@ INSTANTIATE_TEST_SUITE_P(Sim, HapticDeviceContract,
                                                     [](Instant now, Duration d) { return now + d; }}),
                          [](const auto& tested) { return tested.param.name; });
 
-// On the machine's clock, so with a watchdog that a busy machine seldom trips by itself.
+// On the real clock, so the watchdog time is long enough for a busy machine.
 std::unique_ptr<HapticDevice> make_process() {
     DeviceSettings settings;
     settings.sim.watchdog = milliseconds(300);
@@ -42,7 +42,7 @@ INSTANTIATE_TEST_SUITE_P(SimProcess, HapticDeviceContract,
 
 bool die_after_fork = false;
 
-TEST(ProcessDevice, a_process_that_dies_at_once_is_said_and_not_waited_for) {
+TEST(ProcessDevice, a_process_that_dies_at_once_is_reported_without_waiting) {
     ASSERT_EQ(pthread_atfork(nullptr, nullptr,
                              [] {
                                  if (die_after_fork) _exit(7);
@@ -52,7 +52,7 @@ TEST(ProcessDevice, a_process_that_dies_at_once_is_said_and_not_waited_for) {
     die_after_fork = true;
     try {
         (void)device->open();
-        ADD_FAILURE() << "a dead device was opened";
+        ADD_FAILURE() << "open() accepted a dead device";
     } catch (const StartupError& e) {
         EXPECT_NE(std::string(e.what()).find("ended at once with code 7"), std::string::npos) << e.what();
     }
@@ -61,7 +61,7 @@ TEST(ProcessDevice, a_process_that_dies_at_once_is_said_and_not_waited_for) {
 
 constexpr double kMass = 0.25, kDamping = 5.0;
 
-TEST(SimHand, moves_as_the_damped_mass_does_at_any_step) {
+TEST(SimHand, moves_like_a_damped_mass_at_any_step) {
     const double t = 0.2, f = 0.7;
     const double exact = f / kDamping * (t - kMass / kDamping * (1.0 - std::exp(-kDamping * t / kMass)));
     for (const int steps : {5, 200, 20000}) {
@@ -83,7 +83,7 @@ TEST(SimHand, turns_about_the_torque_at_the_speed_its_damping_allows) {
 TEST(SimHand, a_sampled_spring_below_the_stability_bound_comes_to_rest_at_any_servo_rate) {
     for (const Duration dt :
          {Duration(microseconds(50)), Duration(microseconds(1000)), Duration(microseconds(4000))}) {
-        // K < b / (T/2 + T): the force of one sample acts until the next.
+        // K < b / (T/2 + T): the force of one sample acts until the next sample.
         const double k = 0.5 * kDamping / (1.5 * to_s(dt));
         SimHand hand({}, Vec3::Constant(1.0));
         const Vec3 rest(0.02, -0.01, 0.03);
@@ -101,7 +101,7 @@ TEST(SimHand, stops_at_the_end_of_the_arm) {
     EXPECT_DOUBLE_EQ(hand.twist().linear_m_s.x(), 0.0);
 }
 
-TEST(SimHand, wanders_smoothly_within_bounds_and_the_same_way_for_the_same_seed) {
+TEST(SimHand, wanders_smoothly_within_bounds_and_repeats_for_the_same_seed) {
     SimHandSettings settings;
     settings.script = "wander";
     settings.seed = 5;
@@ -121,7 +121,7 @@ TEST(SimHand, wanders_smoothly_within_bounds_and_the_same_way_for_the_same_seed)
     EXPECT_LT(fastest, 0.5);
 }
 
-TEST(SimHand, a_stroking_hand_goes_down_and_rests_on_what_holds_it) {
+TEST(SimHand, a_stroking_hand_moves_down_and_rests_on_the_surface) {
     SimHandSettings settings;
     settings.script = "stroke";
     SimHand free(settings, Vec3::Constant(0.2)), held(settings, Vec3::Constant(0.2));
@@ -142,7 +142,7 @@ TEST(SimHand, a_stroking_hand_goes_down_and_rests_on_what_holds_it) {
     EXPECT_GT(farthest, 0.005);
 }
 
-// A wall of so many newtons a metre, 20 mm away.
+// A hand in front of a wall 20 mm away; step() gets the wall's stiffness in N/m.
 struct Walled {
     SimHand hand;
     double push_n = 0.0;
@@ -161,7 +161,7 @@ struct Walled {
     }
 };
 
-TEST(SimSurgeon, presses_and_strokes_where_it_was_held_and_lifts_hand_and_pedal_in_between) {
+TEST(SimSurgeon, presses_and_strokes_at_its_start_and_lifts_hand_and_pedal_in_between) {
     Walled a("surgeon"), again("surgeon"), other("surgeon", 2);
     EXPECT_EQ(a.hand.pose().p_m, Vec3(0.01, -0.005, 0.0));
     double most_n = 0.0, aside_m = 0.0;
@@ -183,10 +183,10 @@ TEST(SimSurgeon, presses_and_strokes_where_it_was_held_and_lifts_hand_and_pedal_
     EXPECT_LT(aside_m, 10e-3);
     EXPECT_GT(pressed, 12000);
     EXPECT_GT(lifted, 1000);
-    EXPECT_LT(while_lifted, 1000);  // on its way up
+    EXPECT_LT(while_lifted, 1000);  // on the way up
 }
 
-TEST(SimSurgeon, keeps_still_until_the_device_is_on_and_goes_back_when_it_goes_off) {
+TEST(SimSurgeon, keeps_still_until_the_device_is_on_and_returns_when_it_goes_off) {
     Walled w("surgeon");
     const Vec3 begin_m = w.hand.pose().p_m;
     for (int i = 0; i < 3000; ++i) w.step(1500.0, false);
@@ -198,7 +198,7 @@ TEST(SimSurgeon, keeps_still_until_the_device_is_on_and_goes_back_when_it_goes_o
     EXPECT_EQ(w.hand.buttons(), 0U);
 }
 
-TEST(SimSurgeon, goes_on_after_a_moment_without_power) {
+TEST(SimSurgeon, continues_after_a_short_loss_of_power) {
     Walled w("surgeon");
     for (int i = 0; i < 9000; ++i) w.step(1500.0);
     const double deep_m = w.hand.pose().p_m.z();
@@ -209,10 +209,10 @@ TEST(SimSurgeon, goes_on_after_a_moment_without_power) {
     EXPECT_EQ(w.hand.buttons(), 2U);
 }
 
-TEST(SimSurgeon, tries_beside_where_it_met_nothing) {
+TEST(SimSurgeon, tries_another_position_if_it_finds_no_bone) {
     Walled w("surgeon");
     double deepest_m = 0.0;
-    std::vector<Vec3> tries;  // where it went down
+    std::vector<Vec3> tries;  // positions of the attempts
     for (int i = 0; i < 10000; ++i) {
         const bool above = w.hand.pose().p_m.z() > -0.04;
         w.step(0.0);
@@ -246,14 +246,14 @@ TEST(SimSurgeon, the_hand_with_the_suction_tube_touches_lightly_and_keeps_beside
     EXPECT_EQ(suction_tube.hand.buttons(), 2U);
 }
 
-TEST(SimHand, an_unknown_script_is_refused_in_words) {
+TEST(SimHand, an_unknown_script_is_refused) {
     SimHandSettings settings;
     settings.script = "dance";
     EXPECT_THROW(SimHand(settings, Vec3::Ones()), StartupError);
 }
 
-TEST(SimDevice, the_watchdog_drops_the_amplifier_at_its_very_instant) {
-    // Force for 10 ms after the last heartbeat and not longer, however late anybody looks.
+TEST(SimDevice, the_watchdog_drops_the_amplifier_exactly_on_time) {
+    // Force lasts exactly 10 ms after the last heartbeat, independent of the read times.
     const auto way = [](std::initializer_list<int> looks_ms) {
         SimDevice device({});
         static_cast<void>(device.open());
@@ -277,7 +277,7 @@ TEST(SimDevice, the_watchdog_drops_the_amplifier_at_its_very_instant) {
     EXPECT_NEAR(way({30}), free.pose().p_m.x(), 1e-12);
 }
 
-TEST(SimDevice, positions_come_in_steps_of_the_encoder) {
+TEST(SimDevice, positions_are_multiples_of_the_encoder_step) {
     SimDevice device({});
     const DeviceInfo info = device.open();
     Instant now = instant_from_ns(1'000'000);
@@ -315,7 +315,7 @@ TEST(SimDevice, the_estimated_speed_is_that_of_the_hand) {
     EXPECT_NEAR(s.twist_dev.linear_m_s.x(), 0.5 / kDamping, 0.01);
 }
 
-TEST(SimDevice, too_much_force_is_shortened_and_keeps_its_direction) {
+TEST(SimDevice, excess_force_is_reduced_and_keeps_its_direction) {
     SimDevice device({});
     const DeviceInfo info = device.open();
     DeviceSample s;
@@ -328,7 +328,7 @@ TEST(SimDevice, too_much_force_is_shortened_and_keeps_its_direction) {
     EXPECT_TRUE(device.shown_dev().force_n.isApprox(Vec3(0.6, 0.8, 0.0) * info.force_n_max, 1e-12));
 }
 
-TEST(SimDevice, an_unplugged_device_stays_lost_until_it_is_opened_again) {
+TEST(SimDevice, an_unplugged_device_stays_lost_until_reopened) {
     SimDevice device({});
     static_cast<void>(device.open());
     DeviceSample s;
@@ -343,7 +343,7 @@ TEST(SimDevice, an_unplugged_device_stays_lost_until_it_is_opened_again) {
     EXPECT_EQ(s.state, DeviceState::ready);
 }
 
-TEST(Registry, an_unknown_driver_is_refused_with_the_names_there_are) {
+TEST(Registry, an_unknown_driver_is_refused_with_the_known_names) {
     try {
         static_cast<void>(device_driver("omega"));
         FAIL();

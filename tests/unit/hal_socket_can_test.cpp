@@ -1,6 +1,5 @@
-// The socket of the CAN driver on pairs of other sockets that give one frame a message, since few test
-// machines have a CAN bus: what comes out of the kernel's structs, ends and overflows; filters; words of the
-// refusals.
+// The socket of the CAN driver on other sockets that keep message borders, since few test machines have a CAN bus:
+// frames from the kernel's structs, end of stream and overflow; filters; texts of the errors.
 #include <gtest/gtest.h>
 #include <netinet/in.h>
 #include <sys/socket.h>
@@ -62,7 +61,7 @@ std::string refusal(const std::function<void()>& act) {
     return "no refusal";
 }
 
-TEST(SocketCan, frames_of_both_kinds_come_out_as_they_went_in) {
+TEST(SocketCan, frames_of_both_kinds_arrive_unchanged) {
     Pair pair(SOCK_DGRAM);
     SocketCan can(pair.ours());
     can.open();
@@ -79,7 +78,7 @@ TEST(SocketCan, frames_of_both_kinds_come_out_as_they_went_in) {
     EXPECT_EQ(fd.sensor, 1);
 }
 
-TEST(SocketCan, error_frames_are_told_apart_and_what_is_no_tracker_s_frame_is_malformed) {
+TEST(SocketCan, error_frames_are_recognised_and_other_invalid_frames_are_malformed) {
     Pair pair(SOCK_DGRAM);
     SocketCan can(pair.ours());
     ASSERT_TRUE(pair.send(pos(), CAN_ERR_FLAG));
@@ -103,7 +102,7 @@ TEST(SocketCan, error_frames_are_told_apart_and_what_is_no_tracker_s_frame_is_ma
 TEST(SocketCan, a_batch_is_bounded_and_order_is_kept) {
     Pair pair(SOCK_DGRAM);
     SocketCan can(pair.ours());
-    std::uint16_t sent = 0;  // as many as the pair holds: the sender is not waited for
+    std::uint16_t sent = 0;  // as many as the socket pair holds without blocking
     while (sent < 200 && pair.send(encode(SyncFrame{sent, 0, TrackerStatus::ok}), 0, MSG_DONTWAIT)) ++sent;
     ASSERT_GT(sent, 2U);
     std::array<CanFrame, 100> got;
@@ -121,7 +120,7 @@ TEST(SocketCan, a_batch_is_bounded_and_order_is_kept) {
     EXPECT_EQ(can.receive(got, Duration{0}).count, 0U);
 }
 
-TEST(SocketCan, nothing_to_take_is_no_fault_and_the_end_of_the_stream_is_gone) {
+TEST(SocketCan, an_empty_queue_is_no_fault_and_the_end_of_the_stream_is_gone) {
     Pair pair(SOCK_SEQPACKET);
     SocketCan can(pair.ours());
     std::array<CanFrame, 8> got;
@@ -138,10 +137,10 @@ TEST(SocketCan, nothing_to_take_is_no_fault_and_the_end_of_the_stream_is_gone) {
     EXPECT_FALSE(can.reopen());
 }
 
-// UDP on this machine counts what found no room as a CAN socket does.
-TEST(SocketCan, what_found_no_room_in_the_kernel_is_counted) {
+// A UDP socket counts overflow like a CAN socket.
+TEST(SocketCan, frames_dropped_by_the_kernel_are_counted) {
     const int in = socket(AF_INET, SOCK_DGRAM | SOCK_NONBLOCK, 0), out = socket(AF_INET, SOCK_DGRAM, 0);
-    if (in < 0 || out < 0) GTEST_SKIP() << "no UDP here";
+    if (in < 0 || out < 0) GTEST_SKIP() << "UDP is not available";
     SocketCan can(in);
     const int on = 1, room = 2048;
     sockaddr_in address{};
@@ -154,7 +153,7 @@ TEST(SocketCan, what_found_no_room_in_the_kernel_is_counted) {
         getsockname(in, reinterpret_cast<sockaddr*>(&address), &size) != 0 ||
         connect(out, reinterpret_cast<sockaddr*>(&address), sizeof address) != 0) {
         ::close(out);
-        GTEST_SKIP() << "no loopback here";
+        GTEST_SKIP() << "the loopback interface is not available";
     }
     constexpr std::size_t kSent = 200;
     can_frame raw{};
@@ -169,7 +168,7 @@ TEST(SocketCan, what_found_no_room_in_the_kernel_is_counted) {
     std::array<CanFrame, kCanBatch> got;
     std::size_t taken = 0;
     std::uint64_t dropped = 0;
-    // The count comes with the next frame that found room.
+    // The overflow count arrives with the next received frame.
     for (int i = 0; i < 10'000 && taken + dropped < sent; ++i) {
         const CanBatch batch = can.receive(got, milliseconds(1));
         taken += batch.count;
@@ -182,10 +181,10 @@ TEST(SocketCan, what_found_no_room_in_the_kernel_is_counted) {
     EXPECT_EQ(taken + dropped, sent);
 }
 
-TEST(SocketCan, filters_pass_the_tracker_s_frames_and_no_others) {
+TEST(SocketCan, filters_pass_only_the_frames_of_the_tracker) {
     const auto passes = [](const std::vector<can_filter>& filters, canid_t id) {
         return std::any_of(filters.begin(), filters.end(), [id](const can_filter& f) {
-            return (id & f.can_mask) == (f.can_id & f.can_mask);  // as the kernel's documentation says
+            return (id & f.can_mask) == (f.can_id & f.can_mask);  // as documented by the kernel
         });
     };
     for (unsigned sensors = 1; sensors <= 4; ++sensors) {
@@ -200,7 +199,7 @@ TEST(SocketCan, filters_pass_the_tracker_s_frames_and_no_others) {
     }
 }
 
-TEST(SocketCan, refusals_name_the_interface_and_the_mend) {
+TEST(SocketCan, refusals_name_the_interface_and_the_fix) {
     const auto says = [](CanStep step, int error, const char* why, const char* fix) {
         const std::string text = refusal([&] { refuse_interface(step, "can7", error); });
         EXPECT_NE(text.find("can7"), std::string::npos) << text;
@@ -210,15 +209,15 @@ TEST(SocketCan, refusals_name_the_interface_and_the_mend) {
     says(CanStep::socket, EAFNOSUPPORT, "no CAN", "modprobe can_raw");
     says(CanStep::socket, EPERM, "refused", "AF_CAN");
     says(CanStep::interface, ENODEV, "no such interface", "tracker.interface");
-    says(CanStep::type, 0, "no CAN interface", "type can");
+    says(CanStep::type, 0, "not a CAN interface", "type can");
     says(CanStep::state, 0, "down", "ip link set can7 up type can bitrate 1000000");
     says(CanStep::mtu, 0, "CAN FD", "fd on");
     says(CanStep::option, EINVAL, "option", "kernel");
-    says(CanStep::bind, ENETDOWN, "listened", "ip link set can7 up");
+    says(CanStep::bind, ENETDOWN, "binding", "ip link set can7 up");
 }
 
-// Whether this kernel has CAN or not.
-TEST(SocketCan, an_interface_that_is_not_there_is_refused_with_words) {
+// With and without CAN in the kernel.
+TEST(SocketCan, a_missing_interface_is_refused_with_a_fix) {
     SocketCan can("no_such_can0", FixSettings{});
     const std::string text = refusal([&] { can.open(); });
     EXPECT_NE(text.find("no_such_can0"), std::string::npos) << text;
@@ -228,8 +227,8 @@ TEST(SocketCan, an_interface_that_is_not_there_is_refused_with_words) {
     EXPECT_FALSE(can.reopen());
 }
 
-// The whole driver: frames through a socket, its thread, the mailbox.
-TEST(SocketCan, poses_sent_through_a_socket_are_read_as_samples_and_its_end_is_seen) {
+// The complete driver: frames through a socket, thread, mailbox.
+TEST(SocketCan, poses_sent_through_a_socket_become_samples_and_its_end_is_detected) {
     SimHeadSettings settings;
     settings.can.fix.sensors = 2;
     ServoClock clock(Duration{0});

@@ -55,13 +55,13 @@ std::function<std::unique_ptr<TrackerRig>()> rig(CanFormat format) {
 
 const auto kName = [](const auto& tested) { return std::string(tested.param.name); };
 
-// Five standard deviations of noise, and half a metre a second for the millisecond between two looks.
+// Five standard deviations of noise plus 0.5 m/s over the 1 ms between two reads.
 INSTANTIATE_TEST_SUITE_P(Sim, TrackerContract,
                          testing::Values(TrackerCase{"classic", rig<LockstepRig>(CanFormat::classic), 4e-3},
                                          TrackerCase{"fd", rig<LockstepRig>(CanFormat::fd), 4e-3}),
                          kName);
 
-// On the machine's clock. The head sways by 5 cm: whatever the clocks say, a pose is within that.
+// On the real clock. The head sways by 5 cm, so a pose is within that at any time.
 INSTANTIATE_TEST_SUITE_P(Can, TrackerContract,
                          testing::Values(TrackerCase{"thread", rig<ThreadRig>(CanFormat::classic), 0.25}),
                          kName);

@@ -1,5 +1,4 @@
-// tact_tracker.dbc is what other tools read: held to the driver's tables, and its bits to the driver's
-// frames.
+// tact_tracker.dbc, the file for other tools, against the driver's tables and the bits of its frames.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -37,7 +36,7 @@ std::string unquoted(const std::string& word) {
     return word.size() >= 2 ? word.substr(1, word.size() - 2) : word;
 }
 
-// The lines as this file writes them, word by word: punctuation between numbers is a gap.
+// Parses the lines of this file; punctuation between numbers counts as white space.
 Dbc read_dbc(const std::string& path) {
     std::ifstream in(path);
     EXPECT_TRUE(in.good()) << path;
@@ -69,7 +68,7 @@ Dbc read_dbc(const std::string& path) {
         } else if (kind == "BA_" && line.find("\"VFrameFormat\"") != std::string::npos) {
             unsigned message = 0, format = 0;
             words >> name >> more >> message >> format;
-            EXPECT_TRUE(words && format == 14) << line;  // StandardCAN_FD in the list of the attribute
+            EXPECT_TRUE(words && format == 14) << line;  // StandardCAN_FD in the attribute's list
             dbc.messages[message].fd = true;
         } else if (kind == "VAL_") {
             unsigned message = 0, raw = 0;
@@ -86,7 +85,7 @@ const Dbc& file() {
     return dbc;
 }
 
-// Bit by bit, as the format's description says.
+// Bit by bit, according to the format's description.
 double physical(const DbcSignal& s, const CanFrame& f) {
     double value = 0.0;
     for (unsigned i = 0; i < s.bits; ++i) {
@@ -102,7 +101,7 @@ double physical(const CanFrame& f, const char* signal) {
     return physical(file().messages.at(f.id).signals.at(signal), f);
 }
 
-TEST(TrackerDbc, has_the_messages_and_signals_of_the_driver_and_no_others) {
+TEST(TrackerDbc, has_exactly_the_messages_and_signals_of_the_driver) {
     std::size_t messages = 0;
     for (const CanMessage& message : kTrackerMessages) {
         for (unsigned sensor = 0; sensor < message.copies; ++sensor) {
@@ -139,7 +138,7 @@ TEST(TrackerDbc, signals_fill_their_message_to_the_last_bit_without_overlap) {
     }
 }
 
-TEST(TrackerDbc, names_the_status_as_the_driver_does) {
+TEST(TrackerDbc, names_the_status_like_the_driver) {
     const std::map<unsigned, std::string> expected{
         {static_cast<unsigned>(TrackerStatus::ok), "ok"},
         {static_cast<unsigned>(TrackerStatus::starting), "starting"},
@@ -148,8 +147,8 @@ TEST(TrackerDbc, names_the_status_as_the_driver_does) {
     EXPECT_EQ(file().values.at("240 Status"), expected);
 }
 
-// What another tool would read from the driver's frames with this file.
-TEST(TrackerDbc, reads_from_the_driver_s_frames_what_was_put_in) {
+// Values that another tool reads from the driver's frames with this file.
+TEST(TrackerDbc, decodes_the_frames_of_the_driver) {
     const Vec3 p_m(-0.4321, 1.2345, 0.00005);
     const Quat q = quat_from_rotation_vector(Vec3(0.3, -1.1, 0.7));
 

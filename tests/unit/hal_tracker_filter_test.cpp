@@ -18,7 +18,7 @@ constexpr double kTurn = 2.0 * std::numbers::pi;
 constexpr Duration kPeriod = microseconds(4000);
 constexpr double kPeriodS = 0.004;
 
-// Without adaption both filters are plain low-passes, for which theory is short.
+// Without adaptation both filters are plain low-passes with simple theory.
 HeadFilterSettings fixed(double cutoff_hz) { return {{cutoff_hz, 0.0, 1.2}, {cutoff_hz, 0.0, 1.2}}; }
 Pose at_x(double x_m) { return {Vec3(x_m, 0.0, 0.0), Quat::Identity()}; }
 Pose turned(double angle_rad) { return {Vec3::Zero(), quat_from_rotation_vector(Vec3(0.0, angle_rad, 0.0))}; }
@@ -29,7 +29,7 @@ double normal(SeededRandom& random) {
     return std::sqrt(-2.0 * std::log(1.0 - random.uniform())) * std::cos(kTurn * random.uniform());
 }
 
-TEST(HeadFilter, a_step_is_answered_by_an_exponential_however_time_is_cut_up) {
+TEST(HeadFilter, the_step_response_is_exponential_for_any_sample_times) {
     SeededRandom random(1);
     for (const bool even : {true, false}) {
         HeadFilter filter(fixed(2.0));
@@ -47,8 +47,8 @@ TEST(HeadFilter, a_step_is_answered_by_an_exponential_however_time_is_cut_up) {
     }
 }
 
-// White noise through y += a (x - y) has its variance times a / (2 - a).
-TEST(HeadFilter, noise_at_rest_is_reduced_as_much_as_theory_says) {
+// For white noise, y += a (x - y) multiplies the variance by a / (2 - a).
+TEST(HeadFilter, noise_at_rest_is_reduced_as_in_theory) {
     HeadFilter filter(fixed(1.15));
     SeededRandom random(2);
     Instant t{};
@@ -63,9 +63,9 @@ TEST(HeadFilter, noise_at_rest_is_reduced_as_much_as_theory_says) {
                 0.05 * 1e-3 * std::sqrt(a / 2.0));
 }
 
-// On a ramp the low-pass lags by v dt (1 - a) / a, and its own derivative is exact.
-TEST(HeadFilter, in_steady_motion_the_lag_is_the_low_pass_s_and_the_twist_is_exact) {
-    HeadFilterSettings settings;  // with adaption: the cut-off settles at min + beta v
+// On a ramp the low-pass lags by v dt (1 - a) / a; its derivative is exact.
+TEST(HeadFilter, in_steady_motion_the_lag_matches_theory_and_the_twist_is_exact) {
+    HeadFilterSettings settings;  // with adaptation: the cut-off settles at min + beta v
     HeadFilter filter(settings);
     constexpr double kSpeed = 0.2, kSpin = 0.8;
     Instant t{};
@@ -85,9 +85,9 @@ TEST(HeadFilter, in_steady_motion_the_lag_is_the_low_pass_s_and_the_twist_is_exa
     EXPECT_NEAR(filter.twist().angular_rad_s.y(), kSpin, 1e-9);
 }
 
-// A sine through the low-pass F = a / (1 - (1 - a) z^-1) and the prediction 1 + h (1 - z^-1) / dt, z = exp(i
-// w dt), against the sine h later.
-TEST(HeadFilter, the_error_of_prediction_on_a_sine_is_that_of_its_transfer_function) {
+// A sine through the low-pass F = a / (1 - (1 - a) z^-1) and the prediction 1 + h (1 - z^-1) / dt, with
+// z = exp(i w dt), against the sine h later.
+TEST(HeadFilter, the_prediction_error_on_a_sine_matches_its_transfer_function) {
     using Complex = std::complex<double>;
     constexpr double kAmplitude = 0.05, kAheadS = 0.03;
     for (const double hz : {0.5, 1.0, 2.0}) {
@@ -113,8 +113,8 @@ TEST(HeadFilter, the_error_of_prediction_on_a_sine_is_that_of_its_transfer_funct
     }
 }
 
-// The defaults on what they are for: 0.8 mm and 0.15 degrees of noise at 240 Hz, the picture 30 ms later.
-TEST(HeadFilter, the_defaults_are_quieter_at_rest_and_nearer_in_motion_than_the_raw_pose) {
+// The defaults in typical use: noise of 0.8 mm and 0.15 degrees at 240 Hz, display 30 ms later.
+TEST(HeadFilter, the_defaults_beat_the_raw_pose_at_rest_and_in_motion) {
     constexpr double kNoiseM = 0.8e-3, kNoiseRad = 0.15 * kDegreeRad, kRateHz = 240.0, kAheadS = 0.03;
     const auto rms = [&](double amplitude, double hz) {
         SeededRandom random(3);
@@ -128,7 +128,7 @@ TEST(HeadFilter, the_defaults_are_quieter_at_rest_and_nearer_in_motion_than_the_
             const auto truth = [&](double at_s) { return amplitude * std::sin(kTurn * hz * at_s); };
             const Vec3 noise_m = kNoiseM * Vec3(normal(random), normal(random), normal(random));
             const Vec3 noise_rad = kNoiseRad * Vec3(normal(random), normal(random), normal(random));
-            // Turned by six times as many radians as it is moved by metres: 0.05 m and 17 degrees.
+            // Rotation in rad is six times the translation in m: 0.05 m and 17 degrees.
             const Pose raw{Vec3(truth(s), 0.0, 0.0) + noise_m,
                            quat_from_rotation_vector(noise_rad) *
                                quat_from_rotation_vector(Vec3(0.0, 6.0 * truth(s), 0.0))};
@@ -146,8 +146,8 @@ TEST(HeadFilter, the_defaults_are_quieter_at_rest_and_nearer_in_motion_than_the_
         return std::array{std::sqrt(sum.p / sum.raw_p), std::sqrt(sum.r / sum.raw_r)};
     };
     const auto rest = rms(0.0, 1.0), slow = rms(0.05, 0.5), brisk = rms(0.05, 1.0);
-    // Measured when the defaults were chosen, position and rotation: 0.58 and 0.64 at rest, 0.71 and 0.49 at
-    // 0.5 Hz, 0.55 and 0.41 at 1 Hz.
+    // Error ratios when the defaults were chosen (position, rotation): 0.58, 0.64 at rest; 0.71, 0.49 at 0.5 Hz;
+    // 0.55, 0.41 at 1 Hz.
     for (const auto& ratio : {rest, slow, brisk}) {
         EXPECT_LT(ratio[0], 0.85);
         EXPECT_LT(ratio[1], 0.85);
@@ -167,12 +167,12 @@ TEST(HeadFilter, predicts_no_farther_than_its_horizon_and_never_backwards) {
     EXPECT_EQ(filter.at(t - milliseconds(20)).p_m.x(), filter.pose().p_m.x());
 }
 
-TEST(HeadFilter, after_a_gap_it_begins_anew_and_old_samples_are_left_out) {
+TEST(HeadFilter, restarts_after_a_gap_and_ignores_old_samples) {
     HeadFilter filter;
     Instant t{};
     for (int i = 0; i < 50; ++i, t += kPeriod) filter.add(t, at_x(0.01 * i));
     const Pose before = filter.pose();
-    filter.add(t - kPeriod, at_x(9.0));  // the time of the newest once more
+    filter.add(t - kPeriod, at_x(9.0));  // same time as the newest sample
     filter.add(t - milliseconds(100), at_x(9.0));
     EXPECT_EQ(filter.pose().p_m, before.p_m);
     filter.add(t + milliseconds(300), at_x(-1.0));
@@ -180,11 +180,11 @@ TEST(HeadFilter, after_a_gap_it_begins_anew_and_old_samples_are_left_out) {
     EXPECT_EQ(filter.twist().linear_m_s, Vec3(Vec3::Zero()));
 }
 
-TEST(HeadFilter, the_sign_of_a_quaternion_means_nothing) {
+TEST(HeadFilter, the_sign_of_a_quaternion_does_not_matter) {
     HeadFilter one, other;
     Instant t{};
     for (int i = 0; i < 100; ++i, t += kPeriod) {
-        Pose p = turned(0.05 * i);  // to 5 rad: w changes its sign on the way
+        Pose p = turned(0.05 * i);  // up to 5 rad: w changes its sign
         one.add(t, p);
         if (i % 2 == 1) p.q.coeffs() = -p.q.coeffs();
         other.add(t, p);

@@ -1,4 +1,4 @@
-// Frames of the tracker: checksums, values, pairs, counters; every cause of a refusal is met once.
+// Frames of the tracker: checksums, values, pairs, counters, and each cause of a refusal.
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
 
@@ -59,7 +59,7 @@ TEST(TrackerFrames, checksums_give_the_check_values_of_their_standards) {
     EXPECT_EQ(plain<Crc16>(kDigits), 0x29B1);
 }
 
-TEST(TrackerFrames, a_frame_under_another_identifier_fails_its_checksum) {
+TEST(TrackerFrames, a_frame_with_another_identifier_fails_its_checksum) {
     CanFrame pos = encode(PosFrame{0, 1, kSensorValid, Vec3(0.1, 0.2, 0.3)});
     pos.id = kPosId + 1;
     PosFrame out;
@@ -70,8 +70,8 @@ TEST(TrackerFrames, a_frame_under_another_identifier_fails_its_checksum) {
     EXPECT_EQ(decode(pose, pose_out), Refusal::crc);
 }
 
-// CRC-8 and CRC-16 find every error of one or two bits in messages of these lengths.
-TEST(TrackerFrames, any_one_or_two_wrong_bits_are_found) {
+// CRC-8 and CRC-16 detect all errors of one or two bits in messages of these lengths.
+TEST(TrackerFrames, any_one_or_two_wrong_bits_are_detected) {
     const CanFrame good[] = {encode(SyncFrame{77, 123456, TrackerStatus::ok}), encode(some_pose())};
     for (const CanFrame& frame : good) {
         const unsigned bits = frame.length * 8U;
@@ -89,7 +89,7 @@ TEST(TrackerFrames, any_one_or_two_wrong_bits_are_found) {
     }
 }
 
-RC_GTEST_PROP(TrackerFrames, a_pose_comes_back_within_half_a_step, (std::uint64_t seed)) {
+RC_GTEST_PROP(TrackerFrames, a_pose_round_trips_within_half_a_step, (std::uint64_t seed)) {
     SeededRandom random(seed);
     const auto within = [&random](double max) { return max * (2.0 * random.uniform() - 1.0); };
     const Pose T{Vec3(within(1.6), within(1.6), within(1.6)), random.rotation()};
@@ -111,7 +111,7 @@ RC_GTEST_PROP(TrackerFrames, a_pose_comes_back_within_half_a_step, (std::uint64_
     RC_ASSERT(angle(quat.q) < 2.1 / 4095);
 }
 
-RC_GTEST_PROP(TrackerFrames, whatever_the_bytes_what_comes_out_is_finite_and_of_unit_length,
+RC_GTEST_PROP(TrackerFrames, any_bytes_decode_to_finite_values_and_unit_quaternions,
               (std::uint64_t seed, bool fd)) {
     SeededRandom random(seed);
     CanFrame f;
@@ -119,7 +119,7 @@ RC_GTEST_PROP(TrackerFrames, whatever_the_bytes_what_comes_out_is_finite_and_of_
     f.length = fd ? kPoseBytes : kClassicBytes;
     f.id = fd ? kPoseId : kQuatId;
     for (auto& byte : f.data) byte = static_cast<std::uint8_t>(random.next());
-    // With the right checksum, so that the values are met.
+    // With a valid checksum, so that decoding reaches the values.
     if (fd) {
         const auto crc = crc_of<Crc16>(can_data_id(f.id), f.payload().subspan(2));
         f.data[0] = static_cast<std::uint8_t>(crc & 0xFFU);
@@ -137,7 +137,7 @@ RC_GTEST_PROP(TrackerFrames, whatever_the_bytes_what_comes_out_is_finite_and_of_
     }
 }
 
-TEST(TrackerFrames, a_pose_that_is_not_a_number_is_sent_as_not_valid) {
+TEST(TrackerFrames, a_pose_that_is_not_finite_is_sent_as_not_valid) {
     const double nan = std::numeric_limits<double>::quiet_NaN();
     PoseFrame pose = some_pose();
     pose.T_tracker_sensor.p_m.y() = nan;
@@ -152,7 +152,7 @@ TEST(TrackerFrames, a_pose_that_is_not_a_number_is_sent_as_not_valid) {
     EXPECT_EQ(decode(encode(QuatFrame{0, 0, Quat(nan, 0, 0, 1)}), quat), Refusal::norm);
 }
 
-TEST(TrackerFrames, values_beyond_the_layout_stop_at_its_ends) {
+TEST(TrackerFrames, values_beyond_the_range_saturate) {
     PosFrame pos;
     ASSERT_EQ(decode(encode(PosFrame{0, 0, kSensorValid, Vec3(99.0, -99.0, 1e300)}), pos), Refusal::none);
     EXPECT_DOUBLE_EQ(pos.p_m.x(), 32767 * 0.05e-3);
@@ -198,7 +198,7 @@ TEST_F(Classic, a_repeated_frame_gives_no_second_pose) {
 
 TEST_F(Classic, lost_periods_are_counted_and_a_jump_costs_one_period) {
     EXPECT_TRUE(period(65534));
-    EXPECT_TRUE(period(1));  // over the end: 65535 and 0 are missing
+    EXPECT_TRUE(period(1));  // across the wrap: 65535 and 0 are missing
     EXPECT_EQ(assembler_.missed(), 2U);
     sync(100);
     EXPECT_EQ(refused(Refusal::jump), 1U);
@@ -217,7 +217,7 @@ TEST_F(Classic, a_tracker_that_is_not_ready_gives_no_pose) {
     EXPECT_TRUE(period(2));
 }
 
-TEST_F(Classic, poses_that_mean_nothing_or_are_out_of_reach_are_refused) {
+TEST_F(Classic, invalid_or_out_of_reach_poses_are_refused) {
     sync(1);
     feed(quat(1));
     EXPECT_FALSE(feed(pos(1, 0, Vec3::Zero(), kSensorDistorted)));
@@ -232,11 +232,11 @@ TEST_F(Classic, poses_that_mean_nothing_or_are_out_of_reach_are_refused) {
     EXPECT_EQ(fix_.distortion, 1.0);
 }
 
-TEST_F(Classic, frames_of_other_senders_and_kinds_are_counted_by_their_cause) {
+TEST_F(Classic, foreign_and_wrong_frames_are_counted_by_cause) {
     CanFrame f = pos(1);
     f.id = 0x321;
     feed(f);
-    feed(pos(1, 2));  // a third sensor, where two are configured
+    feed(pos(1, 2));  // a third sensor; two are configured
     feed(encode(some_pose()));
     EXPECT_EQ(refused(Refusal::unknown_id), 3U);
     f = pos(1);
@@ -254,7 +254,7 @@ TEST_F(Classic, frames_of_other_senders_and_kinds_are_counted_by_their_cause) {
     EXPECT_EQ(refused(Refusal::crc), 1U);
 }
 
-TEST(TrackerFd, counters_are_kept_a_sensor_each) {
+TEST(TrackerFd, each_sensor_has_its_own_counter) {
     FixAssembler assembler(FixSettings{CanFormat::fd, 2, 1.0});
     TrackerFix fix;
     const auto feed = [&](std::uint8_t sensor, std::uint8_t counter) {
@@ -274,7 +274,7 @@ TEST(TrackerFd, counters_are_kept_a_sensor_each) {
     EXPECT_EQ(assembler.refused()[Refusal::jump], 1U);
     EXPECT_EQ(assembler.refused().total(), 2U);
     assembler.restart();
-    EXPECT_TRUE(feed(1, 77));  // the bus was away: any counter is a beginning
+    EXPECT_TRUE(feed(1, 77));  // after a restart any counter is accepted
 }
 
 TEST(TrackerFd, reserved_bits_and_a_wrong_sensor_number_are_malformed_and_a_long_quaternion_has_a_bad_norm) {

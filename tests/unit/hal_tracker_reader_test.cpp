@@ -1,4 +1,4 @@
-// The reader's rounds on a source that a test makes up, and the two clocks; in simulated time.
+// The reader on a scripted source, and the two clocks; in simulated time.
 #include <gtest/gtest.h>
 
 #include <deque>
@@ -14,7 +14,7 @@ using std::chrono::microseconds;
 using std::chrono::milliseconds;
 using std::chrono::seconds;
 
-// Gives what was put in, in order.
+// Returns the given frames in order.
 class Script final : public CanSource {
 public:
     void open() override {}
@@ -46,7 +46,7 @@ protected:
         clock_.advance(seconds(100));
         reader_.opened();
     }
-    // A period later: the tracker measures and sends, x in metres.
+    // One period later, the tracker measures x (m) and sends it.
     void send(double x_m) {
         clock_.advance(microseconds(5000));
         time_us_ += 5000;
@@ -83,23 +83,23 @@ protected:
     Script source_;
     CanReader reader_{settings(), source_, clock_};
     std::uint8_t counter_ = 0;
-    std::uint32_t time_us_ = 0xFFFFF000;  // about to go round
+    std::uint32_t time_us_ = 0xFFFFF000;  // close to the wrap
 };
 
-TEST_F(Reader, a_sample_is_stamped_with_its_measurement_s_time) {
+TEST_F(Reader, a_sample_has_the_time_of_its_measurement) {
     sent(0.1);
     EXPECT_EQ(newest().state, TrackerState::fresh);
     EXPECT_NEAR(newest_x(), 0.1, 26e-6);
     EXPECT_EQ(to_ns(newest().taken_at), to_ns(clock_.now() - milliseconds(4)));
     const Instant first = newest().taken_at;
     send(0.2);
-    clock_.advance(milliseconds(7));  // this one was on its way for longer
+    clock_.advance(milliseconds(7));  // this frame takes longer to arrive
     reader_.round(Duration{0});
     EXPECT_NEAR(newest_x(), 0.2, 26e-6);
-    EXPECT_NEAR(to_us(newest().taken_at - first), 5000.0, 10.0);  // the drift that is allowed for
+    EXPECT_NEAR(to_us(newest().taken_at - first), 5000.0, 10.0);  // the allowed drift
 }
 
-TEST_F(Reader, state_follows_age_alone) {
+TEST_F(Reader, the_state_depends_only_on_the_age) {
     sent(0.1);
     const Instant taken = newest().taken_at;
     TrackerSample s;
@@ -107,11 +107,11 @@ TEST_F(Reader, state_follows_age_alone) {
     EXPECT_EQ(reader_.read(0, s, taken + milliseconds(51)), TrackerState::frozen);
     EXPECT_EQ(reader_.read(0, s, taken + seconds(1)), TrackerState::frozen);
     EXPECT_EQ(reader_.read(0, s, taken + milliseconds(1001)), TrackerState::lost);
-    EXPECT_NEAR(s.T_tracker_sensor.p_m.x(), 0.1, 26e-6);  // the pose stands all the same
+    EXPECT_NEAR(s.T_tracker_sensor.p_m.x(), 0.1, 26e-6);  // the pose is kept
     EXPECT_EQ(reader_.read(1, s, taken), TrackerState::lost);
 }
 
-TEST_F(Reader, a_flood_costs_a_bounded_round_and_a_pause) {
+TEST_F(Reader, a_flood_takes_a_bounded_round_and_a_pause) {
     send(0.1);
     source_.endless = true;
     const Instant before = clock_.now();
@@ -124,17 +124,17 @@ TEST_F(Reader, a_flood_costs_a_bounded_round_and_a_pause) {
     EXPECT_EQ((clock_.now() - before).count(), CanReader::kFloodPause.count());
 }
 
-// The thread was kept off the processor for a while: a queue of old frames, the newest last.
-TEST_F(Reader, old_frames_of_a_queue_are_refused_and_the_newest_is_kept) {
+// After a pause of the thread: a queue of old frames, the newest last.
+TEST_F(Reader, old_queued_frames_are_refused_and_the_newest_is_kept) {
     for (int i = 0; i < 20; ++i) sent(0.1);
     for (int i = 0; i < 40; ++i) send(0.001 * i);
     reader_.round(Duration{0});
     EXPECT_NEAR(newest_x(), 0.039, 26e-6);
-    EXPECT_EQ(reader_.counts().refused[Refusal::stale], 36U);  // all but those of three periods
+    EXPECT_EQ(reader_.counts().refused[Refusal::stale], 36U);  // all but those of the last three periods
     EXPECT_EQ(newest().state, TrackerState::fresh);
 }
 
-// The first look finds a queue: only then is it known how late its first frame was.
+// The first read finds a queue; only its last frame shows how late the first one was.
 TEST_F(Reader, a_queue_at_the_start_costs_samples_but_time_never_runs_backwards) {
     for (int i = 1; i <= 5; ++i) send(0.001 * i);
     clock_.advance(milliseconds(2));
@@ -160,20 +160,20 @@ TEST_F(Reader, interface_down_is_flagged_and_the_next_frame_ends_it) {
     reader_.round(Duration{0});
     EXPECT_EQ(reader_.health().link, TrackerLink::down);
     EXPECT_EQ(reader_.health().link_losses, 1U);
-    counter_ = static_cast<std::uint8_t>(counter_ + 100);  // what was sent meanwhile nobody saw
+    counter_ = static_cast<std::uint8_t>(counter_ + 100);  // frames sent in between are lost
     sent(0.2);
     EXPECT_EQ(reader_.health().link, TrackerLink::up);
     EXPECT_NEAR(newest_x(), 0.2, 26e-6);
     EXPECT_EQ(source_.reopens, 0);
 }
 
-TEST_F(Reader, an_interface_that_is_gone_is_reopened_twice_a_second_until_it_works) {
+TEST_F(Reader, a_lost_interface_is_reopened_twice_a_second_until_it_works) {
     source_.fault = CanFault::gone;
     source_.works = false;
     reader_.round(Duration{0});
     EXPECT_EQ(reader_.health().link, TrackerLink::gone);
     const int received = source_.receives;
-    for (int i = 0; i < 200; ++i) {  // two seconds of rounds, each as patient as the thread's
+    for (int i = 0; i < 200; ++i) {  // two seconds of rounds with the timeout of the thread
         const Instant before = clock_.now();
         reader_.round(milliseconds(10));
         if (clock_.now() == before) clock_.advance(milliseconds(10));
@@ -208,7 +208,7 @@ TEST_F(Reader, bus_off_is_flagged_until_the_controller_restarts) {
     EXPECT_EQ(reader_.health().link, TrackerLink::up);
 }
 
-TEST_F(Reader, what_the_kernel_dropped_is_added_up) {
+TEST_F(Reader, kernel_drops_are_added_up) {
     source_.dropped = 7;
     reader_.round(Duration{0});
     source_.dropped = 5;
@@ -216,7 +216,7 @@ TEST_F(Reader, what_the_kernel_dropped_is_added_up) {
     EXPECT_EQ(reader_.health().dropped, 12U);
 }
 
-TEST_F(Reader, settings_that_no_tracker_has_are_refused) {
+TEST_F(Reader, invalid_settings_are_refused) {
     const auto refused = [this](const auto& change) {
         CanTrackerSettings s = settings();
         change(s);
@@ -230,9 +230,8 @@ TEST_F(Reader, settings_that_no_tracker_has_are_refused) {
     refused([](auto& s) { s.fix.reach_m = -1.0; });
 }
 
-// An hour of a quartz that is off, frames up to 3 ms on their way: the delay found is right within a
-// millisecond.
-TEST(TrackerClock, follows_a_quartz_that_drifts_and_a_counter_that_goes_round) {
+// One hour with a drifting quartz and frames up to 3 ms late: the estimated delay is right within 1 ms.
+TEST(TrackerClock, follows_a_drifting_quartz_and_a_counter_that_wraps) {
     for (const double drift : {-100e-6, 0.0, 100e-6}) {
         SeededRandom random(5);
         TrackerClock clock(microseconds(4167));
@@ -241,7 +240,7 @@ TEST(TrackerClock, follows_a_quartz_that_drifts_and_a_counter_that_goes_round) {
             const double measured_s = 0.1 * i;
             const auto time_us = static_cast<std::uint32_t>(
                 static_cast<std::uint64_t>(std::llround(1e6 * measured_s * (1.0 + drift))) + 0xF0000000U);
-            // Now and then, and at first, one comes without delay, as on a bus that is mostly idle.
+            // The first frame and some others arrive without delay, as on a bus that is mostly idle.
             const double delay_s = i % 10 == 0 ? 0.0 : 3e-3 * random.uniform();
             const Instant arrived = instant_from_ns(std::llround(1e9 * (measured_s + delay_s)));
             Instant taken{};
@@ -255,14 +254,14 @@ TEST(TrackerClock, follows_a_quartz_that_drifts_and_a_counter_that_goes_round) {
     }
 }
 
-TEST(TrackerClock, a_tracker_that_is_switched_on_again_begins_anew) {
+TEST(TrackerClock, restarts_after_the_tracker_was_power_cycled) {
     TrackerClock clock(milliseconds(5));
     Instant taken{}, now = instant_from_ns(0) + seconds(50);
     ASSERT_TRUE(clock.stamp(7'000'000, now, taken));
     ASSERT_TRUE(clock.stamp(100, now += milliseconds(300), taken));
     EXPECT_EQ(clock.restarts(), 1U);
     EXPECT_EQ(taken, now);
-    // And one whose clock was set back by less: stale at first, believed after a quarter of a second.
+    // A clock set back by a smaller amount: samples are stale at first and accepted after 0.25 s.
     int stale = 0;
     for (std::uint32_t i = 1; i <= 100; ++i)
         stale += clock.stamp(100 + 5000 * i - 500'000, now += milliseconds(5), taken) ? 0 : 1;

@@ -1,4 +1,4 @@
-// The region of the bone: a size of its own, and every way in which a reader refuses it.
+// The region of the bone: its variable size, and all errors that a reader reports.
 #include <fcntl.h>
 #include <gtest/gtest.h>
 #include <sys/mman.h>
@@ -40,7 +40,7 @@ std::string bone_refusal_of(FileDescriptor fd) {
     return refusal;
 }
 
-TEST(BoneRegion, a_reader_sees_what_is_cut_and_what_it_is_of) {
+TEST(BoneRegion, a_reader_gets_the_removed_bone_and_the_scene_checksum) {
     OwnedBoneRegion owned(small_head());
     ASSERT_EQ(owned.revisions().size(), 6U);
     ASSERT_EQ(owned.densities().size(), 6U * 512);
@@ -64,7 +64,7 @@ TEST(BoneRegion, a_reader_sees_what_is_cut_and_what_it_is_of) {
     EXPECT_EQ(brick, (std::array<std::uint8_t, 512>{}));
 }
 
-TEST(BoneRegion, is_refused_until_ready_and_where_it_is_another_region) {
+TEST(BoneRegion, is_refused_until_ready_and_if_it_is_another_region) {
     OwnedBoneRegion owned(small_head());
     EXPECT_NE(bone_refusal_of(copy_of(owned.fd())).find("ready mark"), std::string::npos);
     OwnedRegion<GuiRegion> other;
@@ -76,7 +76,7 @@ TEST(BoneRegion, is_refused_until_ready_and_where_it_is_another_region) {
     EXPECT_TRUE(MappedRegion<GuiRegion>::map(copy_of(owned.fd()), refusal).empty());
 }
 
-TEST(BoneRegion, counts_out_of_bounds_are_not_made) {
+TEST(BoneRegion, counts_out_of_range_are_refused) {
     BoneRegionHead head = small_head();
     head.bricks = 0;
     EXPECT_THROW(OwnedBoneRegion{head}, StartupError);
@@ -87,7 +87,7 @@ TEST(BoneRegion, counts_out_of_bounds_are_not_made) {
     EXPECT_THROW(OwnedBoneRegion{head}, StartupError);
 }
 
-// A file with all seals, of any head, size and length of content.
+// A file with all seals and any header, size and content length.
 struct ForgedBone {
     BoneRegionHead head = small_head();
     std::uint64_t content = 128 + 64 + 6 * 512;

@@ -1,5 +1,4 @@
-// Processes that are killed at any instruction: the other side keeps whole values, goes on and attaches
-// again.
+// Processes killed at any instruction: the other side keeps complete values, continues, and attaches again.
 #include <fcntl.h>
 #include <gtest/gtest.h>
 #include <poll.h>
@@ -38,7 +37,7 @@ struct DeathRegion {
     using Topics = TopicList<Topic>;
 };
 
-// A child that runs until it is killed; it never returns into the tests.
+// A child that runs until killed; it never returns into the tests.
 class Child {
 public:
     explicit Child(const std::function<void()>& work) : pid_(fork()) {
@@ -62,7 +61,7 @@ private:
     pid_t pid_;
 };
 
-TEST(Death, a_writer_killed_while_publishing_leaves_a_whole_value_and_the_next_writer_goes_on) {
+TEST(Death, a_writer_killed_while_publishing_leaves_a_whole_value_and_the_next_writer_continues) {
     OwnedRegion<DeathRegion> region;
     region.mark_ready();
     std::string refusal;
@@ -80,7 +79,7 @@ TEST(Death, a_writer_killed_while_publishing_leaves_a_whole_value_and_the_next_w
                 region->latest.publish(stress::pattern<512>(n));
             }
         });
-        // At full speed for a random while, then dead in the middle of something.
+        // The writer runs for a random time and is then killed at an arbitrary point.
         const std::uint64_t until = before + 5 + random() % 200;
         while (reader->latest.count() < until) {
         }
@@ -104,12 +103,12 @@ TEST(Death, a_writer_killed_while_publishing_leaves_a_whole_value_and_the_next_w
         EXPECT_GT(taken, 0U);
         EXPECT_LE(taken, 16U);
         EXPECT_EQ(cursor.next, reader->ring.pushed() + 1)
-            << "the reader is at the end whatever the last cell holds";
+            << "the reader reaches the end for any content of the last cell";
     }
-    EXPECT_GT(cut_short, 0U) << "no kill came between push and publish; the test has proved little";
+    EXPECT_GT(cut_short, 0U) << "no kill fell between push and publish; the test proves little";
 }
 
-TEST(Death, a_child_that_asked_for_it_ends_with_its_parent) {
+TEST(Death, a_child_ends_with_its_parent_on_request) {
     std::array<int, 2> life{};
     ASSERT_EQ(pipe(life.data()), 0);
     Child parent([&] {
@@ -124,11 +123,11 @@ TEST(Death, a_child_that_asked_for_it_ends_with_its_parent) {
     char said = 0;
     ASSERT_EQ(read(life[0], &said, 1), 1);
     parent.kill_now();
-    EXPECT_EQ(read(life[0], &said, 1), 0);  // comes back once both are gone
+    EXPECT_EQ(read(life[0], &said, 1), 0);  // returns when both processes have ended
     close(life[0]);
 }
 
-TEST(Death, a_child_that_asked_too_late_is_told) {
+TEST(Death, a_request_after_the_end_of_the_parent_fails) {
     const pid_t child = fork();
     if (child == 0) _exit(end_with_parent(getppid() + 1, SIGKILL) ? 0 : 3);
     int status = 0;
@@ -147,7 +146,7 @@ protected:
     std::string folder_;
 };
 
-TEST_F(LinkDeath, the_controller_sees_every_visual_process_come_and_die_and_reads_each) {
+TEST_F(LinkDeath, the_controller_reads_each_visual_process_that_starts_and_dies) {
     OwnedRegion<RtRegion> rt;
     rt.mark_ready();
     LinkServer server("t", rt.fd());
@@ -166,7 +165,7 @@ TEST_F(LinkDeath, the_controller_sees_every_visual_process_come_and_die_and_read
                 own->load.publish(load);
             }
         });
-        // Where the machine stood still, the one before may have come a second time.
+        // On a stalled machine the previous process may appear a second time.
         LinkServer::News news;
         while (news.gui_pid != static_cast<std::uint32_t>(gui.pid())) news = server.poll(100);
         ASSERT_TRUE(news.gui_arrived);
@@ -179,12 +178,12 @@ TEST_F(LinkDeath, the_controller_sees_every_visual_process_come_and_die_and_read
         bool left = false;
         while (!left) left = server.poll(100).gui_left;
         LoadTopic load{};
-        ASSERT_TRUE(region->load.read(load)) << "the last value outlives its writer";
+        ASSERT_TRUE(region->load.read(load)) << "the last value remains after its writer has ended";
         EXPECT_EQ(load.frame, 1000U + static_cast<std::uint64_t>(round));
     }
 }
 
-TEST_F(LinkDeath, the_visual_process_goes_on_when_the_controller_is_killed_and_attaches_to_the_next) {
+TEST_F(LinkDeath, the_visual_process_survives_a_killed_controller_and_attaches_to_the_next) {
     OwnedRegion<GuiRegion> gui;
     gui.mark_ready();
     LinkClient client("t", gui.fd());
@@ -196,7 +195,7 @@ TEST_F(LinkDeath, the_visual_process_goes_on_when_the_controller_is_killed_and_a
             health.cycle = 500 + static_cast<std::uint64_t>(round);
             own->health.publish(health);
             own.mark_ready();
-            LinkServer server("t", own.fd());  // the lock of the killed one is free again
+            LinkServer server("t", own.fd());  // the killed process has released its lock
             while (true) server.poll(50);
         });
         LinkClient::News news;

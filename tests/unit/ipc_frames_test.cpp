@@ -1,4 +1,4 @@
-// The figures of frames: what is believed of them, their words, and the percentiles they come from.
+// Frame metrics: plausibility checks, texts, and the percentiles behind them.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -29,7 +29,7 @@ FrameMetrics good() {
     return f;
 }
 
-TEST(Frames, figures_that_cannot_be_are_refused) {
+TEST(Frames, impossible_metrics_are_refused) {
     EXPECT_TRUE(plausible(good()));
     EXPECT_TRUE(plausible(FrameMetrics{}));
     const auto refused = [](const auto& spoil) {
@@ -50,13 +50,13 @@ TEST(Frames, figures_that_cannot_be_are_refused) {
     for (std::size_t i = 0; i < kPasses; ++i) {
         EXPECT_TRUE(refused([i](FrameMetrics& f) { f.pass[i].work_p50_s = kNaN; }));
         EXPECT_TRUE(refused([i](FrameMetrics& f) { f.pass[i].work_p50_s = -1.0F; }));
-        EXPECT_TRUE(refused([i](FrameMetrics& f) { f.pass[i].drawn_p99_s = 1.0F; }));  // and p50 unknown
+        EXPECT_TRUE(refused([i](FrameMetrics& f) { f.pass[i].drawn_p99_s = 1.0F; }));  // without p50
         EXPECT_TRUE(refused([i](FrameMetrics& f) { f.pass[i].drawn_p50_s = kNaN; }));
     }
     EXPECT_TRUE(refused([](FrameMetrics& f) { f.path[2].work_p99_s = 1e9F; }));
 }
 
-TEST(Frames, any_bytes_are_judged_without_harm) {
+TEST(Frames, any_bytes_are_checked_without_harm) {
     std::mt19937 random(5);
     for (int i = 0; i < 20000; ++i) {
         FrameMetrics f{};
@@ -79,17 +79,17 @@ TEST(Frames, passes_and_paths_have_names_of_their_own) {
     EXPECT_STREQ(visual_path_text(kVisualPaths), "");
 }
 
-TEST(RecentTimes, percentiles_are_of_the_last_ones_alone) {
+TEST(RecentTimes, percentiles_cover_only_the_window) {
     RecentTimes times(100);
     EXPECT_EQ(times.percentile_s(0.5), 0.0F);
     times.add(7.0);
     EXPECT_EQ(times.percentile_s(0.0), 7.0F);
     EXPECT_EQ(times.percentile_s(0.99), 7.0F);
-    for (int i = 1; i <= 100; ++i) times.add(i);  // the seven is gone with the last
+    for (int i = 1; i <= 100; ++i) times.add(i);  // the 7 has left the window
     EXPECT_EQ(times.size(), 100U);
     EXPECT_EQ(times.percentile_s(0.0), 1.0F);
     EXPECT_EQ(times.percentile_s(0.5), 51.0F);
-    EXPECT_EQ(times.percentile_s(0.99), 100.0F);  // never understated
+    EXPECT_EQ(times.percentile_s(0.99), 100.0F);  // rounded up
     for (int i = 0; i < 50; ++i) times.add(1000.0);
     EXPECT_EQ(times.percentile_s(0.25), 76.0F);
     EXPECT_EQ(times.most_s(), 1000.0F);

@@ -1,5 +1,5 @@
-// Latest and Ring in one process: the arithmetic of slots and cursors, broken writers, and threads at full
-// speed (label tsan: the thread sanitizer sees the same instructions that run in the release).
+// Latest and Ring in one process: arithmetic of slots and cursors, broken writers, and threads at full speed
+// (label tsan: the thread sanitizer checks the same instructions as in the release build).
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
 
@@ -19,7 +19,7 @@ namespace {
 
 using Pattern = stress::Pattern<40>;
 
-TEST(Latest, zero_bytes_are_an_empty_one) {
+TEST(Latest, zero_bytes_are_an_empty_value) {
     const auto latest = std::make_unique<Latest<Pattern>>();
     Pattern value = stress::pattern<40>(7);
     EXPECT_FALSE(latest->read(value));
@@ -27,7 +27,7 @@ TEST(Latest, zero_bytes_are_an_empty_one) {
     EXPECT_EQ(value.number(), 7U) << "a failed read changed the caller's value";
 }
 
-TEST(Latest, read_gives_the_newest_as_often_as_asked) {
+TEST(Latest, read_returns_the_newest_value_repeatedly) {
     const auto latest = std::make_unique<Latest<Pattern>>();
     for (std::uint64_t n = 1; n < 30; ++n) {
         latest->publish(stress::pattern<40>(n));
@@ -41,9 +41,9 @@ TEST(Latest, read_gives_the_newest_as_often_as_asked) {
     }
 }
 
-// Whatever bytes lie in the shared memory, a reader comes back with a bounded number of tries, and what it
-// takes is what some slot held.
-RC_GTEST_PROP(Latest, any_bytes_are_read_in_bounded_time_or_not_at_all, ()) {
+// With any bytes in shared memory, a reader returns after a bounded number of tries with the content of a slot or
+// nothing.
+RC_GTEST_PROP(Latest, any_bytes_are_read_or_rejected_in_bounded_time, ()) {
     using Small = Latest<stress::Pattern<2>>;
     const auto words = *rc::gen::container<std::vector<std::uint64_t>>(
         sizeof(Small) / 8,
@@ -52,7 +52,7 @@ RC_GTEST_PROP(Latest, any_bytes_are_read_in_bounded_time_or_not_at_all, ()) {
     std::memcpy(static_cast<void*>(latest.get()), words.data(), sizeof(Small));
     stress::Pattern<2> value = stress::pattern<2>(5);
     if (!latest->read(value)) RC_ASSERT(value.number() == 5U);
-    // A new writer goes on from there, if the count is not at the end of its range.
+    // A new writer continues, unless the count is near the end of its range.
     if (latest->count() < ~0ULL / 4) {
         latest->publish(stress::pattern<2>(9));
         RC_ASSERT(latest->read(value));
@@ -60,7 +60,7 @@ RC_GTEST_PROP(Latest, any_bytes_are_read_in_bounded_time_or_not_at_all, ()) {
     }
 }
 
-TEST(Ring, records_come_in_order_once_and_whole) {
+TEST(Ring, records_arrive_once_in_order_and_complete) {
     const auto ring = std::make_unique<Ring<Pattern, 16>>();
     RingCursor cursor;
     Pattern value{};
@@ -77,7 +77,7 @@ TEST(Ring, records_come_in_order_once_and_whole) {
     EXPECT_EQ(cursor.missed, 0U);
 }
 
-RC_GTEST_PROP(Ring, a_lapped_reader_learns_exactly_how_many_it_missed, ()) {
+RC_GTEST_PROP(Ring, a_lapped_reader_gets_the_exact_number_of_missed_records, ()) {
     const auto ring = std::make_unique<Ring<stress::Pattern<2>, 16>>();
     RingCursor cursor;
     stress::Pattern<2> value{};
@@ -90,12 +90,12 @@ RC_GTEST_PROP(Ring, a_lapped_reader_learns_exactly_how_many_it_missed, ()) {
             last = value.number();
             ++seen;
         }
-        RC_ASSERT(last == written);  // the newest is never among the missed
+        RC_ASSERT(last == written);  // the newest record is never missed
         RC_ASSERT(seen + cursor.missed == written);
     }
 }
 
-TEST(Ring, tail_skips_what_was_there_before) {
+TEST(Ring, tail_skips_earlier_records) {
     const auto ring = std::make_unique<Ring<Pattern, 16>>();
     for (std::uint64_t n = 1; n <= 5; ++n) ring->push(stress::pattern<40>(n));
     RingCursor cursor = ring->tail();
@@ -115,7 +115,7 @@ TEST(Ring, a_count_that_runs_backwards_restarts_the_reader) {
     for (std::uint64_t n = 1; n <= 10; ++n) ring->push(stress::pattern<40>(n));
     while (ring->next(cursor, value)) {
     }
-    std::memset(static_cast<void*>(ring.get()), 0, sizeof(Small));  // a writer that starts over in place
+    std::memset(static_cast<void*>(ring.get()), 0, sizeof(Small));  // a writer that restarts in place
     EXPECT_FALSE(ring->next(cursor, value));
     ring->push(stress::pattern<40>(1));
     ASSERT_TRUE(ring->next(cursor, value));
@@ -135,10 +135,10 @@ RC_GTEST_PROP(Ring, any_bytes_and_any_cursor_are_read_in_bounded_time,
     stress::Pattern<2> value{};
     int taken = 0;
     while (taken < 100 && ring->next(cursor, value)) ++taken;
-    RC_ASSERT(taken <= 4);  // no more than the ring holds
+    RC_ASSERT(taken <= 4);  // at most the capacity of the ring
 }
 
-TEST(LatestThreads, readers_at_full_speed_never_see_a_torn_or_an_older_value) {
+TEST(LatestThreads, readers_at_full_speed_never_get_a_torn_or_older_value) {
     const auto latest = std::make_unique<Latest<Pattern>>();
     std::atomic<bool> stop{false};
     std::vector<std::thread> readers;
@@ -165,7 +165,7 @@ TEST(LatestThreads, readers_at_full_speed_never_see_a_torn_or_an_older_value) {
     EXPECT_EQ(backwards, 0U);
 }
 
-TEST(RingThreads, a_reader_at_full_speed_sees_every_record_whole_and_in_order_or_knows_that_it_missed_it) {
+TEST(RingThreads, a_reader_at_full_speed_gets_or_counts_every_record) {
     const auto ring = std::make_unique<Ring<Pattern, 64>>();
     std::atomic<std::uint64_t> written{0};
     std::atomic<bool> stop{false};

@@ -1,4 +1,4 @@
-// The link between processes, both ends in one process: every step is driven by poll(), so nothing sleeps.
+// The link between processes, with both ends in one process: poll() drives each step, so no test sleeps.
 #include <fcntl.h>
 #include <gtest/gtest.h>
 #include <sys/socket.h>
@@ -36,7 +36,7 @@ protected:
     }
     void TearDown() override { std::filesystem::remove_all(folder_); }
 
-    // A client that says whatever it is told to.
+    // A client without protocol; the test sends its messages.
     FileDescriptor raw_client() const {
         FileDescriptor s(socket(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC, 0));
         sockaddr_un address{};
@@ -69,10 +69,10 @@ protected:
     OwnedRegion<GuiRegion> gui_;
 };
 
-TEST_F(Link, both_sides_read_the_others_region) {
+TEST_F(Link, both_sides_read_the_region_of_the_other) {
     LinkServer server("t", rt_.fd());
     LinkClient client("t", gui_.fd());
-    EXPECT_FALSE(client.poll().arrived);  // has asked
+    EXPECT_FALSE(client.poll().arrived);  // the request is sent
     LinkServer::News at_server = server.poll(0);
     ASSERT_TRUE(at_server.gui_arrived);
     EXPECT_EQ(at_server.gui_pid, static_cast<std::uint32_t>(getpid()));
@@ -97,7 +97,7 @@ TEST_F(Link, both_sides_read_the_others_region) {
     EXPECT_EQ(server.refused(), 0U);
 }
 
-TEST_F(Link, the_region_of_the_bone_goes_out_with_the_other) {
+TEST_F(Link, the_bone_region_is_sent_with_the_main_region) {
     BoneRegionHead head{};
     head.bricks = 3;
     head.brick_bytes = 512;
@@ -125,7 +125,7 @@ TEST_F(Link, the_region_of_the_bone_goes_out_with_the_other) {
     EXPECT_FALSE(news.bone_fd.valid());
 }
 
-TEST_F(Link, the_controller_knows_who_records_until_that_one_is_gone) {
+TEST_F(Link, the_controller_counts_recorders_while_they_are_connected) {
     LinkServer server("t", rt_.fd());
     using Recorders = LinkServer::Recorders;
     EXPECT_EQ(server.recorders(), Recorders{});
@@ -153,7 +153,7 @@ TEST_F(Link, second_controller_is_refused_with_the_first_ones_process_id) {
     const LinkServer first("t", rt_.fd());
     try {
         const LinkServer second("t", rt_.fd());
-        FAIL() << "a second controller was let in";
+        FAIL() << "the second controller started";
     } catch (const StartupError& e) {
         EXPECT_NE(std::string(e.what()).find("process " + std::to_string(getpid())), std::string::npos)
             << e.what();
@@ -161,10 +161,10 @@ TEST_F(Link, second_controller_is_refused_with_the_first_ones_process_id) {
     EXPECT_NO_THROW(LinkServer("other", rt_.fd()));
 }
 
-TEST_F(Link, client_waits_in_words_and_attaches_when_the_controller_comes_and_comes_again) {
+TEST_F(Link, client_reports_waiting_and_attaches_to_each_new_controller) {
     LinkClient client("t", -1);
     EXPECT_FALSE(client.poll().arrived);
-    EXPECT_NE(client.status_text().find("none is running"), std::string::npos) << client.status_text();
+    EXPECT_NE(client.status_text().find("it is not running"), std::string::npos) << client.status_text();
     for (int round = 0; round < 3; ++round) {
         auto server = std::make_unique<LinkServer>("t", rt_.fd());
         bool arrived = false;
@@ -178,7 +178,7 @@ TEST_F(Link, client_waits_in_words_and_attaches_when_the_controller_comes_and_co
     }
 }
 
-TEST_F(Link, second_visual_process_watches_and_takes_over_when_the_first_goes) {
+TEST_F(Link, second_visual_process_observes_and_takes_over_when_the_first_ends) {
     LinkServer server("t", rt_.fd());
     auto first = std::make_unique<LinkClient>("t", gui_.fd());
     LinkClient second("t", gui_.fd());
@@ -195,7 +195,7 @@ TEST_F(Link, second_visual_process_watches_and_takes_over_when_the_first_goes) {
     EXPECT_TRUE(news.gui_fd.valid());
 }
 
-TEST_F(Link, garbage_is_dropped_and_counted_and_hurts_nobody_else) {
+TEST_F(Link, garbage_is_dropped_and_counted_without_effect_on_others) {
     LinkServer server("t", rt_.fd());
     LinkClient watcher("t", -1);
     watcher.poll();
@@ -269,22 +269,22 @@ TEST_F(Link, garbage_is_dropped_and_counted_and_hurts_nobody_else) {
         server.poll(0);
         EXPECT_EQ(answer(s), static_cast<std::uint32_t>(LinkAnswer::attached));
         say(s, hello(LinkRole::observer));
-        expect_refusal("more than a hello");
+        expect_refusal("a second hello");
     }
     { raw_client(); }
-    expect_refusal("left without a word");
+    expect_refusal("closed without a hello");
     EXPECT_FALSE(watcher.poll().left);
     EXPECT_TRUE(watcher.attached());
 }
 
-TEST_F(Link, silent_clients_hold_neither_the_server_nor_their_places) {
+TEST_F(Link, silent_clients_block_neither_the_server_nor_its_slots) {
     LinkServer server("t", rt_.fd());
     std::vector<FileDescriptor> silent;
     for (int i = 0; i < 12; ++i) {
         silent.push_back(raw_client());
         server.poll(0);
     }
-    // The oldest of more than eight; all of those whose two seconds were over on a machine that stood still.
+    // Refused: the oldest clients beyond eight, or on a slow machine all that were silent for two seconds.
     EXPECT_GE(server.refused(), 4U);
     LinkClient client("t", -1);
     client.poll();
@@ -321,16 +321,16 @@ TEST_F(Link, client_refuses_a_controller_that_answers_garbage) {
     FileDescriptor s(accept(fake.get(), nullptr, nullptr));
     EXPECT_EQ(send(s.get(), "welcome", 7, 0), 7);
     EXPECT_FALSE(client.poll().arrived);
-    EXPECT_NE(client.status_text().find("garbage"), std::string::npos) << client.status_text();
+    EXPECT_NE(client.status_text().find("invalid"), std::string::npos) << client.status_text();
     EXPECT_FALSE(client.attached());
 }
 
-TEST_F(Link, folder_that_others_may_write_to_is_refused_by_both_sides) {
+TEST_F(Link, folder_writable_by_others_is_refused_by_both_sides) {
     ASSERT_EQ(chmod(folder_.c_str(), 0777), 0);
     EXPECT_THROW(LinkServer("t", rt_.fd()), StartupError);
     LinkClient client("t", -1);
     client.poll();
-    EXPECT_NE(client.status_text().find("others may write"), std::string::npos) << client.status_text();
+    EXPECT_NE(client.status_text().find("other users may write"), std::string::npos) << client.status_text();
     ASSERT_EQ(chmod(folder_.c_str(), 0700), 0);
 
     const std::string link = folder_ + "/link";

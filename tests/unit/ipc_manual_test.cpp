@@ -1,4 +1,4 @@
-// Pages and completion of a small program whose help texts hold all that roff and bash take for their own.
+// Manual pages and completion of a small program whose help texts contain the special characters of roff and bash.
 #include <gtest/gtest.h>
 
 #include <CLI/CLI.hpp>
@@ -68,7 +68,7 @@ TEST(Manual, text_is_escaped_for_roff) {
     EXPECT_EQ(roff("\xC3"), "\\[uFFFD]");
 }
 
-TEST(Manual, no_line_of_a_help_text_is_a_request_to_roff) {
+TEST(Manual, no_line_of_a_help_text_is_a_roff_request) {
     const std::string text = page_of("small-work");
     EXPECT_TRUE(holds(text, "\\&.leading dot and \\(aqquote\\(aq and \\e and"));
     EXPECT_FALSE(holds(text, "\t"));
@@ -113,14 +113,14 @@ TEST(Manual, the_title_has_the_version_and_no_date_of_the_build) {
     ::unsetenv("SOURCE_DATE_EPOCH");
 }
 
-TEST(Manual, name_and_exit_status_come_from_description_and_footer) {
+TEST(Manual, name_and_exit_status_are_from_description_and_footer) {
     const std::string text = page_of("small");
     EXPECT_TRUE(holds(text, ".SH NAME\nsmall \\- measures a thing\n"));
     EXPECT_TRUE(holds(text, ".SH DESCRIPTION\nMeasures a thing. Second sentence.\n"));
     EXPECT_TRUE(holds(text, ".TP\n\\fB0\\fR\nAs asked.\n.TP\n\\fB1\\fR\nError.\n"));
 }
 
-TEST(Manual, completion_knows_choices_numbers_and_files) {
+TEST(Manual, completion_offers_choices_numbers_and_files) {
     Small small;
     const std::string data = completion(small.read());
     EXPECT_TRUE(holds(data, "_tact_commands['small']='work'\n"));
@@ -133,7 +133,7 @@ TEST(Manual, completion_knows_choices_numbers_and_files) {
     EXPECT_FALSE(holds(data, "_tact_values['small work --flag']"));
 }
 
-TEST(Manual, other_command_lines_are_left_to_the_parser) {
+TEST(Manual, other_command_lines_are_passed_to_the_parser) {
     Small small;
     for (const std::vector<const char*>& argv : std::vector<std::vector<const char*>>{
              {"small"}, {"small", "--help"}, {"small", "--manual"}, {"small", "work", "--completion"}})

@@ -1,4 +1,4 @@
-// PNG files: what is written reads back the same, and what is no picture is refused by name.
+// PNG files: images read back unchanged, and invalid files are refused by name.
 #include <gtest/gtest.h>
 #include <unistd.h>
 
@@ -27,7 +27,7 @@ std::vector<std::uint8_t> ramp(std::size_t count) {
     return bytes;
 }
 
-TEST_F(Png, picture_of_each_format_reads_back_the_same_and_leaves_no_other_file) {
+TEST_F(Png, image_of_each_format_reads_back_unchanged_and_leaves_no_other_file) {
     for (const PngFormat format : {PngFormat::grey, PngFormat::rgb, PngFormat::rgba}) {
         const auto pixels = ramp(std::size_t{3} * 2 * static_cast<std::size_t>(format));
         write_png(path_, 3, 2, pixels, format);
@@ -40,9 +40,9 @@ TEST_F(Png, picture_of_each_format_reads_back_the_same_and_leaves_no_other_file)
     }
 }
 
-TEST_F(Png, file_that_is_no_picture_or_cut_short_is_an_error_of_the_reader) {
+TEST_F(Png, invalid_or_truncated_file_is_a_reader_error) {
     EXPECT_THROW(PngReader(folder_ / "absent.png"), PngError);
-    std::ofstream(path_) << "no picture";
+    std::ofstream(path_) << "not an image";
     EXPECT_THROW(PngReader{path_}, PngError);
     write_png(path_, 64, 64, ramp(64 * 64), PngFormat::grey);
     fs::resize_file(path_, fs::file_size(path_) / 2);
@@ -51,7 +51,7 @@ TEST_F(Png, file_that_is_no_picture_or_cut_short_is_an_error_of_the_reader) {
     EXPECT_THROW(static_cast<void>(cut.read(PngFormat::grey)), PngError);
 }
 
-TEST_F(Png, place_that_cannot_be_written_and_a_wrong_size_are_named) {
+TEST_F(Png, unwritable_path_and_wrong_size_are_errors) {
     const auto pixels = ramp(12);
     EXPECT_THROW(write_png(folder_ / "none" / "a.png", 2, 2, pixels), StartupError);
     EXPECT_THROW(write_png(path_, 0, 2, {}), StartupError);

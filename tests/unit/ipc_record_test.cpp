@@ -1,5 +1,5 @@
-// The file of a recording: what goes in comes out, a writer that dies leaves a file that is fixed, and files that are no
-// recordings are refused in words.
+// The file of a recording: data read back unchanged, the file of a killed writer can be repaired, and other files are
+// refused.
 #include <gtest/gtest.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -31,7 +31,7 @@ protected:
         RecordingHead h;
         h.start.hands = 1;
         h.start.dry_steps = 3;
-        h.start.pos_world_dev_m[0] = 1.0;  // a device that stands a metre to the right
+        h.start.pos_world_dev_m[0] = 1.0;  // the device stands 1 m to the right
         h.start.quat_world_dev_xyzw[3] = 1.0;
         h.scene_path = "/somewhere/rod.tact";
         h.scene_checksum = 0xFEDCBA9876543210ULL;
@@ -80,7 +80,7 @@ protected:
     std::filesystem::path path_;
 };
 
-TEST(RecordedPaths, keep_their_file_name_and_nothing_of_their_folders) {
+TEST(RecordedPaths, keep_their_file_name_and_lose_their_folders) {
     EXPECT_EQ(without_folders("/home/anna/rod.tact"), "rod.tact");
     EXPECT_EQ(without_folders("rod.tact"), "rod.tact");
     EXPECT_EQ(without_folders("../rod.tact/"), "rod.tact");
@@ -91,13 +91,13 @@ TEST(RecordedPaths, keep_their_file_name_and_nothing_of_their_folders) {
                   "/home/anna/rod.tact\0--config\0/home/anna/t.toml\0--level\0docking.force=1\0"
                   "--poses=/home/anna/p.json\0--seed=3\0"s),
               "rod.tact\0--config\0t.toml\0--level\0docking.force=1\0--poses=p.json\0--seed=3\0"s);
-    // Bytes that nobody would write keep their count of words and lose every folder.
+    // Malformed arguments keep their number and lose all folders.
     EXPECT_EQ(arguments_without_folders("\0\0a/b=c/d"s), "\0\0d"s);
     EXPECT_EQ(arguments_without_folders("--a/b=c\0-=/\0--=/"s), "b=c\0-=\0--=."s);
     EXPECT_EQ(arguments_without_folders(""), "");
 }
 
-TEST_F(RecordFile, what_goes_in_comes_out_to_the_bit) {
+TEST_F(RecordFile, data_reads_back_exactly) {
     {
         RecordingWriter w(path_, head());
         add(w, 1, 2000);
@@ -146,7 +146,7 @@ TEST_F(RecordFile, what_goes_in_comes_out_to_the_bit) {
     EXPECT_EQ(m.order.quat_model_body_xyzw[3], 1.0);
 }
 
-// Columns and groups that were renamed on 2026-11-25 are found in files from before.
+// Columns and groups renamed on 2026-11-25 are found in older files.
 TEST_F(RecordFile, columns_and_groups_are_found_under_their_former_names) {
     const Hdf5Handle file = hdf5::create_file(path_);
     std::vector<Column> former(cycle_columns().begin(), cycle_columns().end());
@@ -175,7 +175,7 @@ TEST_F(RecordFile, columns_and_groups_are_found_under_their_former_names) {
     EXPECT_EQ(m.kind, 3U);
 }
 
-TEST_F(RecordFile, of_a_writer_that_dies_all_that_was_flushed_is_there) {
+TEST_F(RecordFile, flushed_data_survives_a_killed_writer) {
     const pid_t child = fork();
     ASSERT_GE(child, 0);
     if (child == 0) {
@@ -183,7 +183,7 @@ TEST_F(RecordFile, of_a_writer_that_dies_all_that_was_flushed_is_there) {
         add(w, 1, 1500);
         w.flush();
         add(w, 1501, 1600);
-        _exit(0);  // as by kill -9: nothing is closed
+        _exit(0);  // like kill -9: nothing is closed
     }
     int status = 0;
     ASSERT_EQ(waitpid(child, &status, 0), child);
@@ -198,7 +198,7 @@ TEST_F(RecordFile, of_a_writer_that_dies_all_that_was_flushed_is_there) {
     EXPECT_EQ(again.cycles, 1500U);
 }
 
-TEST_F(RecordFile, columns_of_different_lengths_are_cut_to_one) {
+TEST_F(RecordFile, columns_of_different_lengths_are_cut_to_the_shortest) {
     {
         RecordingWriter w(path_, head());
         add(w, 1, 100);
@@ -217,7 +217,7 @@ TEST_F(RecordFile, columns_of_different_lengths_are_cut_to_one) {
     EXPECT_EQ(report.last_ns, 60'000'000);
 }
 
-TEST_F(RecordFile, the_file_of_a_living_writer_is_left_alone) {
+TEST_F(RecordFile, the_file_of_a_running_writer_is_not_repaired) {
     RecordingWriter w(path_, head());
     add(w, 1, 10);
     w.flush();
@@ -227,22 +227,22 @@ TEST_F(RecordFile, the_file_of_a_living_writer_is_left_alone) {
     EXPECT_EQ(repair_recording(path_).cycles, 20U);
 }
 
-TEST_F(RecordFile, a_file_that_is_there_is_not_overwritten) {
+TEST_F(RecordFile, an_existing_file_is_not_overwritten) {
     std::ofstream(path_) << "mine";
     EXPECT_THROW(RecordingWriter(path_, head()), StartupError);
     EXPECT_EQ(std::filesystem::file_size(path_), 4U);
 }
 
-TEST_F(RecordFile, what_is_no_recording_is_refused_in_words) {
+TEST_F(RecordFile, other_files_are_refused) {
     EXPECT_NE(refusal().find("opening"), std::string::npos);
     std::ofstream(path_) << "no such thing";
-    EXPECT_NE(refusal().find("is no HDF5 file"), std::string::npos);
+    EXPECT_NE(refusal().find("is not an HDF5 file"), std::string::npos);
     std::filesystem::remove(path_);
     { const Hdf5Handle other = hdf5::create_file(path_); }
     EXPECT_NE(refusal().find("end"), std::string::npos);
 }
 
-TEST_F(RecordFile, cut_anywhere_or_with_any_byte_turned_it_is_read_or_refused) {
+TEST_F(RecordFile, a_truncated_or_corrupt_file_is_read_or_refused) {
     {
         RecordingWriter w(path_, head());
         add(w, 1, 50);
@@ -259,7 +259,7 @@ TEST_F(RecordFile, cut_anywhere_or_with_any_byte_turned_it_is_read_or_refused) {
             for (int n = 0; n < 8; ++n)
                 bad[(n == 0 ? random() % 64 : random()) % bad.size()] = static_cast<char>(random() & 0xFFU);
         std::ofstream(path_, std::ios::binary | std::ios::trunc) << bad;
-        static_cast<void>(refusal());  // and neither crash nor hang
+        static_cast<void>(refusal());  // must neither crash nor hang
     }
 }
 

@@ -1,4 +1,4 @@
-// Regions: what a reader accepts, and every way in which it refuses.
+// Regions: acceptance by a reader, and all reasons for refusal.
 #include <fcntl.h>
 #include <gtest/gtest.h>
 #include <sys/mman.h>
@@ -19,7 +19,7 @@ namespace {
 
 FileDescriptor again(int fd) { return FileDescriptor(fcntl(fd, F_DUPFD_CLOEXEC, 0)); }
 
-// The seals of a proper region, written out, so that a change of them is noticed here.
+// The seals of a valid region, spelled out so that a change breaks this test.
 constexpr int kAllSeals = F_SEAL_SHRINK | F_SEAL_GROW | F_SEAL_FUTURE_WRITE | F_SEAL_SEAL;
 constexpr std::uint64_t kBytes = kRegionHeaderBytes + sizeof(GuiRegion);
 
@@ -49,9 +49,9 @@ std::string refusal_of(FileDescriptor fd) {
     return refusal;
 }
 
-TEST(Region, forging_with_everything_right_is_accepted) { EXPECT_EQ(refusal_of(forge({})), ""); }
+TEST(Region, a_valid_region_is_accepted) { EXPECT_EQ(refusal_of(forge({})), ""); }
 
-TEST(Region, every_field_of_the_header_is_checked_and_both_values_are_named) {
+TEST(Region, each_header_field_is_checked_and_both_values_are_reported) {
     struct Case {
         const char* what;
         std::function<void(Forged&)> spoil;
@@ -80,7 +80,7 @@ TEST(Region, every_field_of_the_header_is_checked_and_both_values_are_named) {
         {"file too small",
          [](Forged& f) { f.bytes = kBytes - 1; },
          {"file size", std::to_string(kBytes - 1), size}},
-        {"file too big",
+        {"file too large",
          [](Forged& f) { f.bytes = kBytes + 4096; },
          {"file size", std::to_string(kBytes + 4096), size}},
         {"file of a header only",
@@ -100,17 +100,18 @@ TEST(Region, every_field_of_the_header_is_checked_and_both_values_are_named) {
     }
 }
 
-TEST(Region, every_seal_is_demanded) {
+TEST(Region, every_seal_is_required) {
     for (const int missing : {F_SEAL_SHRINK, F_SEAL_GROW, F_SEAL_FUTURE_WRITE, F_SEAL_SEAL}) {
         Forged f;
         f.seals = kAllSeals & ~missing;
         const std::string refusal = refusal_of(forge(f));
         EXPECT_NE(refusal.find("seals are " + std::to_string(f.seals)), std::string::npos) << refusal;
-        EXPECT_NE(refusal.find("wanted at least " + std::to_string(kAllSeals)), std::string::npos) << refusal;
+        EXPECT_NE(refusal.find("expected at least " + std::to_string(kAllSeals)), std::string::npos)
+            << refusal;
     }
 }
 
-TEST(Region, what_is_no_sealed_memory_is_refused) {
+TEST(Region, other_files_than_sealed_memory_are_refused) {
     EXPECT_NE(refusal_of(FileDescriptor()), "");
     EXPECT_NE(refusal_of(FileDescriptor(12345)), "");
     EXPECT_NE(refusal_of(FileDescriptor(open("/dev/zero", O_RDWR | O_CLOEXEC))), "");
@@ -134,7 +135,7 @@ TEST(Region, is_refused_until_it_is_marked_ready) {
     EXPECT_EQ(refusal_of(again(gui.fd())), "");
 }
 
-TEST(Region, what_is_handed_out_cannot_be_written_truncated_or_made_writable) {
+TEST(Region, a_shared_descriptor_cannot_be_written_truncated_or_made_writable) {
     OwnedRegion<GuiRegion> gui;
     gui.mark_ready();
     const FileDescriptor fd = again(gui.fd());
@@ -150,10 +151,10 @@ TEST(Region, what_is_handed_out_cannot_be_written_truncated_or_made_writable) {
     EXPECT_NE(ftruncate(fd.get(), 1 << 20), 0);
     EXPECT_NE(fallocate(fd.get(), FALLOC_FL_PUNCH_HOLE | FALLOC_FL_KEEP_SIZE, 0, 4096), 0);
     EXPECT_NE(fcntl(fd.get(), F_ADD_SEALS, F_SEAL_WRITE), 0);
-    EXPECT_EQ(refusal_of(again(gui.fd())), "") << "it still serves after all that";
+    EXPECT_EQ(refusal_of(again(gui.fd())), "") << "still valid after the attempts";
 }
 
-TEST(Region, reader_sees_what_the_writer_writes_afterwards_and_keeps_it_when_the_writer_is_gone) {
+TEST(Region, a_reader_gets_later_writes_and_keeps_them_after_the_writer_has_ended) {
     std::string refusal;
     MappedRegion<GuiRegion> mapped;
     std::uint64_t generation = 0;
@@ -201,7 +202,7 @@ struct alignas(64) Aligned {
     std::uint64_t a[2];
 };
 
-TEST(Region, layout_hash_tells_every_change_of_a_topic) {
+TEST(Region, layout_hash_changes_with_any_topic) {
     EXPECT_NE(region_identity<RtRegion>().layout_hash, region_identity<GuiRegion>().layout_hash);
     const std::set<std::uint64_t> hashes = {TopicList<Base>::hash(),       TopicList<Renamed>::hash(),
                                             TopicList<Newer>::hash(),      TopicList<Longer>::hash(),

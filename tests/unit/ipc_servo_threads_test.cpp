@@ -1,4 +1,4 @@
-// Controllers pinned to a core, out of made-up trees of /proc and out of the real one.
+// Controllers pinned to a core, from made-up /proc trees and from the real one.
 #include "ipc/shm/servo_threads.hpp"
 
 #include <gtest/gtest.h>
@@ -28,7 +28,7 @@ public:
         file(folder + "status", "Name:\t" + name + "\nCpus_allowed:\t8\nCpus_allowed_list:\t" + cores +
                                     "\nMems_allowed_list:\t0\n");
     }
-    // As the kernel shows it: main thread, servo, helpers kept off its core.
+    // As shown by the kernel: main thread, servo, and helpers excluded from its core.
     void controller(int process, const std::string& core, const std::string& words = "") const {
         const std::string folder = std::to_string(process) + "/";
         file(folder + "comm", "tact-rt\n");
@@ -59,13 +59,13 @@ TEST(ServoThreads, each_pinned_servo_is_found_with_its_core_and_session) {
     proc.controller(100, "3");
     proc.controller(200, "2", "--session=left");
     proc.controller(400, "0-3", "--session free");  // not pinned
-    proc.file("500/comm", "python3\n");             // a thread of that name in another program
+    proc.file("500/comm", "python3\n");             // the same thread name in another program
     proc.thread(500, 501, "servo", "3");
     proc.file("self/comm", "tact-rt\n");
     EXPECT_EQ(text_of(pinned_servos(proc.root())), "100:3:default 200:2:left 300:3:lab2 ");
 }
 
-TEST(ServoThreads, a_controller_is_told_of_others_on_its_core_and_of_no_others) {
+TEST(ServoThreads, a_controller_gets_the_names_of_others_on_its_core_only) {
     const Proc proc;
     proc.controller(100, "3");
     proc.controller(200, "2", "--session left");
@@ -78,12 +78,12 @@ TEST(ServoThreads, a_controller_is_told_of_others_on_its_core_and_of_no_others) 
     EXPECT_EQ(shared_core_text(servos, 100),
               "core 3 is also the core of session lab2 (process 300): the force loops delay each other");
     EXPECT_EQ(shared_core_text(servos, 200), "");
-    EXPECT_EQ(shared_core_text(servos, 999), "");  // not pinned itself
+    EXPECT_EQ(shared_core_text(servos, 999), "");  // is itself not pinned
     EXPECT_EQ(shared_cores_text(servos),
               "core 3 is shared by session default (process 100), session lab2 (process 300)");
 }
 
-TEST(ServoThreads, hostile_texts_are_bounded_and_not_repeated) {
+TEST(ServoThreads, hostile_text_is_bounded_and_not_echoed) {
     const Proc proc;
     proc.controller(100, "3", "--session \x1b[2Jevil");
     proc.controller(200, "3", "--session " + std::string(5000, 'x'));
@@ -91,7 +91,7 @@ TEST(ServoThreads, hostile_texts_are_bounded_and_not_repeated) {
     proc.controller(400, "99999999999999");
     proc.controller(500, "");
     proc.controller(600, "3x");
-    proc.file("700/comm", "tact-rt\n");  // gone in between
+    proc.file("700/comm", "tact-rt\n");  // ended in between
     proc.file("800/task", "no folder");
     proc.file("800/comm", "tact-rt\n");
     EXPECT_EQ(text_of(pinned_servos(proc.root())), "100:3:? 200:3:? 300:3:default ");
@@ -103,7 +103,7 @@ TEST(ServoThreads, the_real_proc_can_be_read) {
         EXPECT_GT(s.process, 0);
         EXPECT_GE(s.core, 0);
     }
-    EXPECT_EQ(shared_core_text(pinned_servos(), getpid()), "");  // a test is no controller
+    EXPECT_EQ(shared_core_text(pinned_servos(), getpid()), "");  // the test is not a controller
 }
 
 }  // namespace

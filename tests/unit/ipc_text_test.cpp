@@ -7,12 +7,13 @@
 #include <string>
 
 #include "ipc/base/device_notice.hpp"
+#include "ipc/topics/level_text.hpp"
 #include "ipc/topics/text.hpp"
 
 namespace tact {
 namespace {
 
-// Every value of an enum from 0 up to the last has words of its own, and those beyond it say so.
+// Each value of an enum up to `last` has its own text; values beyond give "unknown".
 template <class E, class Text>
 void expect_own_words(Text text, E last, bool zero_is_empty) {
     std::set<std::string> seen;
@@ -20,19 +21,42 @@ void expect_own_words(Text text, E last, bool zero_is_empty) {
         const std::string words = text(static_cast<E>(v));
         EXPECT_NE(words, "unknown") << v;
         EXPECT_EQ(words.empty(), zero_is_empty && v == 0) << v;
-        EXPECT_TRUE(seen.insert(words).second) << v << " has the words of another: " << words;
+        EXPECT_TRUE(seen.insert(words).second) << v << " has the same text as another value: " << words;
     }
     EXPECT_STREQ(text(static_cast<E>(static_cast<unsigned>(last) + 1)), "unknown");
     EXPECT_STREQ(text(static_cast<E>(255)), "unknown");
 }
 
-TEST(Text, every_code_has_words_of_its_own) {
+TEST(LevelText, gives_limit_duration_and_error) {
+    PathLevel p{};
+    p.haptic = 1;
+    p.level = 0.5F;
+    p.error = 0.0131;
+    p.changed_at_ns = 1'000'000'000;
+    p.reason = static_cast<std::uint8_t>(LevelReason::cost_low);
+    EXPECT_EQ(level_status_text(p, 13'000'000'000), "step cost limit, 12 s, ±0.013 N");
+    p.reason = static_cast<std::uint8_t>(LevelReason::deadline_missed);
+    EXPECT_EQ(level_status_text(p, 3'500'000'000), "deadline missed, 2.5 s, ±0.013 N");
+    p.level = 1.0F;
+    p.error = 0.0;
+    EXPECT_EQ(level_status_text(p, 13'000'000'000), "full detail");
+    p.haptic = 0;
+    p.level = 0.3F;
+    p.reason = static_cast<std::uint8_t>(LevelReason::picture_low);
+    EXPECT_EQ(level_status_text(p, 1'801'000'000'000), "frame rate limit, 30 min");
+    // A time from another clock and a non-finite error are omitted.
+    p.haptic = 1;
+    p.error = std::numeric_limits<double>::quiet_NaN();
+    EXPECT_EQ(level_status_text(p, 0), "frame rate limit");
+}
+
+TEST(Text, every_code_has_its_own_text) {
     expect_own_words(run_state_text, RunState::fault, false);
     expect_own_words(run_reason_text, RunReason::supervisor, true);
     expect_own_words(event_code_text, EventCode::device_notice, true);
     expect_own_words(lines_text, LinesShown::permitted, true);
     expect_own_words(device_notice_text, static_cast<DeviceNotice>(kDeviceNotices - 1), true);
-    expect_own_words(level_reason_text, LevelReason::picture_high, false);
+    expect_own_words(level_reason_text, LevelReason::deadline_missed, false);
     expect_own_words(command_kind_text, kLastCommand, true);
     expect_own_words(command_result_text, CommandResult::unknown, true);
     expect_own_words(frame_part_text, FramePart::particles, false);
@@ -64,11 +88,11 @@ TEST(Text, events_carry_their_numbers_and_units) {
     EXPECT_EQ(text(EventCode::stopping, SIGXCPU, 0),
               "stopping: the servo did not sleep for 1 s; choose a lower rate");
     EXPECT_EQ(text(EventCode::state_changed, 1, 4), "state changed: ready to fault");
-    EXPECT_EQ(text(EventCode::force_limited, 5.50321, 3.3), "force limited: 5.5 N wanted, 3.3 N allowed");
+    EXPECT_EQ(text(EventCode::force_limited, 5.50321, 3.3), "force limited: 5.5 N requested, 3.3 N allowed");
     EXPECT_EQ(text(EventCode::command_done, 1, 2), "command arm: refused: not in this state");
     EXPECT_EQ(text(EventCode::lines_changed, 1, 15), "safety lines: stop: the dead-man switch is released");
     EXPECT_EQ(text(EventCode::lines_changed, 3, 0), "safety lines: permit");
-    EXPECT_EQ(text(EventCode::level_changed, kDisplayPathIndex, 0.5), "level changed: picture to 0.5, start");
+    EXPECT_EQ(text(EventCode::level_changed, kDisplayPathIndex, 0.5), "level changed: display to 0.5, start");
     EXPECT_EQ(text(EventCode::level_changed, kForcePathIndex, 0.25,
                    static_cast<std::uint16_t>(LevelReason::rate_low)),
               "level changed: force to 0.25, force rate below goal");
@@ -86,7 +110,7 @@ TEST(Text, events_carry_their_numbers_and_units) {
     EXPECT_EQ(text(static_cast<EventCode>(999), 0, 0), "unknown event 999");
 }
 
-TEST(Text, hostile_events_are_only_words) {
+TEST(Text, hostile_events_give_short_text) {
     for (const double bad :
          {std::nan(""), std::numeric_limits<double>::infinity(), -1e300, 1e300, -1.0, 256.0}) {
         for (unsigned code = 0; code < 300; ++code) {
@@ -99,7 +123,7 @@ TEST(Text, hostile_events_are_only_words) {
     }
 }
 
-TEST(Text, of_a_bus_only_what_was_wrong_is_said) {
+TEST(Text, only_bus_errors_are_listed) {
     EXPECT_EQ(bus_text({.packets = 5}), "");
     EXPECT_EQ(bus_text({.packets = 5, .checksum = 3, .lost = 12, .reconnects = 1}),
               "checksum 3, lost 12, connected again 1");

@@ -18,7 +18,7 @@ add_dependencies(prep_cli_test tact-prep)
 tact_test(unit/prep_export_test.cpp USES prep_export prep_cif prep_structure prep_input scene base SYSTEM tact_gemmi)
 tact_test(unit/prep_poses_file_test.cpp USES prep_export scene base)
 tact_test(unit/prep_best_codebook_test.cpp USES prep_codebook)
-# Two of the ten pairs; all of them take a minute and are for a person to start.
+# Two of the ten pairs; all of them take a minute and are run by hand.
 add_test(NAME save_pairs_test COMMAND tests/e2e/save_pairs_test.py $<TARGET_FILE_DIR:tact-prep> 1gte 2dqj
     WORKING_DIRECTORY ${CMAKE_SOURCE_DIR})
 set_tests_properties(save_pairs_test PROPERTIES LABELS e2e TIMEOUT 300 SKIP_RETURN_CODE 77)

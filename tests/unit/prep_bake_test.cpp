@@ -1,4 +1,4 @@
-// The bake: what lies in the scene, what the choices are, and that it stops where it is asked to.
+// The bake: contents of the scene, default choices, and cancellation.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -28,7 +28,7 @@ const DockingInput& ring_input() {
     return input;
 }
 
-// The ring as it is, baked once for all tests.
+// The unmodified ring, baked once for all tests.
 struct BakedRing {
     BakedDocking told;
     std::vector<std::byte> bytes;
@@ -48,7 +48,7 @@ bool has_line(const std::string& note, const std::string& begin) {
     return note.starts_with(begin) || note.find("\n" + begin) != std::string::npos;
 }
 
-TEST(Bake, scene_holds_everything_the_other_programs_read) {
+TEST(Bake, scene_contains_everything_that_other_programs_read) {
     const BakedDocking& baked = baked_ring().told;
     const SceneFile file = SceneFile::from_bytes(baked_ring().bytes, "ring");
     const SceneMeta meta = read_meta(file);
@@ -86,7 +86,7 @@ TEST(Bake, the_same_input_gives_the_same_scene) {
     EXPECT_EQ(again.to_bytes(), baked_ring().bytes);
 }
 
-TEST(Bake, the_map_is_about_as_wide_as_the_hand_reaches) {
+TEST(Bake, the_map_is_about_as_wide_as_the_reach_of_the_hand) {
     for (double extent_m = 1e-9; extent_m < 1e-6; extent_m *= 1.07) {
         const double scale = world_per_model_for(extent_m);
         EXPECT_NEAR(std::log(scale * extent_m / 0.16), 0.0, 0.25) << extent_m;
@@ -97,7 +97,7 @@ TEST(Bake, the_map_is_about_as_wide_as_the_hand_reaches) {
     EXPECT_EQ(world_per_model_for(2.67e-8), 6e6);
 }
 
-TEST(Bake, the_scene_is_centred_on_the_density_and_long_titles_end_between_characters) {
+TEST(Bake, the_scene_is_centred_on_the_density_and_long_titles_are_cut_between_characters) {
     DockingInput input = ring_input();
     input.structures.resize(1);
     input.title = "ab";
@@ -113,7 +113,7 @@ TEST(Bake, the_scene_is_centred_on_the_density_and_long_titles_end_between_chara
     EXPECT_LT(meta.centre_model_m[2], top_m);
 }
 
-TEST(Bake, given_contour_resolution_and_vertex_limit_are_obeyed) {
+TEST(Bake, given_contour_resolution_and_vertex_limit_are_applied) {
     DockingInput input = ring_input();
     input.structures.resize(1);
     input.contour = 60.0;
@@ -122,33 +122,33 @@ TEST(Bake, given_contour_resolution_and_vertex_limit_are_obeyed) {
     SceneWriter out;
     const BakedDocking baked = bake_docking(input, out);
     EXPECT_EQ(baked.meta.contour, 60.0);
-    EXPECT_NEAR(baked.meta.resolution_m, 12e-10, 1e-16) << "four voxels";
+    EXPECT_NEAR(baked.meta.resolution_m, 12e-10, 1e-16) << "estimated as four voxels";
     EXPECT_LE(baked.vertices, 1500U);
     EXPECT_GT(baked.vertices, 1000U);
     EXPECT_TRUE(has_line(baked.note, "contour: 60, as given")) << baked.note;
-    EXPECT_TRUE(has_line(baked.note, "resolution: 12 Å, guessed")) << baked.note;
+    EXPECT_TRUE(has_line(baked.note, "resolution: 12 Å, estimated")) << baked.note;
 }
 
-TEST(Bake, the_hand_feels_a_smoothed_map_where_asked_while_the_map_itself_stays) {
+TEST(Bake, the_force_map_is_smoothed_on_request_and_the_displayed_map_is_not) {
     DockingInput input = ring_input();
     input.structures.resize(1);
     input.force_map_resolution_m = 18e-10;
     SceneWriter out;
     const BakedDocking baked = bake_docking(input, out);
     const std::vector<std::byte> bytes = out.to_bytes();
-    const SceneFile file = SceneFile::from_bytes(bytes, "felt");
+    const SceneFile file = SceneFile::from_bytes(bytes, "smoothed");
     EXPECT_EQ(read_grid(file).values, input.grid.values);
     EXPECT_EQ(read_force_map_grid(file).values,
               low_pass(input.grid, baked.meta.map_background, 18e-10).values);
-    EXPECT_TRUE(has_line(baked.note, "felt map: smoothed")) << baked.note;
+    EXPECT_TRUE(has_line(baked.note, "force map: smoothed")) << baked.note;
 
-    EXPECT_TRUE(has_line(baked_ring().told.note, "felt map: as it is"));
+    EXPECT_TRUE(has_line(baked_ring().told.note, "force map: not smoothed"));
     EXPECT_EQ(read_force_map_grid(SceneFile::from_bytes(baked_ring().bytes, "plain")).values,
               input.grid.values);
 }
 
-// One bright voxel becomes the Gaussian of the stated width: its values, its sum and its background.
-TEST(LowPass, spreads_a_voxel_as_a_gaussian_of_the_stated_width) {
+// One bright voxel becomes a Gaussian of the given width: values, sum and background.
+TEST(LowPass, spreads_a_voxel_as_a_gaussian_of_the_given_width) {
     DensityGrid grid;
     grid.size = {33, 35, 37};
     grid.spacing_m = Vec3(1e-10, 1.2e-10, 0.9e-10);
@@ -173,7 +173,7 @@ TEST(LowPass, spreads_a_voxel_as_a_gaussian_of_the_stated_width) {
     for (const float v : low_pass(flat, 2.0, resolution_m).values) EXPECT_NEAR(v, 2.0F, 1e-5F);
 }
 
-TEST(Bake, impossible_wishes_are_refused) {
+TEST(Bake, impossible_requests_are_refused) {
     const auto error = [](auto&& change) {
         DockingInput input = ring_input();
         change(input);
@@ -185,16 +185,16 @@ TEST(Bake, impossible_wishes_are_refused) {
                   in.structures.resize(17, in.structures[0]);
               }).find("17 structures are more than 16"),
               std::string::npos);
-    EXPECT_NE(error([](DockingInput& in) { in.contour = 1e6; }).find("outside of the map's values"),
+    EXPECT_NE(error([](DockingInput& in) { in.contour = 1e6; }).find("outside the map's values"),
               std::string::npos);
-    EXPECT_NE(error([](DockingInput& in) { in.contour = std::nan(""); }).find("outside of the map's values"),
+    EXPECT_NE(error([](DockingInput& in) { in.contour = std::nan(""); }).find("outside the map's values"),
               std::string::npos);
     EXPECT_NE(error([](DockingInput& in) { in.resolution_m = 1.0; }).find("resolution"), std::string::npos);
     const std::string far = error([](DockingInput& in) { in.structures[1].home_com_model_m.x() += 1e-6; });
     EXPECT_NE(far.find("ring subunit D lies 99"), std::string::npos) << far;
 }
 
-TEST(Bake, stops_at_whatever_report_cancels_it) {
+TEST(Bake, stops_at_any_report_that_cancels_it) {
     DockingInput input = ring_input();
     input.structures.resize(1);
     std::set<std::string> stages;

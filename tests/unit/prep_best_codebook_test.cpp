@@ -1,4 +1,4 @@
-// Restarts of the codebook: which one is taken, what is said of the others, and the levels themselves.
+// Restarts of the codebook: the chosen one, statistics of all, and the levels.
 #include "prep/codebook/best_codebook.hpp"
 
 #include <gtest/gtest.h>
@@ -35,7 +35,7 @@ Structure ball(std::size_t count, double radius_m, unsigned seed) {
     return s;
 }
 
-TEST(BestCodebook, is_one_of_the_restarts_and_none_of_them_is_better_over_all) {
+TEST(BestCodebook, is_the_best_of_the_restarts) {
     const Structure s = ball(3000, 25.0 * kA, 1);
     const BestCodebook best = best_codebook(s);
     ASSERT_EQ(best.restarts, 4U);
@@ -69,7 +69,7 @@ TEST(BestCodebook, is_one_of_the_restarts_and_none_of_them_is_better_over_all) {
         EXPECT_NEAR(best.quality[l].rms_error_mean_m, mean, 1e-6 * mean);
         EXPECT_NEAR(best.quality[l].rms_error_sd_m, std::sqrt(variance), 1e-6 * mean);
         EXPECT_EQ(best.quality[l].rms_error_m, best.codebook.levels[l].rms_error_m);
-        // Restarts agree: measured 0.1 to 0.9 percent.
+        // Restarts agree: measured spread 0.1 to 0.9 %.
         EXPECT_LT(best.quality[l].rms_error_sd_m, 0.02 * mean);
     }
 }
@@ -83,9 +83,9 @@ TEST(BestCodebook, repeats_exactly) {
     }
 }
 
-TEST(BestCodebook, ten_vectors_to_thousands_follow_the_theory_of_a_ball) {
-    // Space is cut at best into cells with second moment G N^(-2/3) V^(2/3) per axis, G = 0.0785 (Conway,
-    // Sloane). Few cells feel the surface: there the bracket is wider.
+TEST(BestCodebook, errors_follow_the_theory_of_a_ball_from_ten_to_thousands_of_vectors) {
+    // The best partition of space has cells with second moment G N^(-2/3) V^(2/3) per axis, G = 0.0785 (Conway, Sloane).
+    // With few cells the surface matters, so the bounds are wider.
     const double radius = 40.0 * kA;
     CodebookSettings settings;
     settings.smallest = 10;
@@ -94,7 +94,7 @@ TEST(BestCodebook, ten_vectors_to_thousands_follow_the_theory_of_a_ball) {
     ASSERT_EQ(c.levels.size(), 10U);
     EXPECT_EQ(c.levels.front().size(), 10U);
     EXPECT_EQ(c.levels.back().size(), 5120U);
-    for (std::size_t l = 0; l < 8; ++l) {  // to 1280: beyond, cells hold few atoms each
+    for (std::size_t l = 0; l < 8; ++l) {  // up to 1280: in larger levels each cell holds few atoms
         const auto n = static_cast<double>(c.levels[l].size());
         const double best = std::sqrt(3.0 * 0.0785) * std::cbrt(volume / n);
         EXPECT_GT(c.levels[l].rms_error_m, 0.8 * best) << n;
@@ -102,7 +102,7 @@ TEST(BestCodebook, ten_vectors_to_thousands_follow_the_theory_of_a_ball) {
     }
 }
 
-TEST(BestCodebook, small_structures_have_no_levels_and_cancelling_stops_all_of_them) {
+TEST(BestCodebook, small_structures_have_no_levels_and_cancelling_stops_all_restarts) {
     const BestCodebook none = best_codebook(ball(20, 5.0 * kA, 4));
     EXPECT_TRUE(none.codebook.levels.empty());
     EXPECT_TRUE(none.quality.empty());
@@ -113,7 +113,7 @@ TEST(BestCodebook, small_structures_have_no_levels_and_cancelling_stops_all_of_t
     EXPECT_EQ(calls, 3);
 }
 
-TEST(BestCodebook, restarts_are_fewer_for_large_structures) {
+TEST(BestCodebook, large_structures_get_fewer_restarts) {
     EXPECT_EQ(codebook_restarts(100), 4U);
     EXPECT_EQ(codebook_restarts(100'000), 2U);
     EXPECT_EQ(codebook_restarts(1'000'000), 1U);

@@ -1,4 +1,4 @@
-// Cleaning: what goes is counted, what stays is as it was.
+// Cleaning: defects are removed and counted, and the rest is unchanged.
 #include <gtest/gtest.h>
 
 #include <limits>
@@ -17,7 +17,7 @@ void add_vertex(TriangleMesh& mesh, float x, float y, float z) {
     mesh.position_m.insert(mesh.position_m.end(), {x, y, z});
 }
 
-TEST(CleanMesh, a_clean_mesh_stays_as_it_is) {
+TEST(CleanMesh, a_clean_mesh_is_unchanged) {
     const TriangleMesh sheet = test::sheet(20, [](float x, float y) { return x * y; });
     TriangleMesh mesh = sheet;
     const CleanReport done = clean_mesh(mesh);
@@ -29,12 +29,12 @@ TEST(CleanMesh, a_clean_mesh_stays_as_it_is) {
 
 TEST(CleanMesh, each_kind_of_defect_is_dropped_and_counted) {
     TriangleMesh mesh = square();
-    add_vertex(mesh, -0.0F, 0.0F, -0.0F);       // 4: is vertex 0
+    add_vertex(mesh, -0.0F, 0.0F, -0.0F);       // 4: equals vertex 0
     add_vertex(mesh, 9.0F, 9.0F, 9.0F);         // 5: unused
     add_vertex(mesh, 2.0F, 0.0F, 0.0F);         // 6: on a line with 0 and 1
-    for (const std::uint32_t v : {3U, 4U, 2U,   // triangle 1 again, turned and the other way round
+    for (const std::uint32_t v : {3U, 4U, 2U,   // triangle 1 again, rotated and reversed
                                   0U, 1U, 0U,   // a repeated corner
-                                  4U, 0U, 2U,   // the same once 4 has gone into 0
+                                  4U, 0U, 2U,   // the same after merging 4 into 0
                                   0U, 1U, 6U})  // no area
         mesh.triangle.push_back(v);
     const CleanReport done = clean_mesh(mesh);
@@ -54,9 +54,9 @@ TEST(CleanMesh, each_kind_of_defect_is_dropped_and_counted) {
               "\"triangles\":2}");
 }
 
-TEST(CleanMesh, a_torn_sheet_is_whole_again) {
+TEST(CleanMesh, a_torn_sheet_is_welded) {
     const TriangleMesh whole = test::sheet(12, [](float x, float y) { return 0.3F * x * y; });
-    TriangleMesh torn;  // three vertices a triangle
+    TriangleMesh torn;  // three vertices per triangle
     for (const std::uint32_t v : whole.triangle) {
         add_vertex(torn, whole.position_m[3 * v], whole.position_m[3 * v + 1], whole.position_m[3 * v + 2]);
         torn.triangle.push_back(static_cast<std::uint32_t>(torn.triangle.size()));
@@ -70,19 +70,19 @@ TEST(CleanMesh, a_torn_sheet_is_whole_again) {
     TriangleMesh exact = shaken;
     clean_mesh(exact);
     EXPECT_GT(exact.vertices(), 2 * whole.vertices());
-    clean_mesh(shaken, 4e-3);  // farther than two may have been shaken apart
+    clean_mesh(shaken, 4e-3);  // larger than the largest displacement of two equal vertices
     EXPECT_EQ(shaken.vertices(), whole.vertices());
     EXPECT_EQ(test::topology(shaken).border_edges, 48U);
 }
 
-TEST(CleanMesh, open_and_tangled_meshes_are_taken) {
-    TriangleMesh book = square();  // three pages at the edge 0 2
+TEST(CleanMesh, open_and_tangled_meshes_are_accepted) {
+    TriangleMesh book = square();  // three pages at edge 0 2
     add_vertex(book, 0.0F, 0.0F, 1.0F);
     book.triangle.insert(book.triangle.end(), {0, 2, 4});
     EXPECT_FALSE(clean_mesh(book).changed());
 }
 
-TEST(CleanMesh, what_cannot_be_repaired_is_refused) {
+TEST(CleanMesh, irreparable_meshes_are_refused) {
     TriangleMesh out_of_range = square();
     out_of_range.triangle[4] = 4;
     EXPECT_THROW(clean_mesh(out_of_range), StartupError);

@@ -1,4 +1,4 @@
-// tact-prep as a program: exit codes, messages, and that a scene is whole or absent.
+// tact-prep as a program: exit codes and messages; a scene is complete or absent.
 #include <fcntl.h>
 #include <gtest/gtest.h>
 #include <signal.h>
@@ -33,7 +33,7 @@ protected:
     }
     ~Program() override { fs::remove_all(folder_); }
 
-    // With `interrupt`, SIGINT is sent as soon as the program says anything.
+    // With `interrupt`, sends SIGINT at the program's first output.
     Ended run(const std::vector<std::string>& arguments, bool interrupt = false) const {
         std::vector<char*> argv{const_cast<char*>(TACT_PREP)};
         for (const std::string& a : arguments) argv.push_back(const_cast<char*>(a.c_str()));
@@ -93,11 +93,11 @@ protected:
     fs::path folder_;
 };
 
-TEST_F(Program, bakes_the_demo_and_tells_what_is_in_it) {
+TEST_F(Program, bakes_the_demo_and_describes_it) {
     const std::string scene = folder_ / "ring.tact";
     const Ended baked = run({"demo", "dock", "-o", scene, "--json"});
     ASSERT_EQ(baked.code, 0) << baked.err;
-    EXPECT_EQ(baked.err.find('\r'), std::string::npos) << "no terminal, no moving line";
+    EXPECT_EQ(baked.err.find('\r'), std::string::npos) << "no progress line without a terminal";
     const auto json = nlohmann::json::parse(baked.out);
     EXPECT_GT(json["mesh"]["vertices"].get<int>(), 1000);
     EXPECT_GT(json["bodies"][0]["inside_home"].get<double>(), 0.95);
@@ -118,7 +118,7 @@ TEST_F(Program, bakes_another_contour_of_a_scene) {
     const Ended e = run({"contour", scene, text, "-o", out, "--vertices-max", "500"});
     ASSERT_EQ(e.code, 0) << e.err;
     EXPECT_EQ(read_contour(SceneFile::open(out), {file.checksum(), level})->vertices(), 500U);
-    // A parent that is not there any more cancels.
+    // A parent process that has ended cancels the program.
     const fs::path late = folder_ / "late.tact";
     EXPECT_EQ(run({"contour", scene, text, "-o", late, "--ends-with", std::to_string(getpid() + 1)}).code,
               130);
@@ -144,7 +144,7 @@ TEST_F(Program, bakes_a_map_and_a_structure_from_files) {
     EXPECT_EQ(read_meta(file).contour, 10.0);
 }
 
-TEST_F(Program, bad_input_is_refused_by_name_place_reason_and_mend) {
+TEST_F(Program, bad_input_is_refused_with_name_place_reason_and_fix) {
     const std::vector<char> good = sample::Mrc().bytes();
     const std::string map = write("good.mrc", good),
                       model = write("good.pdb", sample::pdb_atom(" CA ", "ALA", 'A', 1, 5.0, 5.0, 5.0)),
@@ -163,9 +163,9 @@ TEST_F(Program, bad_input_is_refused_by_name_place_reason_and_mend) {
     const std::int32_t n = 16000;
     for (int w = 0; w < 3; ++w) std::memcpy(huge.data() + 4 * w, &n, 4);
     expect_refused(dock(write("huge.mrc", huge), model), {"huge.mrc", "words 1-3", "16000 x 16000 x 16000"});
-    std::vector<char> mixed = good;  // header of one byte order, sizes of neither
+    std::vector<char> mixed = good;  // header in one byte order, sizes valid in neither
     std::memcpy(mixed.data() + 64, "\0\2\0\0", 4);
-    expect_refused(dock(write("mixed.mrc", mixed), model), {"mixed.mrc", "neither byte order"});
+    expect_refused(dock(write("mixed.mrc", mixed), model), {"mixed.mrc", "invalid in both byte orders"});
     std::vector<char> nan = good;
     std::memset(nan.data() + 1024, 0xff, nan.size() - 1024);
     expect_refused(dock(write("nan.mrc", nan), model),
@@ -178,7 +178,7 @@ TEST_F(Program, bad_input_is_refused_by_name_place_reason_and_mend) {
     expect_refused({"dock", map, model, "-o", folder_ / "absent" / "s.tact"}, {"absent", "does not exist"});
     expect_refused({"dock", map, model, "-o", map}, {"good.mrc", "one of the input files"});
     expect_refused({"dock", map, model, "-o", out, "--contour", "1e9"},
-                   {"contour", "outside of the map's values"});
+                   {"contour", "outside the map's values"});
     std::vector<char> flipped;
     {
         ASSERT_EQ(run({"demo", "dock", "-o", folder_ / "ring.tact"}).code, 0);
@@ -197,8 +197,8 @@ TEST_F(Program, bad_input_is_refused_by_name_place_reason_and_mend) {
     EXPECT_EQ(run({"--help"}).code, 0);
 }
 
-TEST_F(Program, simplifies_a_mesh_and_says_what_it_did) {
-    // A wavy sheet of 30 x 30 squares as OBJ, faces with four corners.
+TEST_F(Program, simplifies_a_mesh_and_reports_the_result) {
+    // A wavy sheet of 30 x 30 squares as OBJ, with faces of four corners.
     std::string obj;
     for (int y = 0; y <= 30; ++y) {
         for (int x = 0; x <= 30; ++x)
@@ -222,7 +222,7 @@ TEST_F(Program, simplifies_a_mesh_and_says_what_it_did) {
     EXPECT_EQ(json["folds"].get<int>(), 0);
     EXPECT_GT(json["error"].get<double>(), 0.0);
     EXPECT_LT(json["error"].get<double>(), 0.2);
-    // What was written is read again, and options are taken.
+    // The output reads back, and the options are accepted.
     const Ended second = run({"simplify", out, "--vertices", "20", "-o", again, "--boundary-weight", "1000",
                               "--pair-distance", "0.5", "--relax", "0"});
     ASSERT_EQ(second.code, 0) << second.err;
@@ -230,15 +230,15 @@ TEST_F(Program, simplifies_a_mesh_and_says_what_it_did) {
     EXPECT_EQ(entries(), 3U);
     expect_refused({"simplify", in, "--vertices", "100", "-o", in}, {"input files"});
     expect_refused({"simplify", write("bad.stl", std::string(200, 'x')), "--vertices", "9", "-o", out},
-                   {"bad.stl", "its size"});
+                   {"bad.stl", "nor of the size"});
     EXPECT_EQ(run({"simplify", in, "--vertices", "0", "-o", out}).code, 2);
 }
 
-TEST_F(Program, bakes_bone_to_drill_from_a_scan_or_made_here) {
+TEST_F(Program, bakes_bone_from_a_scan_or_synthetic) {
     const std::string scene = folder_ / "bone.tact";
     const Ended made = run({"drill", "--synthetic", "--voxels", "24", "-o", scene, "--json"});
     ASSERT_EQ(made.code, 0) << made.err;
-    EXPECT_NE(made.err.find("MB of memory are needed"), std::string::npos) << made.err;
+    EXPECT_NE(made.err.find("MB of memory needed"), std::string::npos) << made.err;
     EXPECT_EQ(nlohmann::json::parse(made.out)["structures"], 9);
     auto info = nlohmann::json::parse(run({"info", scene, "--json"}).out);
     EXPECT_EQ(info["kind"], "drilling");
@@ -254,7 +254,7 @@ TEST_F(Program, bakes_bone_to_drill_from_a_scan_or_made_here) {
     const Ended baked =
         run({"drill", scan, "-o", scene, "--crop", "0:4,1:3,0:4", "--unit", "cm", "--face", "top"});
     ASSERT_EQ(baked.code, 0) << baked.err;
-    EXPECT_NE(baked.err.find("does not name the left side"), std::string::npos) << baked.err;
+    EXPECT_NE(baked.err.find("does not state the patient's left side"), std::string::npos) << baked.err;
     info = nlohmann::json::parse(run({"info", scene, "--json"}).out);
     EXPECT_EQ(info["bone"]["size"], (std::vector<int>{4, 2, 7}));
     EXPECT_DOUBLE_EQ(info["bone"]["voxel_m"].get<double>(), 5e-3);
@@ -264,7 +264,7 @@ TEST_F(Program, bakes_bone_to_drill_from_a_scan_or_made_here) {
     expect_refused({"drill", scan, "--labels", scan, "-o", scene, "--threshold-hu", "200"}, {"no voxel"});
 }
 
-TEST_F(Program, says_in_a_log_which_share_of_the_whole_is_done) {
+TEST_F(Program, logs_progress_in_percent) {
     const std::string dock = folder_ / "dock.tact", mesh = write("tetra.obj",
                                                                  "v 0 0 0\nv 9 0 0\nv 0 9 0\nv 0 0 9\n"
                                                                  "f 1 3 2\nf 1 2 4\nf 2 3 4\nf 1 4 3\n");
@@ -290,9 +290,8 @@ TEST_F(Program, says_in_a_log_which_share_of_the_whole_is_done) {
     }
 }
 
-TEST_F(Program, ctrl_c_leaves_nothing_half_written) {
-    // The demo takes a part of a second; on a busy machine the signal may come too late, so it is tried
-    // again.
+TEST_F(Program, ctrl_c_leaves_no_partial_file) {
+    // The demo takes a fraction of a second; on a busy machine the signal may come too late, so the test tries again.
     bool cancelled = false;
     for (int attempt = 0; attempt < 20 && !cancelled; ++attempt) {
         const Ended e = run({"demo", "dock", "-o", folder_ / "ring.tact"}, true);
@@ -302,7 +301,7 @@ TEST_F(Program, ctrl_c_leaves_nothing_half_written) {
             ASSERT_NO_THROW((void)SceneFile::open(folder_ / "ring.tact"));
             fs::remove(folder_ / "ring.tact");
         } else {
-            EXPECT_NE(e.err.find("cancelled, nothing was written"), std::string::npos) << e.err;
+            EXPECT_NE(e.err.find("cancelled; nothing was written"), std::string::npos) << e.err;
         }
         EXPECT_EQ(entries(), 0U);
     }

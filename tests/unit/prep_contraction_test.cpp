@@ -1,4 +1,4 @@
-// What pair contraction must never do to any mesh, and what pairs without an edge add.
+// Invariants of pair contraction on any mesh, and the effect of pairs without an edge.
 #include <gtest/gtest.h>
 
 #include <numbers>
@@ -14,7 +14,7 @@
 namespace tact::test {
 namespace {
 
-// Rings of points between two poles.
+// A sphere of vertex rings between two poles.
 void add_ball(TriangleMesh& mesh, const Vec3& centre, double radius, std::uint32_t rings = 7) {
     const auto first = static_cast<std::uint32_t>(mesh.vertices());
     const std::uint32_t around = 2 * rings;
@@ -43,14 +43,14 @@ void add_ball(TriangleMesh& mesh, const Vec3& centre, double radius, std::uint32
     }
 }
 
-TriangleMesh balls(int n, double gap) {  // n³ of radius 1
+TriangleMesh balls(int n, double gap) {  // n³ spheres of radius 1
     TriangleMesh mesh;
     for (int i = 0; i < n * n * n; ++i)
         add_ball(mesh, (2.0 + gap) * Vec3(i % n, i / n % n, i / (n * n)), 1.0);  // NOLINT
     return mesh;
 }
 
-// Thin, rough and with tight bends: where contraction likes to fold.
+// Thin, rough and tightly bent: easily folded by contraction.
 TriangleMesh crumpled() {
     return isosurface(sampled(41,
                               [](const Vec3& p) {
@@ -62,7 +62,7 @@ TriangleMesh crumpled() {
                       -0.06);
 }
 
-TEST(Contraction, leaves_no_fold_at_any_level_of_a_crumpled_shell) {
+TEST(Contraction, folds_no_level_of_a_crumpled_shell) {
     const TriangleMesh fine = crumpled();
     ASSERT_GT(topology(fine).sharpest, -0.9);
     for (const std::uint32_t n : {4000U, 1000U, 300U, 100U, 30U}) {
@@ -76,7 +76,7 @@ TEST(Contraction, leaves_no_fold_at_any_level_of_a_crumpled_shell) {
     }
 }
 
-// Of a surface that is seen whole from the origin: the cosine of its outward normals to the way out.
+// For a surface visible as a whole from the origin: smallest cosine between an outward normal and the outward direction.
 double least_outward(const TriangleMesh& mesh) {
     double least = 1.0;
     for (std::size_t t = 0; t < mesh.triangles(); ++t) {
@@ -91,8 +91,8 @@ double least_outward(const TriangleMesh& mesh) {
     return least;
 }
 
-// Each step alone, and neighbours held off their folds, would let one turn over in many.
-TEST(Contraction, no_triangle_comes_to_face_the_other_side) {
+// Checks per step and per neighbour would let a triangle turn over in many steps.
+TEST(Contraction, no_triangle_turns_over) {
     const TriangleMesh fine = rough_sphere(60);
     ASSERT_GT(least_outward(fine), 0.5);
     for (const std::uint32_t n : {3000U, 1000U, 300U}) {
@@ -104,7 +104,7 @@ TEST(Contraction, no_triangle_comes_to_face_the_other_side) {
     }
 }
 
-TEST(Contraction, relaxing_brings_the_surface_nearer) {
+TEST(Contraction, relaxing_reduces_the_distance) {
     const TriangleMesh fine = isosurface(sampled(33, torus), -0.25);
     Simplified coarse = simplify(fine, {.vertices_min = 150});
     const double before_m = two_sided(fine, coarse.mesh, 5000).rms_m;
@@ -117,9 +117,8 @@ TEST(Contraction, relaxing_brings_the_surface_nearer) {
     EXPECT_EQ(coarse.mesh.position_m, position_m);
 }
 
-TEST(Contraction, a_round_border_keeps_its_area_and_its_curve) {
-    // A disc: the mean radius of its outline falls if border vertices move to chords, and grows if to
-    // tangents.
+TEST(Contraction, a_round_border_keeps_its_area_and_shape) {
+    // A disc: its mean outline radius shrinks if border vertices move to chords, and grows if they move to tangents.
     TriangleMesh disc;
     constexpr std::uint32_t kRings = 12, kAround = 72;
     disc.position_m = {0, 0, 0};
@@ -144,27 +143,27 @@ TEST(Contraction, a_round_border_keeps_its_area_and_its_curve) {
     EXPECT_LT(two_sided(disc, coarse.mesh, 5000).max_m, 0.08);
 }
 
-TEST(Contraction, without_pairs_every_part_stays) {
+TEST(Contraction, without_pairs_every_part_is_kept) {
     const TriangleMesh fine = balls(2, 0.1);
     const TriangleMesh coarse = simplify(fine, {.vertices_min = 0}).mesh;
     EXPECT_EQ(coarse.vertices(), 32U);  // eight tetrahedra
     EXPECT_EQ(topology(coarse).euler, 16);
 }
 
-TEST(Contraction, with_pairs_parts_vanish_and_the_rest_stays_near) {
+TEST(Contraction, with_pairs_parts_merge_and_the_result_stays_close) {
     const TriangleMesh fine = balls(3, 0.1);
-    // Edges alone stop at 27 tetrahedra. With pairs half of the vertices do better than those.
+    // Edges alone stop at 27 tetrahedra; with pairs, half as many vertices give a better result.
     const TriangleMesh solid = simplify(fine, {.vertices_min = 54}).mesh;
     const TriangleMesh coarse = simplify(fine, {.vertices_min = 54, .pair_distance = 1.0}).mesh;
     EXPECT_EQ(solid.vertices(), 108U);
     EXPECT_LE(coarse.vertices(), 54U);
     EXPECT_GE(coarse.vertices(), 40U);
     EXPECT_EQ(topology(coarse).flat_triangles, 0U);
-    EXPECT_LT(two_sided(fine, coarse, 3000).rms_m, 0.5);  // of spheres of radius 1
+    EXPECT_LT(two_sided(fine, coarse, 3000).rms_m, 0.5);  // spheres of radius 1
 }
 
-TEST(Contraction, with_pairs_sheets_that_meet_are_sewn) {
-    // Two sheets whose borders lie 0.02 edges apart: a scan that was not welded.
+TEST(Contraction, with_pairs_adjacent_sheets_are_joined) {
+    // Two sheets whose borders lie 0.02 edge lengths apart: an unwelded scan.
     TriangleMesh halves;
     constexpr std::uint32_t kSide = 12;
     for (std::uint32_t half = 0; half < 2; ++half) {
@@ -190,8 +189,8 @@ TEST(Contraction, with_pairs_sheets_that_meet_are_sewn) {
     EXPECT_NEAR(area(sewn), 24.02 * 12.0, 0.02 * 24.02 * 12.0);
 }
 
-TEST(Contraction, places_with_three_triangles_at_an_edge_stay) {
-    // Three pages of a book: the spine is an edge with three triangles all along.
+TEST(Contraction, edges_with_three_triangles_are_kept) {
+    // Three pages of a book: the spine is a line of edges with three triangles each.
     TriangleMesh book;
     constexpr std::uint32_t kLong = 16, kWide = 6;
     for (std::uint32_t y = 0; y <= kLong; ++y)
@@ -220,11 +219,11 @@ TEST(Contraction, places_with_three_triangles_at_an_edge_stay) {
     EXPECT_NEAR(area(coarse.mesh), area(book), 0.02 * area(book));
 }
 
-TEST(Contraction, a_part_that_hangs_by_a_vertex_does_not_confuse_the_count) {
+TEST(Contraction, parts_joined_at_a_vertex_are_counted_correctly) {
     TriangleMesh two;
     add_ball(two, {0, 0, 0}, 1.0);
     add_ball(two, {0, 0, 2.0}, 1.0);
-    // Weld the upper pole of the first to the lower pole of the second.
+    // Weld the upper pole of the first sphere to the lower pole of the second.
     const auto half = static_cast<std::uint32_t>(two.vertices() / 2);
     for (std::uint32_t& v : two.triangle) v = v == 2 * half - 1 ? half - 2 : v;
     const TriangleMesh mesh = cleaned(two);
@@ -236,10 +235,10 @@ TEST(Contraction, a_part_that_hangs_by_a_vertex_does_not_confuse_the_count) {
 TEST(Contraction, progressive_meshes_with_pairs_reverse_exactly) {
     const TriangleMesh fine = balls(2, 0.05);
     const ProgressiveMeshData data = make_progressive(fine, {.pair_distance = 1.0});
-    const ProgressiveMesh checked(data);  // throws where a level names what it has not
-    EXPECT_LT(data.base_vertices, 32U);   // fewer than the eight tetrahedra
+    const ProgressiveMesh checked(data);  // throws if a level refers to missing data
+    EXPECT_LT(data.base_vertices, 32U);   // fewer than eight tetrahedra
     ASSERT_EQ(data.vertex.size(), fine.vertices());
-    // All positions and triangles of the original are there, each once.
+    // All positions and triangles of the original are present exactly once.
     const auto key = [](const float* p) { return std::array<float, 3>{p[0], p[1], p[2]}; };
     std::multiset<std::array<float, 3>> was, is;
     for (std::size_t v = 0; v < fine.vertices(); ++v) {
@@ -250,7 +249,7 @@ TEST(Contraction, progressive_meshes_with_pairs_reverse_exactly) {
     EXPECT_EQ(data.triangle.size(), fine.triangle.size());
 }
 
-TEST(NearPairs, are_those_of_the_slow_search) {
+TEST(NearPairs, match_the_slow_search) {
     SeededRandom random(7);
     std::vector<Eigen::Vector3f> at;
     for (int i = 0; i < 400; ++i)
@@ -269,7 +268,7 @@ TEST(NearPairs, are_those_of_the_slow_search) {
     near_pairs(at, 0.1F, 2,
                [&](std::uint32_t, const std::vector<std::uint32_t>& near) { EXPECT_LE(near.size(), 2U); });
     near_pairs(std::vector<Eigen::Vector3f>(20000, {1, 1, 1}), 0.1F, 4,
-               [](std::uint32_t, const std::vector<std::uint32_t>&) {});  // all in one place: bounded
+               [](std::uint32_t, const std::vector<std::uint32_t>&) {});  // all at one position: bounded
 }
 
 }  // namespace

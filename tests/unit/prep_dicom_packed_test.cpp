@@ -1,4 +1,4 @@
-// Packed DICOM as scanners and archives send it: the same bone out of JPEG, JPEG-LS, JPEG 2000 and run lengths that lose nothing.
+// Compressed DICOM from scanners and archives: lossless JPEG, JPEG-LS, JPEG 2000 and run-length files give the same bone.
 #include <gdcmImageChangeTransferSyntax.h>
 #include <gdcmImageReader.h>
 #include <gdcmImageWriter.h>
@@ -17,7 +17,7 @@ namespace {
 namespace fs = std::filesystem;
 using gdcm::TransferSyntax;
 
-// GDCM's own encoder, from a plain file. False: it cannot.
+// Compresses a plain file with GDCM's encoder. Returns false if it cannot.
 bool pack(const fs::path& from, const fs::path& to, TransferSyntax::TSType syntax) {
     gdcm::Trace::WarningOff();
     gdcm::Trace::ErrorOff();
@@ -35,7 +35,7 @@ bool pack(const fs::path& from, const fs::path& to, TransferSyntax::TSType synta
     return writer.Write();
 }
 
-// The slice with each pixel so many times along both edges.
+// The slice with each pixel repeated `times` times along both axes.
 sample::DicomSample enlarged(const sample::DicomSample& from, int times) {
     sample::DicomSample to = from;
     to.columns = static_cast<std::uint16_t>(from.columns * times);
@@ -50,12 +50,13 @@ sample::DicomSample enlarged(const sample::DicomSample& from, int times) {
 
 class PackedDicom : public testing::TestWithParam<TransferSyntax::TSType> {
 protected:
-    // GDCM 3.0's encoder of JPEG 2000 crashes on pictures of a few pixels.
+    // GDCM 3.0's JPEG 2000 encoder crashes on images of a few pixels.
     static int times() { return GetParam() == TransferSyntax::JPEG2000Lossless ? 16 : 1; }
     void SetUp() override {
         for (int u = 0; u < sample::kUp; ++u) {
             sample::DicomSample slice = enlarged(sample::bone_slice(u), times());
-            for (std::uint16_t& p : slice.pixels) p &= 0x0FFF;  // no overlay beside what is packed
+            for (std::uint16_t& p : slice.pixels)
+                p &= 0x0FFF;  // no overlay bits next to the compressed pixels
             plain_.write("s", sample::dicom_bytes(slice));
             std::string name = "s";
             name += std::to_string(u);
@@ -75,7 +76,7 @@ protected:
     sample::ScanFolder plain_, packed_;
 };
 
-TEST_P(PackedDicom, is_the_same_bone) {
+TEST_P(PackedDicom, gives_the_same_bone) {
     BoneImport o;
     o.scan = packed_.path;
     const BoneData bone = import_bone(o).bone;
@@ -92,7 +93,7 @@ TEST_P(PackedDicom, is_the_same_bone) {
                     << l << ' ' << b << ' ' << u;
 }
 
-TEST_P(PackedDicom, a_slice_that_is_cut_short_is_named) {
+TEST_P(PackedDicom, a_truncated_slice_is_named) {
     const fs::path cut = packed_.path / "s2.dcm";
     const auto bytes = fs::file_size(cut);
     fs::resize_file(cut, bytes - 40);

@@ -1,4 +1,4 @@
-// Saving placed structures: out of a scene and back in, numbers by theory, and what must not be written.
+// Saving placed structures: round trip through a scene, values from theory, and refused exports.
 #include "prep/cif/cif_document.hpp"
 #include "prep/export/export_bodies.hpp"
 
@@ -26,7 +26,7 @@ using sample::error_of;
 
 constexpr double kA = kAngstromM;
 
-// Hydrogen, water, alternate locations, ADPs, a ligand, what holds only in the crystal, and two models.
+// Hydrogen, water, alternate locations, ADPs, a ligand, crystal-only records, and two models.
 const std::string kPdb =
     "HEADER    TEST                                    01-JAN-00   1ABC              \n"
     "TITLE     A SMALL FILE                                                          \n"
@@ -85,7 +85,7 @@ protected:
         all << std::ifstream(path, std::ios::binary).rdbuf();
         return all.str();
     }
-    // A scene of these files, in a map that has something in it.
+    // A scene of these files in a non-empty map.
     SceneFile scene(const std::vector<fs::path>& files) const {
         SceneMeta meta = sample::meta();
         meta.body_count = static_cast<std::uint32_t>(files.size());
@@ -129,15 +129,15 @@ void expect_same_place(const Structure& saved, const Structure& original, const 
     }
 }
 
-TEST(AtomMove, turns_adps_as_theory_has_it) {
-    // A quarter turn about z takes x to y and y to -x.
+TEST(AtomMove, rotates_adps_as_in_theory) {
+    // A rotation by 90 degrees about z maps x to y and y to -x.
     AtomMove quarter;
     quarter.turn << 0, -1, 0, 1, 0, 0, 0, 0, 1;
     const Adp u{0.1, 0.2, 0.3, 0.01, 0.02, 0.03};
     const Adp expected{0.2, 0.1, 0.3, -0.01, -0.03, 0.02};
     const Adp turned = quarter.turned(u);
     for (std::size_t k = 0; k < 6; ++k) EXPECT_NEAR(turned[k], expected[k], 1e-12);
-    // The mean square displacement along a direction that turns along stays: n^T U n.
+    // The mean square displacement along a direction that rotates with the body is invariant: n^T U n.
     SeededRandom random(5);
     for (int trial = 0; trial < 20; ++trial) {
         AtomMove move;
@@ -154,7 +154,7 @@ TEST(AtomMove, turns_adps_as_theory_has_it) {
     }
 }
 
-TEST_F(Export, a_pdb_comes_back_where_the_body_was) {
+TEST_F(Export, a_saved_pdb_has_the_pose_of_the_body) {
     const fs::path file = write("small.pdb", kPdb);
     const SceneFile scene = this->scene({file});
     const auto written = export_bodies(scene, {{7, 0, tilted()}}, {.folder = out()});
@@ -163,7 +163,7 @@ TEST_F(Export, a_pdb_comes_back_where_the_body_was) {
     expect_same_place(import_structure(written[0]).structure, import_structure(file).structure, tilted());
     EXPECT_EQ(read(file), kPdb);
 
-    // gemmi reads all of it, and finds every atom where the matrix puts it.
+    // gemmi reads the file and finds every atom at the position given by the matrix.
     const gemmi::Structure before = gemmi::read_pdb_string(kPdb, "before");
     const gemmi::Structure after = gemmi::read_pdb_string(read(written[0]), "after");
     const AtomMove move = AtomMove::of(tilted(), import_structure(file).structure.home_com_model_m);
@@ -206,7 +206,7 @@ TEST_F(Export, a_pdb_comes_back_where_the_body_was) {
     for (std::string line; std::getline(lines, line);) EXPECT_LE(line.size(), 80U);
 }
 
-TEST_F(Export, an_mmcif_comes_back_where_the_body_was) {
+TEST_F(Export, a_saved_mmcif_has_the_pose_of_the_body) {
     const fs::path file = write("small.cif", kCif);
     const SceneFile scene = this->scene({file});
     const auto written = export_bodies(scene, {{1, 0, tilted()}}, {.folder = out()});
@@ -227,13 +227,13 @@ TEST_F(Export, an_mmcif_comes_back_where_the_body_was) {
     const Adp u = move.turned(*before[1].adp_u);
     for (std::size_t k = 0; k < 6; ++k) EXPECT_NEAR((*after[1].adp_u)[k], u[k], 6e-5);
     EXPECT_FALSE(after[0].adp_u);
-    // A second save says one fit, not two.
+    // A second save contains one fit, not two.
     const auto again = export_bodies(this->scene({written[0]}), {{1, 0, tilted()}}, {.folder = out() / "b"});
     const std::string second = read(again[0]);
     EXPECT_EQ(second.find("_tact_fit.body"), second.rfind("_tact_fit.body"));
 }
 
-TEST_F(Export, saved_files_make_a_new_scene_that_has_the_bodies_there) {
+TEST_F(Export, saved_files_bake_to_a_scene_with_the_same_poses) {
     const SceneFile scene = this->scene({write("small.pdb", kPdb), write("other.cif", kCif)});
     std::vector<PlacedBody> bodies{{1, 0, tilted()}, {2, 1, tilted().inverse()}, {5, 0, Pose{}}};
     const auto written = export_bodies(scene, bodies, {.folder = out()});
@@ -246,7 +246,7 @@ TEST_F(Export, saved_files_make_a_new_scene_that_has_the_bodies_there) {
     }
 }
 
-TEST_F(Export, the_matrix_axis_and_angle_are_those_of_the_pose) {
+TEST_F(Export, matrix_axis_and_angle_match_the_pose) {
     const fs::path file = write("small.pdb", kPdb);
     const auto written = export_bodies(scene({file}), {{3, 0, tilted()}}, {.folder = out()});
     std::istringstream text(read(written[1]));
@@ -279,7 +279,7 @@ TEST_F(Export, the_matrix_axis_and_angle_are_those_of_the_pose) {
     EXPECT_TRUE(row.starts_with("3,0,\"small.pdb\",\"small-body3.pdb\","));
 }
 
-TEST_F(Export, what_does_not_fit_the_pdb_becomes_mmcif) {
+TEST_F(Export, structures_too_large_for_pdb_are_saved_as_mmcif) {
     const fs::path file = write("small.pdb", kPdb);
     const Pose far{Vec3(-5000.0, 0.0, 0.0) * kA, tilted().q};
     const auto written = export_bodies(scene({file}), {{1, 0, far}}, {.folder = out()});
@@ -291,7 +291,7 @@ TEST_F(Export, what_does_not_fit_the_pdb_becomes_mmcif) {
     EXPECT_EQ(atoms[8].model, 2);
 }
 
-TEST_F(Export, copies_combine_with_a_chain_id_for_each) {
+TEST_F(Export, combined_copies_get_separate_chain_ids) {
     const SceneFile scene = this->scene({write("small.pdb", kPdb)});
     std::vector<PlacedBody> bodies;
     for (std::uint32_t i = 0; i < 6; ++i)
@@ -303,7 +303,7 @@ TEST_F(Export, copies_combine_with_a_chain_id_for_each) {
     const Structure all = import_structure(written.back()).structure;
     EXPECT_EQ(all.chain_names.size(), 12U);
     EXPECT_EQ(all.size(), 6 * import_structure(folder_ / "small.pdb").structure.size());
-    // Sixty-two letters are not enough for 40 copies of two chains.
+    // Sixty-two letters are too few for 40 copies of two chains.
     while (bodies.size() < 40)
         bodies.push_back({static_cast<std::uint32_t>(100 + bodies.size()), 0, tilted()});
     written = export_bodies(scene, bodies, {.folder = out() / "many", .combined = true});
@@ -312,7 +312,7 @@ TEST_F(Export, copies_combine_with_a_chain_id_for_each) {
     EXPECT_EQ(many.chain_names.size(), 80U);
 }
 
-TEST_F(Export, nothing_is_overwritten_and_inputs_never) {
+TEST_F(Export, files_are_not_overwritten_and_inputs_never) {
     const fs::path file = write("small.pdb", kPdb);
     const SceneFile scene = this->scene({file});
     const std::vector<PlacedBody> bodies{{1, 0, tilted()}};
@@ -325,18 +325,18 @@ TEST_F(Export, nothing_is_overwritten_and_inputs_never) {
     EXPECT_EQ(read(written[0]), first);
     export_bodies(scene, {{1, 0, Pose{}}}, {.folder = out(), .force = true});
     EXPECT_NE(read(written[0]), first);
-    // A target that is the input by another name.
+    // A target that is an alias of the input.
     fs::create_directory(folder_ / "trap");
     fs::create_symlink(file, folder_ / "trap" / "small-body1.pdb");
     EXPECT_NE(error_of([&] {
                   export_bodies(scene, bodies, {.folder = folder_ / "trap", .force = true});
-              }).find("baked from"),
+              }).find("from which the scene was baked"),
               std::string::npos);
     EXPECT_EQ(read(file), kPdb);
     EXPECT_NE(error_of([&] { export_bodies(scene, bodies, {.folder = file / "x"}); }), "");
 }
 
-TEST_F(Export, a_source_that_is_gone_or_changed_is_said) {
+TEST_F(Export, a_missing_or_changed_source_is_reported) {
     const fs::path file = write("small.pdb", kPdb);
     const SceneFile scene = this->scene({file});
     const std::vector<PlacedBody> bodies{{1, 0, tilted()}};
@@ -346,17 +346,17 @@ TEST_F(Export, a_source_that_is_gone_or_changed_is_said) {
     EXPECT_NE(error_of([&] { export_bodies(scene, bodies, {.folder = out()}); }).find("has changed"),
               std::string::npos);
     fs::remove(file);
-    EXPECT_NE(error_of([&] { export_bodies(scene, bodies, {.folder = out()}); }).find("is not there"),
+    EXPECT_NE(error_of([&] { export_bodies(scene, bodies, {.folder = out()}); }).find("does not exist"),
               std::string::npos);
     EXPECT_FALSE(fs::exists(out()));
     sample::scene().write(folder_ / "made.tact");
     EXPECT_NE(error_of([&] {
                   export_bodies(SceneFile::open(folder_ / "made.tact"), bodies, {.folder = out()});
-              }).find("made in code"),
+              }).find("is synthetic"),
               std::string::npos);
 }
 
-TEST_F(Export, damaged_files_are_refused_in_words) {
+TEST_F(Export, damaged_files_are_refused) {
     for (const char* bad : {"ATOM      1  N   GLY A   1      11.1x4   6.134  -6.504\n",
                             "ATOM      1  N   GLY A   1      11.104   6.134\n",
                             "ATOM      1  N   GLY A   1         nan   6.134  -6.504\n"})

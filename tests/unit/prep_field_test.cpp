@@ -1,4 +1,4 @@
-// Fields from files and from code: geometry, refusals by line, and a gain that is what the analytic field says.
+// Fields from files and from code: geometry, errors by line, and a gain that matches the analytic field.
 #include <gtest/gtest.h>
 #include <unistd.h>
 
@@ -27,7 +27,7 @@ std::string error_of(const std::string& csv) {
 std::string csv_of(std::uint32_t nx, std::uint32_t ny, std::uint32_t nz, const char* head = "") {
     std::ostringstream out;
     out << head;
-    for (std::uint32_t x = 0; x < nx; ++x)  // z fastest: any order will do
+    for (std::uint32_t x = 0; x < nx; ++x)  // z fastest; any order is valid
         for (std::uint32_t y = 0; y < ny; ++y)
             for (std::uint32_t z = 0; z < nz; ++z)
                 out << 10.0 + 2.0 * x << ',' << -5.0 + y << ',' << 0.5 * z << ',' << 100.0 * x + 10.0 * y + z
@@ -35,7 +35,7 @@ std::string csv_of(std::uint32_t nx, std::uint32_t ny, std::uint32_t nz, const c
     return out.str();
 }
 
-TEST(FieldImport, a_csv_in_any_order_becomes_a_grid_with_the_files_geometry) {
+TEST(FieldImport, a_csv_in_any_order_becomes_a_grid_with_its_geometry) {
     const ImportedField field = import_field_csv(csv_of(5, 6, 7, "x,y,z,phi\n# a remark\n\n"), "a.csv", 1e-3);
     const DensityGrid& g = field.grid;
     EXPECT_EQ(g.size, (std::array<std::uint32_t, 3>{5, 6, 7}));
@@ -44,7 +44,7 @@ TEST(FieldImport, a_csv_in_any_order_becomes_a_grid_with_the_files_geometry) {
     EXPECT_EQ(g.at(4, 2, 3), 423.0F);
 }
 
-TEST(FieldImport, three_columns_are_a_potential_that_is_the_same_at_every_z) {
+TEST(FieldImport, three_columns_give_a_potential_constant_along_z) {
     std::string csv;
     for (int y = 0; y < 5; ++y)
         for (int x = 0; x < 6; ++x)
@@ -54,15 +54,15 @@ TEST(FieldImport, three_columns_are_a_potential_that_is_the_same_at_every_z) {
     for (std::uint32_t z = 0; z < g.size[2]; ++z) EXPECT_EQ(g.at(5, 4, z), 20.0F);
 }
 
-TEST(FieldImport, wrong_files_are_refused_with_the_line_and_the_fix) {
+TEST(FieldImport, invalid_files_are_refused_with_line_and_fix) {
     const auto refused = [](const std::string& csv, const char* part) {
         const std::string error = error_of(csv);
         EXPECT_NE(error.find(part), std::string::npos) << error;
     };
-    refused("", "it holds no point");
-    refused("x,y,z,phi\n", "it holds no point");
+    refused("", "the file has no points");
+    refused("x,y,z,phi\n", "the file has no points");
     refused("0 0 0 1\n0 0 a 2\n", "line 2");
-    refused("0 0 0 1\n0 0 2\n", "it has 3 numbers");
+    refused("0 0 0 1\n0 0 2\n", "the line has 3 numbers");
     refused("0 0 0 nan\n", "not finite");
     refused("0 0 0 1e999\n", "not finite");
     refused(csv_of(5, 5, 5) + "10,-5,0,7\n", "do not fill a grid");
@@ -71,14 +71,14 @@ TEST(FieldImport, wrong_files_are_refused_with_the_line_and_the_fix) {
         0, twice.find('\n'),
         twice.substr(twice.find('\n') + 1, twice.find('\n', twice.find('\n') + 1) - twice.find('\n') - 1));
     refused(twice, "given twice");
-    refused(csv_of(3, 5, 5), "along x there are 3 points");
+    refused(csv_of(3, 5, 5), "axis x has 3 points");
     std::string uneven = csv_of(5, 5, 5);
     for (std::size_t at = 0; (at = uneven.find("12,", at)) != std::string::npos; at += 3)
         uneven.replace(at, 3, "12.5,");
-    refused(uneven, "are not equal");
+    refused(uneven, "unequal steps");
 }
 
-TEST(FieldImport, an_nrrd_keeps_its_geometry_and_refuses_values_that_are_no_numbers) {
+TEST(FieldImport, an_nrrd_keeps_its_geometry_and_refuses_non_finite_values) {
     const auto path =
         std::filesystem::temp_directory_path() / ("tact_field_" + std::to_string(getpid()) + ".nrrd");
     const auto write = [&](float third) {
@@ -100,7 +100,7 @@ TEST(FieldImport, an_nrrd_keeps_its_geometry_and_refuses_values_that_are_no_numb
     std::filesystem::remove(path);
 }
 
-TEST(FieldBake, the_gain_gives_the_force_at_the_greatest_gradient_of_the_analytic_field) {
+TEST(FieldBake, the_gain_gives_the_maximum_force_at_the_largest_gradient) {
     const TwoCharges charges;
     FieldInput input;
     input.grid = two_charges_grid(charges, 65);
@@ -109,7 +109,7 @@ TEST(FieldBake, the_gain_gives_the_force_at_the_greatest_gradient_of_the_analyti
     const BakedField baked = bake_field(input, out);
     double most = 0.0;
     constexpr double kStep = 1e-4;
-    for (int i = 0; i < 2000; ++i) {  // along the axis through both charges, where the field is greatest
+    for (int i = 0; i < 2000; ++i) {  // along the axis through both charges, where the field is largest
         const Vec3 at(-0.5 + 5e-4 * i, 0.0, 0.0), d(kStep, 0.0, 0.0);
         most =
             std::max(most, std::abs(potential(charges, at + d) - potential(charges, at - d)) / (2.0 * kStep));
@@ -118,7 +118,7 @@ TEST(FieldBake, the_gain_gives_the_force_at_the_greatest_gradient_of_the_analyti
     EXPECT_NEAR(baked.field.force_n_max, input.force_n_max, 1e-9);
 }
 
-TEST(FieldBake, a_field_that_would_be_too_stiff_gets_a_smaller_gain) {
+TEST(FieldBake, a_field_too_stiff_gets_a_smaller_gain) {
     FieldInput input;
     input.grid = two_charges_grid({}, 65);
     input.stiffness_n_m_max = 50.0;
@@ -129,7 +129,7 @@ TEST(FieldBake, a_field_that_would_be_too_stiff_gets_a_smaller_gain) {
     EXPECT_NE(baked.note.find("limited by the stiffness"), std::string::npos);
 }
 
-TEST(FieldBake, the_scene_reads_back_the_same) {
+TEST(FieldBake, the_scene_reads_back_unchanged) {
     FieldInput input;
     input.grid = two_charges_grid({}, 17);
     input.title = std::string("two charges");

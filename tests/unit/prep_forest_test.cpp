@@ -1,4 +1,4 @@
-// The forest of a surface: what is built is what the reader demands, and any cut of it is the surface.
+// The forest of a surface: the reader accepts the built forest, and any cut of it is the surface.
 #include <gtest/gtest.h>
 
 #include <cstring>
@@ -23,11 +23,11 @@ TriangleMesh two_spheres_and_a_sheet() {
     return all;
 }
 
-TEST(VertexForest, every_triangle_appears_once_and_nodes_reach_over_their_triangles) {
+TEST(VertexForest, every_triangle_appears_once_and_the_reach_of_nodes_covers_their_triangles) {
     const TriangleMesh before = two_spheres_and_a_sheet();
     TriangleMesh mesh = before;
     const BuiltForest built = build_forest(mesh);
-    const VertexForest forest = view_forest(built.data, mesh.position_m, mesh.triangle);  // checks itself
+    const VertexForest forest = view_forest(built.data, mesh.position_m, mesh.triangle);  // also validates
     EXPECT_GE(forest.roots(), 3U);
     EXPECT_LT(forest.roots(), 60U);
     for (std::size_t v = 0; v < mesh.vertices(); ++v)
@@ -35,7 +35,7 @@ TEST(VertexForest, every_triangle_appears_once_and_nodes_reach_over_their_triang
             ASSERT_EQ(mesh.position_m[3 * v + i], before.position_m[3 * std::size_t{built.order[v]} + i]);
     for (std::size_t i = 0; i < mesh.triangle.size(); ++i)
         ASSERT_EQ(built.order[mesh.triangle[i]], before.triangle[i]);
-    // By brute force: a box of `reach` about a node holds every corner of every triangle at its leaves.
+    // Brute force: a box of `reach` around a node contains each corner of each triangle at its leaves.
     std::vector<VertexForest::Branch> stack;
     for (std::uint32_t r = 0; r < forest.roots(); ++r) stack.push_back(forest.root(r));
     while (!stack.empty()) {
@@ -57,7 +57,7 @@ TEST(VertexForest, every_triangle_appears_once_and_nodes_reach_over_their_triang
     }
 }
 
-// Whether `to` has to be split before `from` is.
+// True if `to` must be split before `from`.
 bool brings(const VertexForest& forest, std::uint32_t from, std::uint32_t to) {
     std::vector<bool> seen(forest.nodes());
     std::vector<std::uint32_t> stack{from};
@@ -75,7 +75,7 @@ bool brings(const VertexForest& forest, std::uint32_t from, std::uint32_t to) {
     return seen[to];
 }
 
-TEST(VertexForest, needs_are_those_of_the_numbers_and_none_is_written_that_another_brings) {
+TEST(VertexForest, needs_follow_the_numbers_without_redundant_entries) {
     TriangleMesh mesh = two_spheres_and_a_sheet();
     const BuiltForest built = build_forest(mesh);
     const VertexForest forest = view_forest(built.data, mesh.position_m, mesh.triangle);
@@ -84,7 +84,7 @@ TEST(VertexForest, needs_are_those_of_the_numbers_and_none_is_written_that_anoth
         if (forest.node(n).first_is_leaf()) parent[forest.node(n).first] = n;
         if (forest.node(n).second_is_leaf()) parent[forest.node(n).middle] = n;
     }
-    // Up both sides of each edge of the mesh: a merge was made beside what the one before it left.
+    // Along both sides of each mesh edge: a merge happened next to the result of the previous merge.
     const auto number = [&](std::uint32_t n) {
         return n == kNoForestNode ? UINT32_MAX : forest.node(n).number;
     };
@@ -112,7 +112,7 @@ TEST(VertexForest, needs_are_those_of_the_numbers_and_none_is_written_that_anoth
     }
 }
 
-TEST(VertexForest, a_flat_fan_of_many_triangles_is_built) {  // one vertex that would take part in every merge
+TEST(VertexForest, builds_a_flat_fan_of_many_triangles) {  // one vertex takes part in every merge
     TriangleMesh fan{{0, 0, 0}, {}};
     constexpr std::uint32_t kBlades = 2000;
     for (std::uint32_t i = 0; i < kBlades; ++i) {
@@ -125,9 +125,10 @@ TEST(VertexForest, a_flat_fan_of_many_triangles_is_built) {  // one vertex that 
     EXPECT_LT(forest.roots(), 10U);
 }
 
-TEST(VertexForest, is_local_where_asked_for) {
+TEST(VertexForest, is_local_on_request) {
     const auto shape = [](double locality) {
-        TriangleMesh mesh = test::sheet(60, [](float, float) { return 0.0F; });  // no error to go by
+        TriangleMesh mesh = test::sheet(
+            60, [](float, float) { return 0.0F; });  // no geometric error, so only locality decides
         const BuiltForest built = build_forest(mesh, {.locality = locality});
         return shape_of(view_forest(built.data, mesh.position_m, mesh.triangle), mesh.triangle);
     };
@@ -143,13 +144,13 @@ struct Baked {
         const std::vector<std::byte> bytes = out.to_bytes();
         const SceneFile file = SceneFile::from_bytes(bytes, "test.tact");
         const VertexForest forest = read_forest(file, mesh.position_m, mesh.triangle);
-        EXPECT_EQ(forest.nodes(), built.data.node.size());  // views, used while the bytes live
+        EXPECT_EQ(forest.nodes(), built.data.node.size());  // views, valid while the bytes exist
         EXPECT_EQ(std::memcmp(&forest.node(0), built.data.node.data(), sizeof(ForestNode)), 0);
         return view_forest(built.data, mesh.position_m, mesh.triangle);
     }
 };
 
-TEST(VertexForest, what_is_written_is_read_and_nothing_else_is_believed) {
+TEST(VertexForest, reads_back_unchanged_and_refuses_invalid_data) {
     const Baked baked;
     const VertexForestData& good = baked.built.data;
     EXPECT_NO_THROW((void)baked.read(good));
@@ -163,12 +164,13 @@ TEST(VertexForest, what_is_written_is_read_and_nothing_else_is_believed) {
     refuses("another middle", [](auto& d) { d.node[0].middle += 1; });
     refuses("a strange parent", [](auto& d) { d.node[1].parent = 5; });
     refuses("a number twice", [](auto& d) { d.node[1].number = d.node[0].number; });
-    refuses("a number above its parent's", [](auto& d) { std::swap(d.node[0].number, d.node[1].number); });
-    refuses("an error above its parent's", [](auto& d) { d.node[1].error_m = 9.0F; });
+    refuses("a number larger than the parent's",
+            [](auto& d) { std::swap(d.node[0].number, d.node[1].number); });
+    refuses("an error larger than the parent's", [](auto& d) { d.node[1].error_m = 9.0F; });
     refuses("no position", [](auto& d) { d.node[2].position_m[1] = NAN; });
     refuses("no reach", [](auto& d) { d.node[0].reach_m = -1.0F; });
-    refuses("a span below its own triangles'", [](auto& d) { d.node[0].span_m = 0.0F; });
-    refuses("a deviation above its parent's", [](auto& d) { d.node[1].deviation_m = 9e3F; });
+    refuses("a span smaller than its own triangles", [](auto& d) { d.node[0].span_m = 0.0F; });
+    refuses("a deviation larger than the parent's", [](auto& d) { d.node[1].deviation_m = 9e3F; });
     refuses("another first leaf", [](auto& d) { d.node[1].first += 1; });
     refuses("another end", [](auto& d) { d.node[0].end -= 1; });
     refuses("needs out of order", [](auto& d) { d.node[3].first_need = 1000; });
@@ -176,15 +178,15 @@ TEST(VertexForest, what_is_written_is_read_and_nothing_else_is_believed) {
     refuses("a need that was merged before", [](auto& d) {
         d.need.insert(d.need.begin(), 0U);
         for (auto& n : d.node) ++n.first_need;
-        d.node[0].first_need = 0;  // the root's, and it is itself
+        d.node[0].first_need = 0;  // the need of the root is the root itself
     });
-    refuses("a need that is none", [](auto& d) { d.need.push_back(100000); });
+    refuses("an invalid need", [](auto& d) { d.need.push_back(100000); });
     refuses("triangles out of order", [](auto& d) { d.node[3].first_triangle = 1000; });
     refuses("a triangle elsewhere", [](auto& d) { std::swap(d.triangle.front(), d.triangle.back()); });
     refuses("a triangle twice", [](auto& d) { d.triangle[1] = d.triangle[0]; });
-    refuses("a triangle that is none", [](auto& d) { d.triangle[2].number = 4000; });
+    refuses("an invalid triangle", [](auto& d) { d.triangle[2].number = 4000; });
     refuses("other corners", [](auto& d) { std::swap(d.triangle[2].leaf[0], d.triangle[2].leaf[1]); });
-    refuses("a leaf that is none", [](auto& d) { d.triangle[2].leaf[0] = 1000; });
+    refuses("an invalid leaf", [](auto& d) { d.triangle[2].leaf[0] = 1000; });
     refuses("trees out of order", [](auto& d) { d.root_first[0] = 1; });
     refuses("fewer nodes", [](auto& d) { d.node.pop_back(); });
     refuses("fewer triangles", [](auto& d) { d.triangle.pop_back(); });

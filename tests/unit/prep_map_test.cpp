@@ -1,5 +1,4 @@
-// Maps: every mode, axis order and byte order against a file whose voxels are known; what is wrong is refused
-// in words.
+// Maps: every mode, axis order and byte order against a file with known voxels; errors for invalid files.
 #include <gtest/gtest.h>
 #include <zlib.h>
 
@@ -71,7 +70,7 @@ TEST(MrcMap, machine_stamp_magic_and_extended_header_do_not_matter) {
     }
 }
 
-TEST(MrcMap, origin_words_win_over_start_and_the_rule_is_said) {
+TEST(MrcMap, origin_words_override_start_and_the_rule_is_reported) {
     Mrc mrc;
     mrc.start = {1, 1, 1};
     mrc.origin = {-17.5F, 0.0F, 40.25F};
@@ -92,7 +91,7 @@ TEST(MrcMap, voxel_is_cell_over_intervals_not_over_size) {
     EXPECT_NEAR((map.grid.spacing_m - Vec3(2.4e-10, 1.5e-10, 1e-10)).norm(), 0.0, 1e-17);
 }
 
-TEST(MrcMap, zero_intervals_and_zero_axes_are_mended_and_said) {
+TEST(MrcMap, zero_intervals_and_zero_axes_are_fixed_and_reported) {
     Mrc mrc;
     mrc.intervals = {0, 5, 4};
     ImportedMap map = read(mrc);
@@ -106,8 +105,8 @@ TEST(MrcMap, zero_intervals_and_zero_axes_are_mended_and_said) {
     EXPECT_NE(map.notes.at(0).find("axis words"), std::string::npos);
 }
 
-// A linear field is kept exactly by trilinear resampling, so every voxel inside has a known value.
-TEST(MrcMap, skew_cells_are_resampled_to_the_right_places) {
+// Trilinear resampling keeps a linear field exactly, so each voxel inside has a known value.
+TEST(MrcMap, skew_cells_are_resampled_to_the_right_positions) {
     Mrc mrc;
     mrc.size = mrc.intervals = {12, 10, 8};
     mrc.cell = {24.0F, 30.0F, 32.0F};
@@ -118,7 +117,7 @@ TEST(MrcMap, skew_cells_are_resampled_to_the_right_places) {
     EXPECT_NE(map.notes[0].find("resampled"), std::string::npos);
     const DensityGrid& g = map.grid;
     EXPECT_NEAR((g.spacing_m - Vec3::Constant(2e-10)).norm(), 0.0, 1e-16);
-    // Crystal axes: a along x; c leans towards x by 70 degrees; b is perpendicular to both.
+    // Crystal axes: a along x; c at 70 degrees to a; b perpendicular to both.
     const double beta = 70.0 * M_PI / 180.0;
     int inside = 0;
     for (std::uint32_t z = 0; z < g.size[2]; ++z) {
@@ -150,7 +149,7 @@ TEST(SitusMap, round_trips_through_text) {
     EXPECT_NE(map.origin_rule.find("Situs header"), std::string::npos);
 }
 
-// What each bad input is told. Name of the file, place, reason and fix are all there.
+// The error contains file name, place, reason and fix.
 void expect_refused(const std::vector<char>& bytes, const char* ending, const char* place,
                     const char* reason) {
     const std::string name = std::string("bad") + ending;
@@ -171,16 +170,16 @@ std::vector<char> with_float(int word, float value) {
 }
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 
-TEST(MrcMap, bad_headers_are_refused_with_the_place_and_the_reason) {
+TEST(MrcMap, bad_headers_are_refused_with_place_and_reason) {
     expect_refused({}, ".mrc", "0 bytes", "header");
     expect_refused(std::vector<char>(1023, '\0'), ".mrc", "1023 bytes", "header");
-    expect_refused(std::vector<char>(5000, '\0'), ".mrc", "neither byte order", "sizes 0, 0, 0");
-    expect_refused(std::vector<char>(5000, 'x'), ".mrc", "neither byte order", "sizes");
+    expect_refused(std::vector<char>(5000, '\0'), ".mrc", "invalid in both byte orders", "sizes 0, 0, 0");
+    expect_refused(std::vector<char>(5000, 'x'), ".mrc", "invalid in both byte orders", "sizes");
     expect_refused(with_word(4, 12), ".mrc", "word 4", "16-bit floats");
     expect_refused(with_word(4, 3), ".mrc", "word 4", "Fourier transform");
     expect_refused(with_word(4, 4), ".mrc", "word 4", "Fourier transform");
     expect_refused(with_word(4, 5), ".mrc", "word 4", "mode 5");
-    expect_refused(with_word(17, 2), ".mrc", "neither byte order", "axes 2, 2, 3");
+    expect_refused(with_word(17, 2), ".mrc", "invalid in both byte orders", "axes 2, 2, 3");
     expect_refused(with_word(1, 1), ".mrc", "word 1", "1 voxels along an axis");
     expect_refused(with_word(3, 60000), ".mrc", "word 3", "60000 voxels");
     expect_refused(with_word(11, 0), ".mrc", "word 11", "cell edge");
@@ -195,11 +194,11 @@ TEST(MrcMap, bad_headers_are_refused_with_the_place_and_the_reason) {
     expect_refused(with_word(24, 0xffffff00U), ".mrc", "word 24", "extended header");
     Mrc flat;
     flat.angles = {150.0F, 150.0F, 150.0F};
-    expect_refused(flat.bytes(), ".mrc", "words 14-16", "make no cell");
+    expect_refused(flat.bytes(), ".mrc", "words 14-16", "no cell has these angles");
     Mrc thin;
     thin.angles = {90.0F, 70.0F, 90.0F};
     thin.cell = {12.0F, 15.0F, 0.1F};
-    expect_refused(thin.bytes(), ".mrc", "skew cell", "voxels at right angles");
+    expect_refused(thin.bytes(), ".mrc", "skew cell", "voxels on axes at right angles");
 }
 
 TEST(MrcMap, declared_sizes_are_refused_before_memory_is_taken) {
@@ -220,11 +219,11 @@ TEST(MrcMap, truncated_and_oversized_files_are_refused) {
     std::vector<char> longer = whole;
     longer.push_back('x');
     expect_refused(longer, ".mrc", "6 x 5 x 4", "(oversized)");
-    // Declared as bytes, the file is four times too long.
+    // Read as bytes, the file is four times too long.
     expect_refused(with_word(4, 0), ".mrc", "mode 0", "(oversized)");
 }
 
-TEST(MrcMap, voxels_that_are_not_numbers_are_counted) {
+TEST(MrcMap, non_finite_voxels_are_counted) {
     std::vector<char> bytes = Mrc().bytes();
     const float inf = std::numeric_limits<float>::infinity();
     std::memcpy(bytes.data() + 1024 + 4 * (2 + 6 * (1 + 5 * 3)), &kNan, 4);
@@ -243,8 +242,8 @@ TEST(SitusMap, bad_text_is_refused_with_the_line) {
     refused("", "line 1", "ends before the voxel size");
     refused("hello world", "line 1", "'hello' is not a number");
     refused("2.0 0 0", "line 1", "ends before the origin");
-    refused("0 0 0 0 4 4 4\n", "line 1", "voxel of 0");
-    refused("nan 0 0 0 4 4 4\n", "line 1", "voxel of nan");
+    refused("0 0 0 0 4 4 4\n", "line 1", "voxel size 0");
+    refused("nan 0 0 0 4 4 4\n", "line 1", "voxel size nan");
     refused("1 0 inf 0 4 4 4\n", "line 1", "origin");
     refused("1 0 0 0 4 4 -4\n", "line 1", "-4 voxels");
     refused("1 0 0 0 4 4.5 4\n", "line 1", "'4.5' is not a number");
@@ -289,7 +288,7 @@ TEST_F(MapFiles, packed_and_plain_files_are_the_same) {
 TEST_F(MapFiles, bad_files_are_refused_by_name) {
     const auto error = [](const fs::path& path) { return sample::error_of([&] { (void)import_map(path); }); };
     EXPECT_NE(error(folder_ / "absent.mrc").find("absent.mrc: No such file"), std::string::npos);
-    EXPECT_NE(error(write("empty.mrc", {})).find("empty.mrc: it is empty"), std::string::npos);
+    EXPECT_NE(error(write("empty.mrc", {})).find("empty.mrc: the file is empty"), std::string::npos);
     EXPECT_NE(error(write("a.txt", {'x'})).find("'.txt' is not that of a map"), std::string::npos);
     fs::create_directory(folder_ / "folder.mrc");
     EXPECT_NE(error(folder_ / "folder.mrc").find("not a regular file"), std::string::npos);
@@ -298,12 +297,12 @@ TEST_F(MapFiles, bad_files_are_refused_by_name) {
     EXPECT_NE(error(packed).find("gzip stream is damaged or ends early"), std::string::npos) << error(packed);
 }
 
-// Found by tests/fuzz/map_fuzz.cpp: 120 voxels that asked for 67 million.
+// Found by tests/fuzz/map_fuzz.cpp: 120 voxels that required 67 million.
 TEST(MrcMap, a_small_skew_file_does_not_grow_into_a_huge_grid) {
     Mrc mrc;
     mrc.angles = {90.0F, 90.0F, 120.0F};
     mrc.cell = {12000.0F, 15000.0F, 16.0F};
-    expect_refused(mrc.bytes(), ".mrc", "skew cell", "allowed are 7680");
+    expect_refused(mrc.bytes(), ".mrc", "skew cell", "more than 7680");
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-// Meshes from files: every format gives the same mesh, and nothing that a file says is believed.
+// Meshes from files: every format gives the same mesh, and all file content is checked.
 #include <gtest/gtest.h>
 #include <zlib.h>
 
@@ -22,7 +22,7 @@ ImportedMesh read(const std::string& text, const std::string& ending) {
     return import_mesh_bytes(text, "test" + ending, ending);
 }
 
-// The words of the refusal; empty when it is accepted.
+// Returns the error, or "" if the file is accepted.
 std::string refusal(const std::string& text, const std::string& ending) {
     try {
         read(text, ending);
@@ -56,7 +56,7 @@ std::string ply_ascii() {
     return s;
 }
 
-// With things that are passed over: an element before, a list at the vertices, other types and order.
+// Contains ignored data: an element before, a list at the vertices, other types and another order.
 std::string ply_binary(bool big) {
     std::string s =
         std::string("ply\nformat binary_") + (big ? "big" : "little") +
@@ -75,7 +75,7 @@ std::string ply_binary(bool big) {
 }
 
 std::string stl_binary() {
-    std::string s = "solid is what some programs write here";
+    std::string s = "solid, as some programs write here";
     s.resize(80, ' ');
     s += raw<std::uint32_t>(4, false);
     for (const auto& f : kFace) {
@@ -156,7 +156,7 @@ TEST(MeshFile, faces_with_more_corners_become_fans) {
     EXPECT_EQ(mesh.triangle, (std::vector<std::uint32_t>{0, 1, 2, 0, 2, 3}));
 }
 
-TEST(MeshFile, what_cannot_be_true_is_refused_with_the_place_and_a_mend) {
+TEST(MeshFile, invalid_files_are_refused_with_place_and_fix) {
     const auto replaced = [](std::string text, const std::string& from, const std::string& to) {
         const std::size_t place = text.find(from);
         EXPECT_NE(place, std::string::npos) << from;
@@ -171,46 +171,46 @@ TEST(MeshFile, what_cannot_be_true_is_refused_with_the_place_and_a_mend) {
         {replaced(ply_ascii(), "vertex 4", "vertex 4000000000"), ".ply", "declares 4000000000"},
         {replaced(ply_ascii(), "vertex 4", "vertex -4"), ".ply", "line 4"},
         {replaced(ply_ascii(), "vertex 4", "vertex 5"), ".ply", "ends early"},
-        {replaced(ply_ascii(), "float x", "float w"), ".ply", "no x, y and z"},
-        {replaced(ply_ascii(), "float x", "quad x"), ".ply", "unknown type"},
+        {replaced(ply_ascii(), "float x", "float w"), ".ply", "vertices with x, y and z"},
+        {replaced(ply_ascii(), "float x", "quad x"), ".ply", "type of the property is unknown"},
         {replaced(ply_ascii(), "vertex_indices", "strip"), ".ply", "no faces"},
         {replaced(ply_ascii(), "end_header", ""), ".ply", "unknown keyword"},
-        {replaced(ply_ascii(), "3 0 2 1", "3 0 2 4"), ".ply", "names vertex 4"},
-        {replaced(ply_ascii(), "3 0 2 1", "3 0 2 -1"), ".ply", "impossible vertex"},
+        {replaced(ply_ascii(), "3 0 2 1", "3 0 2 4"), ".ply", "refers to vertex 4"},
+        {replaced(ply_ascii(), "3 0 2 1", "3 0 2 -1"), ".ply", "a vertex that does not exist"},
         {replaced(ply_ascii(), "3 0 2 1", "2 0 2 1"), ".ply", "face 0"},
         {replaced(ply_ascii(), "1.0", "2.0"), ".ply", ""},
         {replaced(ply_ascii(), "1.000000 0", "nan 0"), ".ply", "vertex 1"},
         {ply_binary(false).substr(0, 300), ".ply", "ends early"},
-        {stl_binary().substr(0, 200), ".stl", "its size"},
+        {stl_binary().substr(0, 200), ".stl", "nor of the size"},
         {stl_ascii().substr(0, 100), ".stl", "line 5"},
         {replaced(stl_ascii(), "vertex 1.000000", "vertex one"), ".stl", "line"},
         {"v 0 0 0\nv 1 0 0\n", ".obj", "no faces"},
-        {replaced(obj(), "f 1 3 2", "f 1 3 5"), ".obj", "names vertex 4"},
+        {replaced(obj(), "f 1 3 2", "f 1 3 5"), ".obj", "refers to vertex 4"},
         {replaced(obj(), "f 1 3 2", "f 0 3 2"), ".obj", "line 8"},
         {replaced(obj(), "f 1 3 2", "f -5 3 2"), ".obj", "line 8"},
         {replaced(obj(), "v 1 0 0", "v 1e9 0 0"), ".obj", "line 4"},
         {replaced(obj(), "v 1 0 0", "v 1 0"), ".obj", ""},
         {off("OFF BINARY\n"), ".off", "binary OFF"},
         {off("4OFF\n"), ".off", "three dimensions"},
-        {off("BALL\n"), ".off", "no keyword"},
-        {off("OOFF\n"), ".off", "unknown keyword"},
+        {off("BALL\n"), ".off", "neither the keyword OFF"},
+        {off("OOFF\n"), ".off", "keyword is unknown"},
         {replaced(off(), "4 4 0", "4 4000000 0"), ".off", "declares"},
         {replaced(off(), "4 4 0", "4 5 0"), ".off", "ends early"},
         {replaced(off(), "4 4 0", "3 4 0"), ".off", "line 8"},
-        {replaced(off(), "3 0 2 1", "3 0 2 4"), ".off", "names vertex 4"},
+        {replaced(off(), "3 0 2 1", "3 0 2 4"), ".off", "refers to vertex 4"},
         {replaced(off(), "1.000000 0", "inf 0"), ".off", "line 6"},
         {replaced(ply_binary(false), "element face 4", "element face 9"), ".ply", "ends early"},
         {obj(), ".fbx", "none of .ply"},
     };
     for (const Case& c : cases) {
         const std::string why = refusal(c.text, c.ending);
-        if (c.says.empty()) continue;  // not told from a good file
+        if (c.says.empty()) continue;  // cannot be distinguished from a valid file
         EXPECT_NE(why.find(c.says), std::string::npos) << c.says << "\n" << why;
         EXPECT_NE(why.find("fix:"), std::string::npos) << why;
     }
 }
 
-TEST(MeshFile, what_is_written_is_read_again) {
+TEST(MeshFile, a_written_mesh_reads_back_unchanged) {
     const fs::path path = fs::temp_directory_path() / ("tact-mesh-" + std::to_string(::getpid()) + ".ply");
     const TriangleMesh mesh = read(obj(), ".obj").mesh;
     write_ply(path, mesh);
@@ -222,7 +222,7 @@ TEST(MeshFile, what_is_written_is_read_again) {
     EXPECT_THROW(write_ply(path / "no" / "folder.ply", mesh), StartupError);
 }
 
-TEST(MeshFile, memory_is_told_before_it_is_taken_and_a_packed_file_is_the_same_mesh) {
+TEST(MeshFile, memory_is_reported_before_allocation_and_a_packed_file_gives_the_same_mesh) {
     const fs::path path = fs::temp_directory_path() / ("tact-mesh-" + std::to_string(::getpid()) + ".off.gz");
     const gzFile packed = ::gzopen(path.c_str(), "wb");
     const std::string text = off();
@@ -266,7 +266,7 @@ TEST(MeshFile, real_meshes_are_read_and_simplified_without_new_folds) {
         EXPECT_EQ(mesh.vertices(), e.vertices) << e.name;
         EXPECT_EQ(mesh.triangles(), e.triangles) << e.name;
         for (const double pairs : {0.0, 0.5}) {
-            if (pairs > 0.0 && e.triangles > 10000) continue;  // seconds
+            if (pairs > 0.0 && e.triangles > 10000) continue;  // would take seconds
             const TriangleMesh coarse =
                 simplify(cleaned(mesh), {.vertices_min = 400, .pair_distance = pairs}).mesh;
             EXPECT_LE(coarse.vertices(), 400U) << e.name;

@@ -1,4 +1,4 @@
-// Surfaces with known properties and the counts that tell a manifold, for the tests of meshes.
+// Surfaces with known properties and manifold statistics, for mesh tests.
 #pragma once
 
 #include <Eigen/Geometry>
@@ -12,7 +12,7 @@
 
 namespace tact::test {
 
-// A cube of n^3 samples over [-1, 1]^3 metres with value f(point).
+// A cube of n^3 samples over [-1, 1]^3 m with values f(point).
 template <class Field>
 DensityGrid sampled(std::uint32_t n, Field&& f) {
     DensityGrid grid;
@@ -45,7 +45,7 @@ inline double area(const TriangleMesh& mesh) {
     for (std::size_t t = 0; t < mesh.triangles(); ++t) sum += 0.5 * double_area(mesh, t).norm();
     return sum;
 }
-inline double volume(const TriangleMesh& mesh) {  // positive when closed and oriented outward
+inline double volume(const TriangleMesh& mesh) {  // positive if closed and oriented outward
     double sum = 0.0;
     for (std::size_t t = 0; t < mesh.triangles(); ++t)
         sum += point(mesh, mesh.triangle[3 * t]).dot(double_area(mesh, t)) / 6.0;
@@ -55,8 +55,8 @@ inline double volume(const TriangleMesh& mesh) {  // positive when closed and or
 struct Topology {
     long euler = 0;                    // V - E + F of the used vertices
     std::size_t border_edges = 0;      // one triangle
-    std::size_t tangled_edges = 0;     // more than two, or two that disagree about the direction
-    std::size_t tangled_vertices = 0;  // triangles around it form more than one fan
+    std::size_t tangled_edges = 0;     // more than two triangles, or two with inconsistent orientation
+    std::size_t tangled_vertices = 0;  // the triangles around it form more than one fan
     std::size_t flat_triangles = 0;    // no area, or two equal corners
     double sharpest = 1.0;             // smallest cosine between triangles at an edge
 };
@@ -85,7 +85,7 @@ inline Topology topology(const TriangleMesh& mesh) {
         }
     }
     for (const auto& [v, pairs] : link) {
-        std::map<std::uint32_t, std::uint32_t> group;  // neighbour -> representative
+        std::map<std::uint32_t, std::uint32_t> group;  // adjacent vertex -> representative
         const auto find = [&](std::uint32_t x) {
             while (group[x] != x) x = group[x];
             return x;

@@ -1,4 +1,4 @@
-// The codebook against what theory says of quantizing lines, sheets and rings.
+// The codebook against the theory of quantising lines, balls and rings.
 #include "prep/codebook/neural_gas.hpp"
 
 #include <gtest/gtest.h>
@@ -56,12 +56,12 @@ std::vector<Vec3> ball(std::size_t count, double radius_m, unsigned seed) {
     return at;
 }
 
-TEST(NeuralGas, error_on_a_uniform_line_is_that_of_equal_pieces) {
-    // N pieces of length L / N: rms distance to the middle is L / (N sqrt(12)), the least possible.
+TEST(NeuralGas, error_on_a_uniform_line_matches_equal_pieces) {
+    // N pieces of length L / N: the rms distance to the centre is L / (N sqrt(12)), the minimum.
     const double length = 500.0 * kA;
     const Codebook codebook = build_codebook(structure(line(8000, length)));
     ASSERT_GE(codebook.levels.size(), 4U);
-    for (std::size_t l = 0; l < 4; ++l) {  // 25 to 200: pieces of forty atoms or more
+    for (std::size_t l = 0; l < 4; ++l) {  // 25 to 200: pieces of 40 atoms or more
         const double best = length / (static_cast<double>(codebook.levels[l].size()) * std::sqrt(12.0));
         EXPECT_GT(codebook.levels[l].rms_error_m, 0.999 * best);
         EXPECT_LT(codebook.levels[l].rms_error_m, 1.15 * best) << "level " << l;
@@ -69,12 +69,11 @@ TEST(NeuralGas, error_on_a_uniform_line_is_that_of_equal_pieces) {
 }
 
 TEST(NeuralGas, error_in_a_ball_falls_with_the_cube_root_of_the_vectors) {
-    // Space is cut at best into cells with second moment G N^(-2/3) V^(2/3) per axis, G = 0.0785 (Conway,
-    // Sloane).
+    // The best partition of space has cells with second moment G N^(-2/3) V^(2/3) per axis, G = 0.0785 (Conway, Sloane).
     const double radius = 40.0 * kA;
     const Codebook codebook = build_codebook(structure(ball(12000, radius, 1)));
     const double volume = 4.0 / 3.0 * std::numbers::pi * std::pow(radius, 3.0);
-    for (std::size_t l = 1; l < 5; ++l) {  // 50 to 400: enough cells, and atoms in each
+    for (std::size_t l = 1; l < 5; ++l) {  // 50 to 400: enough cells, and enough atoms per cell
         const auto n = static_cast<double>(codebook.levels[l].size());
         const double best = std::sqrt(3.0 * 0.0785) * std::cbrt(volume / n);
         EXPECT_GT(codebook.levels[l].rms_error_m, 0.85 * best) << n;
@@ -121,12 +120,12 @@ TEST(NeuralGas, heavy_parts_get_more_vectors) {
     std::vector<double> mass;
     for (std::size_t i = 0; i < at.size(); ++i) mass.push_back(i < 2000 ? 8.0 : 1.0);
     const Codebook codebook = build_codebook(structure(at, mass));
-    const Codebook::Level& level = codebook.levels[0];  // trained the longest, from scratch
-    // The border lies where the body frame has it: the centre of mass is at 50 - 25 * 7/9 A.
+    const Codebook::Level& level = codebook.levels[0];  // trained longest, from scratch
+    // Border in the body frame: the centre of mass is at 50 - 25 * 7/9 A.
     const double border = (50.0 - (25.0 * 8.0 + 75.0) / 9.0) * kA;
     const auto heavy = std::count_if(level.x_m.begin(), level.x_m.end(),
                                      [&](float x) { return static_cast<double>(x) < border; });
-    // The density of vectors goes with that of mass to the power 1/3 in one dimension: 2 to 1.
+    // In one dimension the density of vectors is proportional to mass density to the power 1/3: 2 to 1.
     EXPECT_NEAR(static_cast<double>(heavy) / static_cast<double>(level.size()), 2.0 / 3.0, 0.1);
 }
 
@@ -180,7 +179,7 @@ TEST(NeuralGas, repeats_exactly_for_a_seed_and_differs_for_another) {
     }
 }
 
-TEST(NeuralGas, coinciding_atoms_and_massless_atoms_are_no_trouble) {
+TEST(NeuralGas, coinciding_and_massless_atoms_are_handled) {
     std::vector<Vec3> at(200, Vec3(1e-9, 2e-9, 3e-9));
     const Codebook same = build_codebook(structure(at));
     ASSERT_EQ(same.levels.size(), 3U);
@@ -194,14 +193,14 @@ TEST(NeuralGas, coinciding_atoms_and_massless_atoms_are_no_trouble) {
     }
 }
 
-TEST(NeuralGas, refuses_atoms_that_are_nowhere_and_stops_when_asked) {
+TEST(NeuralGas, refuses_non_finite_atoms_and_stops_on_request) {
     Structure s = structure(ball(200, 10.0 * kA, 7));
     EXPECT_THROW(build_codebook(s, {}, [](double, const char*) { return false; }), Cancelled);
     s.y_m[7] = std::numeric_limits<float>::quiet_NaN();
     EXPECT_THROW(build_codebook(s), StartupError);
 }
 
-TEST(VectorGrid, finds_what_a_slow_search_finds_while_vectors_move) {
+TEST(VectorGrid, matches_a_slow_search_while_vectors_move) {
     std::mt19937 random(8);
     std::uniform_real_distribution<double> u(-1.0, 1.0), wide(-1.6, 1.6);
     std::vector<Vec3> vectors;

@@ -1,4 +1,4 @@
-// Places of bodies as programs and people write them: what is read, and what is refused.
+// Poses of bodies in files written by programs and people: valid and refused input.
 #include "prep/export/poses_file.hpp"
 
 #include <gtest/gtest.h>
@@ -10,7 +10,7 @@ namespace {
 
 using sample::error_of;
 
-TEST(PosesFile, reads_what_a_run_writes_and_passes_over_the_rest) {
+TEST(PosesFile, reads_the_file_of_a_run_and_ignores_other_keys) {
     const auto bodies = read_poses(
         R"({"seconds": 3, "bodies": [{"id": 4, "structure": 1, "name": "x", "flags": 1, "pos_model_a": [1, -2.5, 3],
             "quat_model_body_xyzw": [0, 0, 1, 0]}]})",
@@ -22,7 +22,7 @@ TEST(PosesFile, reads_what_a_run_writes_and_passes_over_the_rest) {
     EXPECT_EQ(bodies[0].T_model_body.q.z(), 1.0);
 }
 
-TEST(PosesFile, what_cannot_be_is_refused) {
+TEST(PosesFile, invalid_input_is_refused) {
     const auto refused = [](const std::string& text) {
         return !error_of([&] { read_poses(text, "x", 2); }).empty();
     };
@@ -30,7 +30,7 @@ TEST(PosesFile, what_cannot_be_is_refused) {
         R"({"id":1,"structure":0,"pos_model_a":[0,0,0],"quat_model_body_xyzw":[0,0,0,1]})";
     const auto list = [](const std::string& body) { return "{\"bodies\":[" + body + "]}"; };
     EXPECT_FALSE(refused(list(good)));
-    EXPECT_TRUE(refused(list(good + "," + good)));  // an id twice
+    EXPECT_TRUE(refused(list(good + "," + good)));  // duplicate id
     for (const char* bad :
          {"", "[]", "{}", "{\"bodies\":3}", "{\"bodies\":[]}", "{\"bodies\":[3]}", "nonsense"})
         EXPECT_TRUE(refused(bad)) << bad;

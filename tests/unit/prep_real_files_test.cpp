@@ -1,6 +1,6 @@
-// The importers against published maps and structures that belong together. The mean map value at the CA (and
-// P) atoms is known for each pair from an independent program; it is right only if origin, voxel, axis order,
-// byte order and coordinates all are.
+// The importers on published maps and matching structures. An independent program computed the mean map value at the
+// CA (and P) atoms of each pair; it matches only if origin, voxel size, axis order, byte order and coordinates are
+// right.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -39,7 +39,7 @@ struct Pair {
     double fit;
 };
 
-TEST(RealFiles, map_value_at_the_backbone_of_fitted_structures_is_as_published) {
+TEST(RealFiles, map_values_at_the_backbone_match_published_ones) {
     const auto folder = sample::em_folder();
     if (folder.empty()) GTEST_SKIP() << "the folder of real data is absent (set TACT_SHARED)";
     const Pair pairs[] = {
@@ -76,8 +76,8 @@ TEST(RealFiles, map_value_at_the_backbone_of_fitted_structures_is_as_published) 
         }
         EXPECT_EQ(count, pair.atoms_on_trace);
         EXPECT_NEAR(sum / static_cast<double>(count), pair.fit, 0.01 * pair.fit);
-        // The contour that is chosen holds the structure (measured: 0.69 for the foreign actin, else 0.8
-        // to 1.0) and little else (1 to 17 % of the box).
+        // The chosen contour contains the structure (measured: 0.69 for the foreign actin, otherwise 0.8 to 1.0) and little
+        // else (1 to 17 % of the box).
         EXPECT_GT(static_cast<double>(inside), 0.65 * static_cast<double>(count));
         const auto voxels = std::count_if(map.grid.values.begin(), map.grid.values.end(),
                                           [&](float v) { return v > contour; });
@@ -85,7 +85,7 @@ TEST(RealFiles, map_value_at_the_backbone_of_fitted_structures_is_as_published) 
     }
 }
 
-TEST(RealFiles, sizes_voxels_origins_and_rules_are_as_documented) {
+TEST(RealFiles, sizes_voxels_origins_and_rules_match_the_documentation) {
     const auto folder = sample::em_folder();
     if (folder.empty()) GTEST_SKIP() << "the folder of real data is absent (set TACT_SHARED)";
     struct Row {
@@ -118,7 +118,7 @@ TEST(RealFiles, sizes_voxels_origins_and_rules_are_as_documented) {
         EXPECT_LT((map.grid.origin_m * 1e10 - row.origin_a).norm(), 0.02) << map.grid.origin_m.transpose();
         EXPECT_NE(map.origin_rule.find(row.rule), std::string::npos) << map.origin_rule;
     }
-    // Monoclinic, axes in the order 3, 1, 2, with symmetry records: comes out at right angles.
+    // Monoclinic, axis order 3, 1, 2, with symmetry records: resampled to right angles.
     const ImportedMap skew = import_map(folder / "format_EMD-3001.map");
     EXPECT_NE(skew.notes.at(0).find("94.326"), std::string::npos) << skew.notes[0];
     EXPECT_GE(skew.grid.size[0], 43U);

@@ -1,4 +1,4 @@
-// Files that the tests of the importers write themselves, byte by byte, and the folder of real data.
+// Input files written byte by byte for importer tests, and the folder of real data.
 #pragma once
 
 #include <algorithm>
@@ -26,7 +26,7 @@ std::string error_of(Call&& call) {
     return {};
 }
 
-// Empty where the data folder is absent.
+// Returns an empty path without the data folder.
 inline std::filesystem::path em_folder() {
     const char* const shared = std::getenv("TACT_SHARED");
     const std::filesystem::path folder =
@@ -34,7 +34,7 @@ inline std::filesystem::path em_folder() {
     return std::filesystem::is_directory(folder) ? folder : std::filesystem::path();
 }
 
-// An MRC file. value(x, y, z) of the voxel with these indices along the axes of the model.
+// An MRC file with voxel value value(x, y, z), indexed along the model axes.
 struct Mrc {
     std::array<int, 3> size{6, 5, 4};       // x, y, z
     std::array<int, 3> axes{1, 2, 3};       // MAPC, MAPR, MAPS
@@ -44,7 +44,7 @@ struct Mrc {
     std::array<float, 3> angles{90.0F, 90.0F, 90.0F};
     std::array<float, 3> origin{0.0F, 0.0F, 0.0F};
     int mode = 2;
-    int extended = 0;  // bytes of extended header
+    int extended = 0;  // size of the extended header (bytes)
     bool big_endian = false;
     std::uint32_t stamp = 0;
     const char* magic = "MAP ";

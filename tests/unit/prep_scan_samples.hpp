@@ -1,4 +1,4 @@
-// Small scans written byte by byte, in every format: the same bone in all of them.
+// Small scans of the same bone, written byte by byte in every format.
 #pragma once
 
 #include <unistd.h>
@@ -17,7 +17,7 @@
 
 namespace tact::sample {
 
-// 6 x 5 x 4 voxels to the left, back and up; densities that are all different.
+// 6 x 5 x 4 voxels to the left, back and up, all with different densities.
 inline constexpr int kLeft = 6, kBack = 5, kUp = 4;
 inline int bone_density(int l, int b, int u) { return 1 + l + kLeft * (b + kBack * u); }
 inline int bone_hu(int density) { return 300 + static_cast<int>(std::lround(density * 1500.0 / 255.0)); }
@@ -46,7 +46,7 @@ void put(std::string& out, T value, bool big = false) {
     for (std::size_t i = 0; i < sizeof(T); ++i) out += raw[big ? sizeof(T) - 1 - i : i];
 }
 
-// The bone's Hounsfield units, the first axis fastest; each axis is 0 left, 1 back, 2 up, or the same reversed (3, 4, 5).
+// Hounsfield units of the bone, first axis fastest. Axes: 0 left, 1 back, 2 up; 3, 4, 5: the same reversed.
 inline std::string bone_numbers(const std::array<int, 3>& axis, bool big = false) {
     const std::array<int, 3> n{kLeft, kBack, kUp};
     std::string out;
@@ -140,7 +140,7 @@ inline std::string dicom_bytes(const DicomSample& s) {
     return out + meta + body;
 }
 
-// Slice u of the bone, or of whatever `density` says; the upper four bits hold rubbish, as overlays leave it.
+// Slice u of the bone, or of `density`; the upper four bits hold arbitrary overlay data.
 inline DicomSample dicom_slice(double up_mm, const std::function<double(int l, int b)>& density) {
     DicomSample s;
     s.position = Vec3(10, 20, up_mm);

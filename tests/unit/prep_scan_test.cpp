@@ -1,4 +1,4 @@
-// Readers of scans: the same bone out of every format and axis order, and what is wrong is said.
+// Readers of scans: every format and axis order gives the same bone, and errors are reported.
 #include <gtest/gtest.h>
 #include <zlib.h>
 
@@ -42,7 +42,7 @@ std::string refusal(const BoneImport& o) {
     return told([&] { (void)import_bone(o); });
 }
 
-// The front of the patient to the user: x to their left, y up, z forward.
+// The patient faces the user: x to the patient's left, y up, z forward.
 void expect_bone(const BoneData& bone) {
     ASSERT_EQ(bone.bricks.size, (std::array<std::uint32_t, 3>{sample::kLeft, sample::kUp, sample::kBack}));
     EXPECT_NEAR(bone.bricks.voxel_m, 1e-3, 1e-9);
@@ -55,7 +55,7 @@ void expect_bone(const BoneData& bone) {
                           sample::bone_density(l, b, u))
                     << l << ' ' << b << ' ' << u;
 }
-BoneImport hu(BoneImport o) {  // no voxel of the bone is air, so its unit has to be told
+BoneImport hu(BoneImport o) {  // the volume contains no air, so the threshold is given explicitly
     o.threshold = 300.0;
     o.solid = 1800.0;
     return o;
@@ -77,7 +77,7 @@ std::string gzip(const std::string& plain) {
 
 const std::string kNrrd = "NRRD0004\n# a remark\ntype: short\ndimension: 3\nendian: little\n";
 
-TEST(Scans, nrrd_in_any_axis_order_is_the_same_bone) {
+TEST(Scans, nrrd_in_any_axis_order_gives_the_same_bone) {
     const ScanFolder f;
     expect_bone(import_bone(hu(of(f.write("a.nrrd", kNrrd +
                                                         "sizes: 6 5 4\nspace: left-posterior-superior\n"
@@ -85,7 +85,7 @@ TEST(Scans, nrrd_in_any_axis_order_is_the_same_bone) {
                                                         "space origin: (1,2,3)\nencoding: raw\n\n" +
                                                         sample::bone_numbers({0, 1, 2})))))
                     .bone);
-    // Up first, then right, then front, and packed: every axis is another, two are reversed.
+    // Axes in the order up, right, front, compressed: all axes permuted, two reversed.
     expect_bone(import_bone(hu(of(f.write("b.nrrd", kNrrd +
                                                         "sizes: 4 6 5\nspace: RAS\n"
                                                         "space directions: (0,0,1) (1,0,0) (0,1,0)\n"
@@ -100,7 +100,7 @@ TEST(Scans, nrrd_in_any_axis_order_is_the_same_bone) {
             .bone);
 }
 
-TEST(Scans, meta_image_plain_packed_and_of_the_other_byte_order) {
+TEST(Scans, meta_image_plain_compressed_and_big_endian) {
     const ScanFolder f;
     const std::string head =
         "ObjectType = Image\nNDims = 3\nBinaryData = True\nDimSize = 6 5 4\n"
@@ -138,7 +138,7 @@ std::string nifti(bool big, bool sform, const std::string& numbers) {
     if (sform) {  // columns to the right, rows to the front, slices up
         at(254, std::int16_t{1});
         for (std::size_t i = 0; i < 3; ++i) at(280 + 20 * i, 1.0F);
-    } else {  // half a turn about the way up: to the left, to the back, up
+    } else {  // rotated by 180 degrees about the up axis: left, back, up
         at(252, std::int16_t{1});
         at(264, 1.0F);
     }
@@ -155,21 +155,21 @@ TEST(Scans, nifti_by_matrix_and_by_quaternion) {
                     .bone);
 }
 
-TEST(Scans, what_a_header_declares_is_compared_with_what_is_there) {
+TEST(Scans, declared_sizes_are_compared_with_the_file) {
     const ScanFolder f;
     const auto nrrd = [&](const std::string& fields) {
         return refusal(hu(of(f.write("x.nrrd", kNrrd + fields + "\n\nabc"))));
     };
     const std::string unit = "\nspacings: 1 1 1\nencoding: raw";
-    EXPECT_TRUE(says(nrrd("sizes: 6 5 4" + unit), {"declares 240 bytes", "there are 3", "fix:"}));
+    EXPECT_TRUE(says(nrrd("sizes: 6 5 4" + unit), {"declares 240 bytes", "the file has 3", "fix:"}));
     EXPECT_TRUE(says(nrrd("sizes: 8000 8000 60" + unit), {"bytes", "fix: crop"}));
     EXPECT_TRUE(says(nrrd("sizes: 99999 5 4" + unit), {"99999 x 5 x 4", "8192"}));
     EXPECT_TRUE(says(nrrd("sizes: 1000 1000 1000\nspacings: 1 1 1\nencoding: gzip"),
-                     {"than 3 packed ones can hold"}));
-    EXPECT_TRUE(says(nrrd("sizes: 18446744073709551616 5 4" + unit), {"no whole number"}));
+                     {"than 3 compressed bytes can hold"}));
+    EXPECT_TRUE(says(nrrd("sizes: 18446744073709551616 5 4" + unit), {"not a whole number"}));
     EXPECT_TRUE(says(nrrd("sizes: 6 5" + unit), {"axes"}));
-    EXPECT_TRUE(says(nrrd("sizes: 6 5 4\nencoding: raw"), {"it has no voxel spacing"}));
-    EXPECT_TRUE(says(nrrd("sizes: 6 5 4\nspacings: 1 nan 1\nencoding: raw"), {"no number"}));
+    EXPECT_TRUE(says(nrrd("sizes: 6 5 4\nencoding: raw"), {"the header has no voxel spacing"}));
+    EXPECT_TRUE(says(nrrd("sizes: 6 5 4\nspacings: 1 nan 1\nencoding: raw"), {"not a number"}));
     EXPECT_TRUE(says(nrrd("sizes: 6 5 4\nspacings: 1 0 1\nencoding: raw"), {"axis 1", "--unit"}));
     EXPECT_TRUE(
         says(nrrd("sizes: 6 5 4\nencoding: raw\nspace: lps\nspace directions: (1,0,0) (1,1,0) (0,0,1)"),
@@ -180,22 +180,22 @@ TEST(Scans, what_a_header_declares_is_compared_with_what_is_there) {
     EXPECT_TRUE(says(refusal(of(f.write("y.mha", "NDims = 3\nDimSize = 6 5 4\nElementDataFile = LOCAL\n"))),
                      {"ElementSpacing"}));
     EXPECT_TRUE(says(refusal(of(f.write("z.nii", std::string(400, 'x')))), {"NIfTI-1"}));
-    EXPECT_TRUE(says(refusal(of(f.write("z.txt", "hello"))), {"no format that is known", ".nrrd"}));
+    EXPECT_TRUE(says(refusal(of(f.write("z.txt", "hello"))), {"the format is unknown", ".nrrd"}));
     EXPECT_TRUE(says(refusal(of(f.path / "absent.nrrd")), {"does not exist"}));
 }
 
-TEST(Scans, values_of_an_unknown_kind_are_not_guessed) {
+TEST(Scans, an_unknown_unit_is_not_guessed) {
     const ScanFolder f;
     const fs::path file = f.write("a.nrrd", kNrrd + "sizes: 6 5 4\nspacings: 1 1 1\nencoding: raw\n\n" +
                                                 sample::bone_numbers({0, 1, 2}));
-    EXPECT_TRUE(says(refusal(of(file)), {"unknown kind", "--threshold-hu"}));
+    EXPECT_TRUE(says(refusal(of(file)), {"unit of the values is unknown", "--threshold-hu"}));
     BoneImport o = hu(of(file));
     EXPECT_TRUE(std::isnan(import_bone(o).bone.hu_at_0));
     o.solid = 200.0;
-    EXPECT_TRUE(says(refusal(o), {"threshold is 300"}));
+    EXPECT_TRUE(says(refusal(o), {"threshold 300"}));
 }
 
-TEST(Scans, crop_voxel_and_memory_are_heeded) {
+TEST(Scans, crop_voxel_size_and_memory_limits_are_applied) {
     const ScanFolder f;
     BoneImport o = hu(of(f.write("a.nrrd", kNrrd + "sizes: 6 5 4\nspacings: 1 1 1\nencoding: raw\n\n" +
                                                sample::bone_numbers({0, 1, 2}))));
@@ -214,7 +214,8 @@ TEST(Scans, crop_voxel_and_memory_are_heeded) {
     EXPECT_TRUE(says(refusal(o), {"rows 2:6", "0:5"}));
     o.crop.reset();
     o.voxel_mm = 0.5;
-    const BoneData fine = import_bone(o).bone;  // densities are linear along each axis, and stay so
+    const BoneData fine =
+        import_bone(o).bone;  // densities are linear along each axis, so interpolation is exact
     ASSERT_EQ(fine.bricks.size, (std::array<std::uint32_t, 3>{11, 7, 9}));
     EXPECT_NEAR(fine.density[fine.bricks.voxel(3, 5, 8 - 3)], 1 + 1.5 + 6 * 1.5 + 30 * 2.5, 1.0);
     o.voxel_mm = 2.0;
@@ -228,24 +229,24 @@ TEST(Scans, crop_voxel_and_memory_are_heeded) {
 }
 
 void write_series(const ScanFolder& f, std::initializer_list<int> slices, const std::string& name = "s") {
-    for (const int u : slices)  // names in another order than places
+    for (const int u : slices)  // the order of names differs from that of positions
         f.write(numbered(name, 9 - u, ".dcm"), sample::dicom_bytes(sample::bone_slice(u)));
 }
 
-TEST(Dicom, slices_are_sorted_by_place_and_scaled_to_hounsfield_units) {
+TEST(Dicom, slices_are_sorted_by_position_and_scaled_to_hounsfield_units) {
     const ScanFolder f;
     write_series(f, {0, 1, 2, 3});
-    f.write("notes.txt", "no picture");
+    f.write("notes.txt", "not an image");
     std::string broken(200, '\0');
     std::memcpy(broken.data() + 128, "DICM", 4);
     f.write("broken.dcm", broken);
     const BoneInput input = import_bone(of(f.path));
     expect_bone(input.bone);
     EXPECT_EQ(input.bone.hu_at_0, 300.0F);
-    expect_bone(import_bone(of(f.path / "s9.dcm")).bone);  // one of its files stands for the series
+    expect_bone(import_bone(of(f.path / "s9.dcm")).bone);  // one file of the series selects the series
 }
 
-TEST(Dicom, nothing_of_the_person_goes_on) {
+TEST(Dicom, personal_data_is_not_kept) {
     const ScanFolder f;
     write_series(f, {0, 1, 2, 3}, "Doe^Jane-");
     std::vector<std::string> warned;
@@ -261,7 +262,7 @@ TEST(Dicom, nothing_of_the_person_goes_on) {
     EXPECT_TRUE(warned.empty());
 }
 
-TEST(Dicom, missing_doubled_and_broken_slices_are_named) {
+TEST(Dicom, missing_duplicate_and_broken_slices_are_reported) {
     {
         const ScanFolder f;
         for (int u = 0; u < 8; ++u)
@@ -272,22 +273,22 @@ TEST(Dicom, missing_doubled_and_broken_slices_are_named) {
         const ScanFolder f;
         write_series(f, {0, 1, 2});
         write_series(f, {1}, "again");
-        EXPECT_TRUE(says(refusal(of(f.path)), {"s8.dcm", "again8.dcm", "same place"}));
+        EXPECT_TRUE(says(refusal(of(f.path)), {"s8.dcm", "again8.dcm", "same position"}));
     }
     {
         const ScanFolder f;
         write_series(f, {0, 1, 2, 3});
         const std::string whole = sample::dicom_bytes(sample::bone_slice(2));
         f.write("s7.dcm", whole.substr(0, whole.size() - 30));
-        EXPECT_TRUE(says(refusal(of(f.path)), {"s7.dcm", "cut short"}));
+        EXPECT_TRUE(says(refusal(of(f.path)), {"s7.dcm", "truncated"}));
     }
     const ScanFolder f;
     EXPECT_TRUE(says(refusal(of(f.path)), {"no DICOM image"}));
     write_series(f, {0});
-    EXPECT_TRUE(says(refusal(of(f.path)), {"one slice alone"}));
+    EXPECT_TRUE(says(refusal(of(f.path)), {"only one slice"}));
 }
 
-TEST(Dicom, of_several_series_one_is_chosen_or_all_are_listed) {
+TEST(Dicom, one_of_several_series_is_chosen_or_all_are_listed) {
     const ScanFolder f;
     write_series(f, {0, 1, 2, 3});
     for (int u = 0; u < 3; ++u) {
@@ -302,8 +303,8 @@ TEST(Dicom, of_several_series_one_is_chosen_or_all_are_listed) {
     o.series = 1;
     expect_bone(import_bone(o).bone);
     o.series = 3;
-    EXPECT_TRUE(says(refusal(o), {"no series 3"}));
-    // A planning view beside a volume needs no choice.
+    EXPECT_TRUE(says(refusal(o), {"series 3 is not in this list"}));
+    // A planning view next to a volume requires no choice.
     const ScanFolder g;
     for (int u = 0; u < 9; ++u) g.write(numbered("v", u), sample::dicom_bytes(sample::bone_slice(u)));
     sample::DicomSample wide = sample::bone_slice(0);
@@ -317,8 +318,8 @@ TEST(Dicom, of_several_series_one_is_chosen_or_all_are_listed) {
         chosen.note.end());
 }
 
-TEST(Dicom, uneven_slices_and_a_tilted_gantry_are_said_and_each_slice_is_taken_from_where_it_is) {
-    // A bone that is denser upwards and backwards: 20 + 4 z + 6 y, whatever slices see of it.
+TEST(Dicom, uneven_slices_and_a_tilted_gantry_are_reported_and_positioned_correctly) {
+    // A bone with density 20 + 4 z + 6 y, independent of the slice positions.
     const auto at = [](double y, double z) { return 20.0 + 4.0 * z + 6.0 * y; };
     for (const bool tilted : {false, true}) {
         const ScanFolder f;
@@ -344,7 +345,7 @@ TEST(Dicom, uneven_slices_and_a_tilted_gantry_are_said_and_each_slice_is_taken_f
     }
 }
 
-TEST(Dicom, what_is_no_grey_scan_is_refused) {
+TEST(Dicom, other_images_than_grey_scans_are_refused) {
     const auto with = [](const std::function<void(sample::DicomSample&)>& change) {
         const ScanFolder f;
         for (int u = 0; u < 4; ++u) {
@@ -372,12 +373,13 @@ TEST(Dicom, what_is_no_grey_scan_is_refused) {
                      }),
                      {"fix:"}));
     EXPECT_TRUE(says(with([](sample::DicomSample& s) { s.spacing = 0.0; }), {"mm"}));
-    EXPECT_TRUE(says(with([](sample::DicomSample& s) { s.modality = "MR"; }), {"unknown kind"}));
+    EXPECT_TRUE(
+        says(with([](sample::DicomSample& s) { s.modality = "MR"; }), {"unit of the values is unknown"}));
     EXPECT_TRUE(
         says(with([](sample::DicomSample& s) { s.maker = "NewTom VGi"; }), {"no error", "cone-beam"}));
 }
 
-TEST(Labels, names_come_from_the_file_or_a_list_and_critical_ones_are_dense_enough_to_be_met) {
+TEST(Labels, names_are_from_the_file_or_a_list_and_critical_labels_are_made_dense) {
     const ScanFolder f;
     std::string numbers;
     for (int i = 0; i < 120; ++i) numbers += static_cast<char>(i < 6 ? 7 : i < 12 ? 3 : 0);
@@ -411,14 +413,14 @@ TEST(Labels, names_come_from_the_file_or_a_list_and_critical_ones_are_dense_enou
     EXPECT_TRUE(says(refusal(o), {"ITK-SNAP"}));
     o.label_names.clear();
     o.labels = o.scan;
-    EXPECT_TRUE(says(refusal(o), {"no whole number from 0 to 255"}));
+    EXPECT_TRUE(says(refusal(o), {"not a whole number from 0 to 255"}));
     o.labels = f.write("small.nrrd",
                        "NRRD0004\ntype: uchar\ndimension: 3\nsizes: 6 5 2\nspacings: 1 1 1\n"
                        "encoding: raw\n\n" +
                            numbers);
     EXPECT_TRUE(says(refusal(o), {"6 x 5 x 2", "6 x 5 x 4"}));
     o.labels = f.write("none.nrrd", head + "\n" + std::string(120, '\0'));
-    EXPECT_TRUE(says(refusal(o), {"none of them lies in the volume"}));
+    EXPECT_TRUE(says(refusal(o), {"no label lies in the volume"}));
 }
 
 void write_rgba(const fs::path& path, std::uint32_t wide,
@@ -439,11 +441,11 @@ TEST(Pictures, are_ordered_by_number_without_gaps) {
     const auto why = [](std::vector<std::string> names) {
         return told([&] { (void)stack_order(std::move(names), "read"); });
     };
-    EXPECT_TRUE(says(why({"a1.png", "a2.png", "a5.png"}), {"after number 2 comes 5"}));
+    EXPECT_TRUE(says(why({"a1.png", "a2.png", "a5.png"}), {"number 2 is followed by 5"}));
     EXPECT_TRUE(says(why({"a1.png", "a01.png"}), {"same number"}));
     EXPECT_TRUE(says(why({"a1.png", "b2.png"}), {"two names"}));
     EXPECT_TRUE(says(why({"a.png"}), {"no number"}));
-    EXPECT_TRUE(says(why({"a99999999999999999999.png"}), {"very long"}));
+    EXPECT_TRUE(says(why({"a99999999999999999999.png"}), {"more than 9 digits"}));
     EXPECT_TRUE(says(why({}), {"no .png"}));
 }
 
@@ -470,11 +472,11 @@ TEST(Pictures, colours_are_structures_and_one_of_them_is_bone) {
     EXPECT_TRUE(says(refusal(o), {"1,1,1", "--bone-colour"}));
     write_rgba(f.path / "p2.png", 2, {bone, bone, bone, bone});
     EXPECT_TRUE(says(refusal(o), {"p2.png is 2 x 2", "3 x 2"}));
-    f.write("p2.png", "no picture");
+    f.write("p2.png", "not an image");
     EXPECT_TRUE(says(refusal(o), {"p2.png"}));
 }
 
-TEST(RealScans, all_are_read) {
+TEST(RealScans, all_real_scans_are_read) {
     const char* const shared = std::getenv("TACT_SHARED");
     const fs::path ct = fs::path(shared != nullptr ? shared : "../shared") / "data" / "ct";
     if (!fs::is_directory(ct)) GTEST_SKIP() << "the folder of real data is absent (set TACT_SHARED)";
@@ -492,13 +494,13 @@ TEST(RealScans, all_are_read) {
                                                  [](std::uint8_t d) { return d > 0; })) /
                (double{1} * n[0] * n[1] * n[2]);
     };
-    EXPECT_NEAR(share("head_phantom_bone_crop.nrrd", 0, 0, 0.9), 0.111, 0.01);  // as its description says
+    EXPECT_NEAR(share("head_phantom_bone_crop.nrrd", 0, 0, 0.9), 0.111, 0.01);  // value from its description
     EXPECT_NEAR(share("head_ct_example.nii.gz", 0, 0, 2.5), 0.05, 0.02);
     EXPECT_NEAR(share("headsq_quarter.mhd", 1150, 2600, 3.2), share("headsq_quarter.nhdr", 1150, 2600, 3.2),
                 1e-12);
     EXPECT_NEAR(share("engine.nii.gz", 100, 255, 2.0), 0.1, 0.1);
     EXPECT_GT(share("hand_lowres", 80, 255, 1.6), 0.01);
-    // All that is not empty: 10444030 of 256 x 256 x 253 voxels are.
+    // All non-empty voxels: 10444030 of 256 x 256 x 253 are empty.
     EXPECT_NEAR(share("temporal_bone_ear3_256", 0, 0, 0.8), 1.0 - 10444030.0 / (256.0 * 256.0 * 253.0), 0.02);
 }
 

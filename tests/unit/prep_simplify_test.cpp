@@ -13,7 +13,7 @@
 namespace tact::test {
 namespace {
 
-// How far the outline reaches: the mean distance of a corner of the unit square from the nearest vertex.
+// Loss at the outline: mean distance from a corner of the unit square to the nearest vertex.
 double corner_loss(const TriangleMesh& mesh) {
     double sum = 0.0;
     for (const Vec3& corner : {Vec3(0, 0, 0), Vec3(1, 0, 0), Vec3(0, 1, 0), Vec3(1, 1, 0)}) {
@@ -27,7 +27,7 @@ double corner_loss(const TriangleMesh& mesh) {
     return sum;
 }
 
-double flat_area(const TriangleMesh& mesh) {  // of the projection on z = 0
+double flat_area(const TriangleMesh& mesh) {  // area of the projection on z = 0
     double sum = 0.0;
     for (std::size_t t = 0; t < mesh.triangles(); ++t) sum += 0.5 * double_area(mesh, t).z();
     return sum;
@@ -53,8 +53,8 @@ TEST(Simplify, a_plane_loses_vertices_without_error) {
     EXPECT_NEAR(flat_area(result.mesh), 1.0, 1e-3);
 }
 
-TEST(Simplify, edges_of_a_cube_stay_where_they_are) {
-    // Six faces of 10 x 10 squares: the eight corners carry the whole shape.
+TEST(Simplify, edges_of_a_cube_are_kept) {
+    // Six faces of 10 x 10 squares; the eight corners determine the whole shape.
     const DensityGrid grid = sampled(24, [](const Vec3& p) { return -p.cwiseAbs().maxCoeff(); });
     const TriangleMesh cube = isosurface(grid, -0.7);
     const TriangleMesh coarse = simplify(cube, {.vertices_min = 60}).mesh;
@@ -63,7 +63,7 @@ TEST(Simplify, edges_of_a_cube_stay_where_they_are) {
     EXPECT_NEAR(volume(coarse), volume(cube), 0.01 * volume(cube));
 }
 
-TEST(Simplify, a_sphere_keeps_its_volume_and_stays_near) {
+TEST(Simplify, a_sphere_keeps_its_volume_and_stays_close) {
     const TriangleMesh fine = isosurface(sampled(33, sphere), -0.7);
     const TriangleMesh coarse = simplify(fine, {.vertices_min = 100}).mesh;
     EXPECT_EQ(coarse.vertices(), 100U);
@@ -74,7 +74,7 @@ TEST(Simplify, a_sphere_keeps_its_volume_and_stays_near) {
     for (std::uint32_t v = 0; v < coarse.vertices(); ++v) EXPECT_NEAR(point(coarse, v).norm(), 0.7, 0.035);
 }
 
-TEST(Simplify, the_border_is_kept_by_its_planes_and_lost_without_them) {
+TEST(Simplify, border_planes_keep_the_border) {
     const TriangleMesh hill =
         sheet(24, [](float u, float v) { return 0.2F * std::sin(5.0F * u) * std::cos(4.0F * v); });
     const auto coarse = [&](double f, std::uint32_t n) {
@@ -92,16 +92,16 @@ TEST(Simplify, the_border_is_kept_by_its_planes_and_lost_without_them) {
     EXPECT_LT(flat_area(lost), flat_area(coarse(kSeedBoundaryWeight, 30)));
 }
 
-TEST(Simplify, topology_never_changes_however_far_it_goes) {
+TEST(Simplify, topology_never_changes_at_any_level) {
     const TriangleMesh fine = isosurface(sampled(25, torus), -0.25);
     const Simplified result = simplify(fine, {.vertices_min = 0});
     expect_sound(result.mesh);
     EXPECT_EQ(topology(result.mesh).euler, 0);
     EXPECT_LT(result.mesh.vertices(), 40U);
-    EXPECT_GE(result.mesh.vertices(), 7U);  // no torus has fewer
+    EXPECT_GE(result.mesh.vertices(), 7U);  // the minimum for a torus
 }
 
-TEST(Simplify, repeats_exactly_and_its_error_never_falls) {
+TEST(Simplify, repeats_exactly_and_its_error_never_decreases) {
     const TriangleMesh fine = isosurface(sampled(25, torus), -0.25);
     const Simplified a = simplify(fine, {}), b = simplify(fine, {});
     ASSERT_EQ(a.contraction.size(), b.contraction.size());
@@ -115,7 +115,7 @@ TEST(Simplify, repeats_exactly_and_its_error_never_falls) {
     }
 }
 
-TEST(Simplify, angstrom_sized_meshes_are_treated_like_metre_sized_ones) {
+TEST(Simplify, the_result_does_not_depend_on_the_size_of_the_mesh) {
     const TriangleMesh metres = isosurface(sampled(17, torus), -0.25);
     TriangleMesh tiny = metres;
     for (float& x : tiny.position_m) x *= 1.1920929e-07F;  // 2^-23: exact
@@ -125,7 +125,7 @@ TEST(Simplify, angstrom_sized_meshes_are_treated_like_metre_sized_ones) {
         ASSERT_EQ(a.contraction[i].gone, b.contraction[i].gone) << i;
 }
 
-TEST(Simplify, any_triangle_soup_is_taken_without_harm) {
+TEST(Simplify, any_triangle_soup_is_handled) {
     rc::check([] {
         TriangleMesh soup;
         const auto n = *rc::gen::inRange<std::uint32_t>(3, 30);
@@ -138,7 +138,7 @@ TEST(Simplify, any_triangle_soup_is_taken_without_harm) {
         Simplified direct = simplify(soup, settings);
         relax(soup, direct, 1);
         for (const float x : direct.mesh.position_m) RC_ASSERT(std::isfinite(x));
-        if (n % 8 == 0) {  // takes many rounds
+        if (n % 8 == 0) {  // takes many iterations
             const Kept kept = simplify_to_keep(soup, {.pair_distance = settings.pair_distance});
             for (const float x : kept.simplified.mesh.position_m) RC_ASSERT(std::isfinite(x));
         }
@@ -149,7 +149,7 @@ TEST(Simplify, any_triangle_soup_is_taken_without_harm) {
     });
 }
 
-TEST(Simplify, refuses_what_is_no_mesh) {
+TEST(Simplify, refuses_invalid_meshes) {
     TriangleMesh bad = sheet(3, [](float, float) { return 0.0F; });
     bad.triangle[4] = 99;
     EXPECT_THROW(simplify(bad, {}), StartupError);

@@ -13,7 +13,7 @@
 namespace tact::test {
 namespace {
 
-TEST(SimplifyToKeep, tries_weights_of_the_border_and_keeps_one_that_loses_nothing_in_both) {
+TEST(SimplifyToKeep, keeps_a_border_weight_that_no_other_beats_in_both_distances) {
     const TriangleMesh fine =
         sheet(14, [](float u, float v) { return 0.15F * std::sin(5.0F * u) * std::cos(4.0F * v); });
     for (const std::uint32_t n : {40U, 8U}) {
@@ -34,7 +34,7 @@ TEST(SimplifyToKeep, tries_weights_of_the_border_and_keeps_one_that_loses_nothin
     }
 }
 
-TEST(SimplifyToKeep, takes_the_usual_weight_for_closed_meshes_and_the_one_that_is_given) {
+TEST(SimplifyToKeep, uses_the_default_weight_for_closed_meshes_or_the_given_one) {
     EXPECT_EQ(simplify_to_keep(isosurface(sampled(17, torus), -0.25), {.vertices_min = 50}).boundary_weight,
               100.0);
     const TriangleMesh open = sheet(8, [](float u, float) { return u * u; });
@@ -44,15 +44,15 @@ TEST(SimplifyToKeep, takes_the_usual_weight_for_closed_meshes_and_the_one_that_i
     for (const float x : simplify_to_keep(point, {}).simplified.mesh.position_m) EXPECT_EQ(x, 1.0F);
 }
 
-TEST(BorderDistance, of_two_squares_one_inside_the_other_is_the_mean_over_both_borders) {
+TEST(BorderDistance, of_nested_squares_is_the_mean_over_both_borders) {
     const auto square = [](float from, float to) {
         TriangleMesh mesh;
         mesh.position_m = {from, from, 0, to, from, 0, to, to, 0, from, to, 0};
         mesh.triangle = {0, 1, 2, 0, 2, 3};
         return mesh;
     };
-    // The inner one is d away everywhere; the outer one too but for the last d before its corners, where the
-    // nearest point is the inner corner: d^2 + s^2, s from 0 to d, both ends of each side.
+    // The inner border has distance d everywhere. So has the outer one, except for the last d before each corner, where the
+    // nearest point is the inner corner: d^2 + s^2 for s from 0 to d, at both ends of each side.
     const double d = 0.1;
     const double outer = (4.0 * (1.0 - 2.0 * d) * d * d + 8.0 * (d * d * d + d * d * d / 3.0)) / 4.0;
     EXPECT_NEAR(border_distance_rms_m(square(0.0F, 1.0F), square(0.1F, 0.9F)),

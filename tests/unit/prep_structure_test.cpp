@@ -1,4 +1,4 @@
-// Structures: what is kept of a PDB or mmCIF file, and what is refused.
+// Structures: data kept from PDB and mmCIF files, and refused files.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -30,7 +30,7 @@ TEST(PdbStructure, coordinates_masses_chains_and_backbone_are_read) {
     EXPECT_NEAR((place_a(s, 0) - Vec3(1, 2, 3)).norm(), 0.0, 1e-4);
     EXPECT_NEAR((place_a(s, 1) - Vec3(4, -5, 6.5)).norm(), 0.0, 1e-4);
     EXPECT_EQ(s.element, (std::vector<std::uint8_t>{7, 6, 15, 20}));
-    EXPECT_EQ(s.trace, (std::vector<std::uint8_t>{0, 1, 1, 0})) << "calcium is no backbone";
+    EXPECT_EQ(s.trace, (std::vector<std::uint8_t>{0, 1, 1, 0})) << "calcium is not a backbone atom";
     EXPECT_EQ(s.residue, (std::vector<std::int32_t>{5, 5, -2, 9}));
     EXPECT_EQ(s.chain_names, (std::vector<std::string>{"B", "A"}));
     EXPECT_EQ(s.chain, (std::vector<std::uint16_t>{0, 0, 1, 1}));
@@ -53,14 +53,14 @@ TEST(PdbStructure, hydrogens_waters_alternates_and_later_models_are_dropped) {
         pdb_atom(" CA ", "SER", 'A', 1, 9, 9, 9) + "ENDMDL\nEND\n";
     const ImportedStructure in = import_structure_bytes(text, "a.pdb", ".pdb");
     ASSERT_EQ(in.structure.size(), 2U);
-    EXPECT_NEAR(place_a(in.structure, 0).x(), 2.0, 1e-4) << "the higher occupancy";
-    EXPECT_NEAR(place_a(in.structure, 1).x(), 3.0, 1e-4) << "the first among equals";
+    EXPECT_NEAR(place_a(in.structure, 0).x(), 2.0, 1e-4) << "higher occupancy";
+    EXPECT_NEAR(place_a(in.structure, 1).x(), 3.0, 1e-4) << "first of equal occupancies";
     EXPECT_EQ(in.summary,
-              "2 atoms in 1 chain (A), 1 on the backbone; dropped 2 hydrogens, 1 atoms of water, 2 alternate "
+              "2 atoms in 1 chain (A), 1 on the backbone; dropped 2 hydrogens, 1 water atoms, 2 alternate "
               "locations");
 }
 
-TEST(PdbStructure, of_a_point_mutation_one_residue_stays) {
+TEST(PdbStructure, one_residue_of_a_point_mutation_is_kept) {
     const Structure s = pdb(pdb_atom(" CA ", "SER", 'A', 1, 1, 0, 0, 0.4, 'A') +
                             pdb_atom(" OG ", "SER", 'A', 1, 2, 0, 0, 0.4, 'A') +
                             pdb_atom(" CA ", "THR", 'A', 1, 3, 0, 0, 0.6, 'B') +
@@ -69,14 +69,14 @@ TEST(PdbStructure, of_a_point_mutation_one_residue_stays) {
     EXPECT_NEAR(place_a(s, 0).x(), 3.0, 1e-4);
 }
 
-TEST(PdbStructure, blank_chains_and_missing_elements_work) {
+TEST(PdbStructure, blank_chains_and_missing_elements_are_accepted) {
     const Structure s =
         pdb(pdb_atom(" CA ", "ALA", ' ', 1, 1, 2, 3) + pdb_atom(" OXT", "ALA", ' ', 1, 2, 2, 3));
     EXPECT_EQ(s.chain_names, (std::vector<std::string>{""}));
     EXPECT_EQ(s.element, (std::vector<std::uint8_t>{6, 8}));
 }
 
-TEST(PdbStructure, an_unknown_element_counts_as_carbon_and_that_is_said) {
+TEST(PdbStructure, an_unknown_element_counts_as_carbon_and_is_reported) {
     const ImportedStructure in =
         import_structure_bytes(pdb_atom(" QQ ", "UNK", 'A', 1, 1, 2, 3, 1.0, ' ', " X"), "a.pdb", ".pdb");
     EXPECT_EQ(in.structure.element[0], 0);
@@ -121,8 +121,8 @@ TEST(PdbStructure, bad_files_are_refused_with_the_line) {
     expect_refused("", ".pdb", "no atoms", "no atoms");
     expect_refused("REMARK nothing\nEND\n", ".pdb", "no atoms", "no atoms");
     expect_refused(std::string(3000, '\0'), ".pdb", "no atoms", "no atoms");
-    expect_refused(pdb_atom(" O  ", "HOH", 'A', 1, 1, 2, 3), ".pdb", "1 atoms of water", "no atoms besides");
-    expect_refused(good + good.substr(0, 40) + "\n", ".pdb", "line 2", "ends before its coordinates");
+    expect_refused(pdb_atom(" O  ", "HOH", 'A', 1, 1, 2, 3), ".pdb", "1 water atoms", "no atoms besides");
+    expect_refused(good + good.substr(0, 40) + "\n", ".pdb", "line 2", "ends before column 54");
     std::string bad = good;
     bad.replace(38, 8, "********");
     expect_refused("REMARK\n" + good + bad, ".pdb", "line 3", "y '********' is not a number");
@@ -131,13 +131,13 @@ TEST(PdbStructure, bad_files_are_refused_with_the_line) {
     bad.replace(38, 8, "        ");
     expect_refused(bad, ".pdb", "line 1", "y '' is not a number");
     bad.replace(38, 8, "   1e300");
-    expect_refused(bad, ".pdb", "line 1", "farther than");
+    expect_refused(bad, ".pdb", "line 1", "more than 100000");
     bad.replace(38, 8, " 99000.0");
     expect_refused(good + bad, ".pdb", "residue 1", "from the centre of mass");
     expect_refused("x", ".xyz", "'.xyz'", "not that of a structure");
 }
 
-TEST(MmcifStructure, bad_files_are_refused_with_the_row) {
+TEST(MmcifStructure, invalid_files_are_refused_with_the_row) {
     expect_refused("", ".cif", "no atoms", "no atoms");
     expect_refused("data_x\n_cell.length_a 5\n", ".cif", "no atoms", "no atoms");
     expect_refused("loop_ _a _b 1 2 3\n", ".cif", "bad.cif", "read structure");

@@ -1,5 +1,4 @@
-// The synthetic pair: it repeats, its subunits lie where the map says, and only the known place satisfies the
-// map.
+// The synthetic pair: it repeats, its subunits match the map, and only the known pose fits the map.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -30,7 +29,7 @@ protected:
         return map_->sum({s.x_m, s.y_m, s.z_m, s.mass_fraction}, pose);
     }
 
-    // Uphill by steps that shrink when they overshoot: what a hand does that follows the force.
+    // Gradient ascent with steps that shrink on overshoot, like a hand that follows the force.
     static Pose climbed(const Structure& s, Pose pose) {
         const double lever_m = 20.0 * kA;
         double step_m = 1.0 * kA;
@@ -75,7 +74,7 @@ TEST_F(Ring, has_six_equal_subunits_with_their_own_chains) {
     }
 }
 
-TEST_F(Ring, neighbours_do_not_run_through_each_other) {
+TEST_F(Ring, adjacent_subunits_do_not_intersect) {
     const Structure &a = ring_->subunits[0], &b = ring_->subunits[1];
     double nearest = 1.0;
     for (std::size_t i = 0; i < a.size(); ++i) {
@@ -89,7 +88,7 @@ TEST_F(Ring, neighbours_do_not_run_through_each_other) {
     EXPECT_LT(nearest, 15.0 * kA);
 }
 
-TEST_F(Ring, map_is_dense_at_every_atom_and_its_contour_holds_them) {
+TEST_F(Ring, the_contour_of_the_map_contains_the_atoms) {
     const MapStatistics statistics = map_statistics(ring_->grid);
     const double contour =
         (choose_contour(ring_->grid, statistics).level - statistics.background) / statistics.sigma;
@@ -104,7 +103,7 @@ TEST_F(Ring, map_is_dense_at_every_atom_and_its_contour_holds_them) {
     }
 }
 
-TEST_F(Ring, following_the_force_from15_angstrom_and30_degrees_leads_home) {
+TEST_F(Ring, following_the_force_from_15_angstrom_and_30_degrees_leads_home) {
     const Structure& s = ring_->subunits[0];
     std::mt19937_64 random(7);
     std::normal_distribution<double> normal;
@@ -124,7 +123,7 @@ TEST_F(Ring, following_the_force_from15_angstrom_and30_degrees_leads_home) {
     EXPECT_LT(rotation_vector_rad(stays.q).norm(), 3.0 * M_PI / 180.0);
 }
 
-TEST_F(Ring, no_other_rotation_in_place_explains_the_map_as_well) {
+TEST_F(Ring, no_other_rotation_fits_the_map_as_well) {
     const Structure& s = ring_->subunits[0];
     const double at_home = sum(s, s.home()).density_sigma;
     std::mt19937_64 random(11);

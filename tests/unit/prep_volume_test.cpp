@@ -1,4 +1,4 @@
-// From scans to a scene of bone: what is made in code, distances, readers, errors.
+// From scans to a bone scene: synthetic bone, distances, readers, errors.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -13,7 +13,7 @@
 namespace tact {
 namespace {
 
-// Distance of a point (in voxels) to the surface of all voxels, as cubes, with the label; the slow way.
+// Brute force: distance of a point (in voxels) to the surface of all voxel cubes with the label.
 double slow_distance(const BoneData& b, std::uint8_t of, const Vec3& p) {
     double outside = 1e30, inside = 1e30;
     const auto& n = b.bricks.size;
@@ -30,13 +30,13 @@ double slow_distance(const BoneData& b, std::uint8_t of, const Vec3& p) {
 BoneData made(std::uint32_t voxels, std::uint64_t seed = 1) {
     return make_temporal_bone({.voxels = voxels, .voxel_m = 1e-3, .seed = seed});
 }
-// Made once: sanitizers are slow.
+// Made once, because sanitizers are slow.
 const BoneData& made_64() {
     static const BoneData bone = made(64);
     return bone;
 }
 
-TEST(MadeTemporalBone, repeats_and_its_seed_is_of_cells_and_roughness_alone) {
+TEST(MadeTemporalBone, repeats_and_its_seed_affects_only_cells_and_roughness) {
     const BoneData bone = made(32), other = made(32, 2);
     EXPECT_EQ(bone.density, made(32).density);
     EXPECT_NE(bone.density, other.density);
@@ -62,20 +62,20 @@ TEST(MadeTemporalBone, has_all_its_parts) {
 
 TEST(MadeTemporalBone, has_a_hard_shell_over_cells) {
     const BoneData& bone = made_64();
-    // Into the mastoid from the side, behind the ear canal and below it.
+    // A line into the mastoid from the side, behind and below the ear canal.
     const double mm = 64.0 / 50.0;
     const auto x = static_cast<std::uint32_t>((25.0 - 6.0) * mm),
                y = static_cast<std::uint32_t>((25.0 - 6.0) * mm);
     std::uint32_t z = 63;
     while (z > 0 && bone.density[bone.bricks.voxel(x, y, z)] < 128) --z;
-    EXPECT_NEAR(z / mm - 25.0, 14.0, 1.6) << "its surface";
+    EXPECT_NEAR(z / mm - 25.0, 14.0, 1.6) << "height of the surface";
     EXPECT_GT(bone.density[bone.bricks.voxel(x, y, z - 1)], 200);
     std::size_t thin = 0;
     for (std::uint32_t i = 4; i < 14; ++i) thin += bone.density[bone.bricks.voxel(x, y, z - i)] < 130 ? 1 : 0;
     EXPECT_GT(thin, 4U);
 }
 
-TEST(MadeTemporalBone, a_size_that_cannot_be_is_refused_before_memory_is_taken) {
+TEST(MadeTemporalBone, an_impossible_size_is_refused_before_allocation) {
     for (const std::uint32_t voxels : {0U, 15U, 1025U, 4000000000U}) {
         TemporalBone settings;
         settings.voxels = voxels;
@@ -89,7 +89,7 @@ TEST(MadeTemporalBone, can_be_cancelled) {
     EXPECT_THROW((void)make_temporal_bone(settings, [](double, const char*) { return false; }), Cancelled);
 }
 
-TEST(Distances, are_those_of_the_slow_way_at_grid_points_and_within_the_stated_error_between) {
+TEST(Distances, match_brute_force_at_grid_points_and_within_the_error_bound_between) {
     BoneData b;
     b.bricks.size = {13, 9, 11};
     b.bricks.voxel_m = 0.3e-3;
@@ -123,7 +123,7 @@ TEST(Distances, are_those_of_the_slow_way_at_grid_points_and_within_the_stated_e
                  Cancelled);
 }
 
-TEST(BakedBone, has_every_section_and_puts_the_hand_in_front_of_the_bone) {
+TEST(BakedBone, has_every_section_and_starts_the_hand_in_front_of_the_bone) {
     BoneInput input;
     input.title = "test";
     input.bone = made_64();
@@ -155,7 +155,7 @@ TEST(BakedBone, has_every_section_and_puts_the_hand_in_front_of_the_bone) {
     EXPECT_LE(meta.centre_model_m[2], front_m + 0.01 + 1e-9);
     EXPECT_GT(meta.centre_model_m[2], front_m - 0.01);
     EXPECT_NEAR(baked.bone_m3, static_cast<double>(sum) / 255.0 * 1e-9, 1e-15);
-    for (const DistanceField& f : fields)  // the hand at rest is outside of all
+    for (const DistanceField& f : fields)  // the resting hand is outside all of them
         EXPECT_GT(f.distance_m(meta.to_model(Vec3::Zero())), 0.005);
     BoneInput empty;
     empty.bone.bricks.size = {8, 8, 8};
@@ -165,7 +165,7 @@ TEST(BakedBone, has_every_section_and_puts_the_hand_in_front_of_the_bone) {
               std::string::npos);
 }
 
-// Bone of 0.5 mm voxels: heights in voxels by column, one voxel thick, 200 dense.
+// A relief of 0.5 mm voxels: height in voxels per column, one voxel thick, density 200.
 struct Relief {
     BoneBricks bricks{.size = {80, 80, 64}, .voxel_m = 5e-4};
     std::vector<std::uint8_t> row = std::vector<std::uint8_t>(80);
@@ -179,37 +179,37 @@ struct Relief {
                 heights.add_row(y, z, row);
             }
     }
-    [[nodiscard]] Vec3 found() const {  // voxels
+    [[nodiscard]] Vec3 found() const {  // in voxels
         return bricks.to_voxels(heights.place(bricks.to_model(Vec3(40, 40, 0))).surface_m);
     }
 };
 
 double off_middle(const Vec3& at) { return std::hypot(at.x() - 40.0, at.y() - 40.0); }
 
-TEST(BoneHeights, bone_in_the_middle_is_met_there) {
+TEST(BoneHeights, bone_in_the_middle_is_chosen) {
     const Relief plate([](std::uint32_t, std::uint32_t) { return 30; });
     EXPECT_LT(off_middle(plate.found()), 3.0);
     EXPECT_NEAR(plate.found().z(), 30.0, 1e-6);
 }
 
-TEST(BoneHeights, a_hole_an_edge_and_a_splinter_are_not_set_on) {
+TEST(BoneHeights, holes_edges_and_splinters_are_avoided) {
     const auto squared = [](std::uint32_t x, std::uint32_t y) {
         return (static_cast<int>(x) - 40) * (static_cast<int>(x) - 40) +
                (static_cast<int>(y) - 40) * (static_cast<int>(y) - 40);
     };
-    // A hole of 7.5 mm, and in its middle a pin that stands out.
+    // A hole of 7.5 mm with a protruding pin at its centre.
     const Relief ring([&](std::uint32_t x, std::uint32_t y) {
         return squared(x, y) < 2 ? 60 : squared(x, y) < 15 * 15 ? -1 : 30;
     });
     EXPECT_GT(off_middle(ring.found()), 15.0);
-    EXPECT_LT(off_middle(ring.found()), 24.0) << "but the nearest place that is good";
+    EXPECT_LT(off_middle(ring.found()), 24.0) << "the nearest valid position";
     EXPECT_NEAR(ring.found().z(), 30.0, 1e-6);
     const double front_m = ring.heights.place(ring.bricks.to_model(Vec3(40, 40, 0))).front_m;
     EXPECT_NEAR(ring.bricks.to_voxels(Vec3(0, 0, front_m)).z(), 60.0, 1e-6)
-        << "the hand rests before the pin";
+        << "the hand rests in front of the pin";
 }
 
-TEST(BoneHeights, a_ridge_is_met_on_its_back_and_not_on_its_flank) {
+TEST(BoneHeights, on_a_ridge_the_top_is_chosen_and_not_the_flank) {
     const Relief finger([](std::uint32_t x, std::uint32_t) {
         const double off = static_cast<double>(x) - 60.0;  // 8 mm wide
         return std::abs(off) < 8.0 ? static_cast<int>(20.0 + std::sqrt(64.0 - off * off)) : -1;
@@ -217,19 +217,19 @@ TEST(BoneHeights, a_ridge_is_met_on_its_back_and_not_on_its_flank) {
     EXPECT_NEAR(finger.found().x(), 60.0, 2.5);
 }
 
-TEST(BoneHeights, a_little_nearer_to_the_user_counts_as_a_little_aside) {
+TEST(BoneHeights, height_is_weighed_against_the_distance_from_the_middle) {
     const Relief step([](std::uint32_t x, std::uint32_t) { return x < 36 ? 60 : 4; });
     EXPECT_LT(step.found().x(), 36.0);
     EXPECT_NEAR(step.found().z(), 60.0, 1e-6);
 }
 
-TEST(BoneHeights, without_a_good_place_it_is_the_outermost_voxel) {
+TEST(BoneHeights, without_a_valid_position_the_outermost_voxel_is_chosen) {
     const Relief pins([](std::uint32_t x, std::uint32_t y) {
         return x == 10 && y == 70 ? 50 : x % 8 == 0 && y % 8 == 0 ? 20 : -1;
     });
     EXPECT_EQ(pins.found(), Vec3(10, 70, 50));
     const Relief soft([](std::uint32_t x, std::uint32_t) { return x > 60 ? 12 : -1; }, 20);
-    EXPECT_GT(soft.found().x(), 60.0) << "soft bone, where there is no other";
+    EXPECT_GT(soft.found().x(), 60.0) << "soft bone if there is no other";
 }
 
 }  // namespace

@@ -1,7 +1,7 @@
 #!/usr/bin/python3
-"""A recorder is killed at random instants: each file opens in h5py, and at most a second is lost.
+"""Kills a recorder at random instants: each file must open in h5py and lose at most one second.
 
-usage: record_kill_test.py BIN_DIR WRITE_SMALL_SCENE [--runs N] [--seed S]. Exit 77 (skipped) where there is no h5py.
+usage: record_kill_test.py BIN_DIR WRITE_SMALL_SCENE [--runs N] [--seed S]. Exit code 77 (skipped) without h5py.
 """
 import argparse
 import json
@@ -18,7 +18,7 @@ try:
     import h5py
     import numpy
 except ImportError:
-    print("skipped: no python3-h5py here")
+    print("skipped: python3-h5py is not installed")
     sys.exit(77)
 
 LOST_NS_MAX = 1_000_000_000
@@ -26,7 +26,7 @@ PATIENCE_S = 120
 
 
 def look_at(path, killed_ns, again):
-    """Opens a recording as its users do; what it has, and what is wrong with it."""
+    """Opens a recording like a user. Returns the number of cycles, the lost time (ns) and the defects."""
     wrong = []
     with h5py.File(path, "r") as f:
         step = f["cycles/step"][:]
@@ -38,15 +38,15 @@ def look_at(path, killed_ns, again):
                 wrong.append("columns of /%s of different lengths" % group)
         lost = sum(f["drops/records"][:])
         if len(step) and not lost and not numpy.array_equal(step, numpy.arange(step[0], step[0] + len(step), dtype=step.dtype)):
-            wrong.append("steps are missing and no drop is said")
+            wrong.append("steps are missing without a reported drop")
         if not numpy.array_equal(step, f["hand0/step"][:]):
-            wrong.append("the hand's steps are not the cycles'")
+            wrong.append("the steps of the hand differ from those of the cycles")
         if f["hand0/pose_world"].shape[1:] != (7,) or f["hand0/wrench_world"].shape[1:] != (6,):
-            wrong.append("poses or wrenches have another shape")
+            wrong.append("poses or wrenches have the wrong shape")
         if not numpy.isfinite(f["hand0/wrench_world"][:]).all():
             wrong.append("a wrench is not finite")
         if f.attrs["end"] != (2 if again["damaged"] else 1):
-            wrong.append("the file does not say how it ended")
+            wrong.append("the file has a wrong end mark")
         lost_ns = killed_ns - int(f["cycles/now_ns"][-1]) if len(step) else None
         return len(step), lost_ns, wrong
 
@@ -76,7 +76,7 @@ class Campaign:
         return child.returncode, out, err
 
     def wait_for(self, path, child):
-        """False: the recorder ended."""
+        """Returns False if the recorder ended first."""
         end = time.monotonic() + PATIENCE_S
         while not os.path.exists(path):
             if child.poll() is not None or time.monotonic() > end:
@@ -88,13 +88,13 @@ class Campaign:
         path = os.path.join(self.dir, "run%d.h5" % number)
         child = self.recorder(path)
         if not self.wait_for(path, child):
-            return ["the recorder made no file: " + child.communicate()[1]], 0, 0
+            return ["the recorder created no file: " + child.communicate()[1]], 0, 0
         time.sleep(after_s)
         wrong = []
         code, _, err = self.to_end("--repair", path)
         if code != 1 or "still writing" not in err:
-            wrong.append("a living recorder's file was repaired: %d %s" % (code, err))
-        # Stopped first, so that the instant of its death is known.
+            wrong.append("the file of a running recorder was repaired: %d %s" % (code, err))
+        # Stopped first, so that the time of its end is known.
         child.send_signal(signal.SIGSTOP)
         killed_ns = time.monotonic_ns()
         child.kill()
@@ -108,17 +108,17 @@ class Campaign:
         cycles, lost_ns, more = look_at(path, killed_ns, said)
         wrong += more
         if cycles != said["cycles"]:
-            wrong.append("another number of cycles was reported")
+            wrong.append("a wrong number of cycles was reported")
         if lost_ns is None or lost_ns > LOST_NS_MAX:
             wrong.append("%s ns were lost" % lost_ns)
         code, out, _ = self.to_end("--repair", path, "--json")
         if code != 0 or json.loads(out)["damaged"]:
-            wrong.append("a repaired file is damaged again")
+            wrong.append("a repaired file is reported as damaged")
         os.remove(path)
         return wrong, lost_ns or 0, cycles
 
     def in_order(self):
-        """SIGINT ends a recording whole."""
+        """SIGINT ends a recording without damage."""
         path = os.path.join(self.dir, "whole.h5")
         child = self.recorder(path, "--json")
         if not self.wait_for(path, child):
@@ -131,20 +131,20 @@ class Campaign:
         cycles, _, wrong = look_at(path, 0, {"damaged": False})
         said = json.loads(out)
         if said["end"] != "stopped" or said["cycles"] != cycles or said["lost"] != 0:
-            wrong.append("the outcome says otherwise: " + out)
+            wrong.append("the reported outcome differs: " + out)
         code, _, err = self.to_end(path)
         if code != 1 or "exists already" not in err:
             wrong.append("an older recording was overwritten")
         return wrong
 
     def disk_full(self):
-        """A file that takes no more is said, and opens."""
+        """A full disk is reported, and the file opens."""
         path = os.path.join(self.dir, "full.h5")
-        command = 'ulimit -f 1500; exec "$0" "$1"'  # of 512 or 1024 bytes
+        command = 'ulimit -f 1500; exec "$0" "$1"'  # blocks of 512 or 1024 bytes
         child = subprocess.Popen(["sh", "-c", command, self.program("tact-record"), path], env=self.env,
                                  stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
         _, err = child.communicate(timeout=PATIENCE_S)
-        if child.returncode != 1 or "fix: make space" not in err:
+        if child.returncode != 1 or "fix: free disk space" not in err:
             return ["a full disk: exit code %d %s" % (child.returncode, err)]
         code, out, err = self.to_end("--repair", path, "--json")
         if code != 0:
@@ -152,7 +152,7 @@ class Campaign:
         return look_at(path, 0, json.loads(out))[2]
 
     def flight(self):
-        """The last seconds, when asked for; bounded in length and number, and as a table."""
+        """Flight recordings on request: bounded length and number, exported as a table."""
         folder = os.path.join(self.dir, "flights")
         child = self.recorder("--flight", folder, "--length", "1", "--keep", "1", "--json", "--wait", str(PATIENCE_S))
         files = lambda: sorted(os.listdir(folder)) if os.path.isdir(folder) else []
@@ -169,7 +169,7 @@ class Campaign:
             return ["%d flights after %d requests: %s %s" % (len(said), asked, out, err)]
         left = files()
         if len(left) != 1 or left[0] != said[-1] and left[0] < said[-1]:
-            return ["not the newest one was kept: %s of %s" % (left, said)]
+            return ["the newest recording was not kept: %s of %s" % (left, said)]
         path = os.path.join(folder, left[0])
         cycles, _, wrong = look_at(path, 0, {"damaged": False})
         with h5py.File(path, "r") as f:
@@ -194,7 +194,7 @@ class Campaign:
         if len(rows) != cycles - dry or json.loads(out)["rows"] != len(rows) or {len(r) for r in rows} != {len(names)}:
             wrong.append("the table has %d rows of %d cycles" % (len(rows), cycles))
         elif any(float(r[names.index("hand0_fx_n")]) != x or float(r[names.index("hand0_qw")]) != q for r, x, q in zip(rows, force, pose)):
-            wrong.append("a number of the table is not the recording's")
+            wrong.append("a number in the table differs from the recording")
         code, _, err = self.to_end("--csv", path, "-o", table)
         if code != 1 or "exists already" not in err:
             wrong.append("a table was overwritten")
@@ -220,7 +220,7 @@ def main():
         for name, test in (("ended in order", campaign.in_order), ("disk full", campaign.disk_full), ("flight and table", campaign.flight)):
             wrong = test()
             failed = failed or bool(wrong)
-            print("%s: %s" % (name, "; ".join(wrong) or "good"))
+            print("%s: %s" % (name, "; ".join(wrong) or "ok"))
         losses = []
         for number in range(request.runs):
             wrong, lost_ns, cycles = campaign.kill_once(number, chance.uniform(0.0, 1.5))

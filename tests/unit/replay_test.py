@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Sessions of docking, surface and drilling are recorded and done again: every force is the same to the bit.
+"""Records sessions of docking, surface and drilling and replays them: every force is bit-exact.
 
 usage: replay_test.py BIN_DIR [--seconds S]. Also: what is changed in a recording is found; another scene is refused; a recording that begins
 in the middle says that it cannot be exact.
@@ -51,13 +51,13 @@ class Sessions:
         said = json.loads(out)
         version = self.must("tact-rt", "--version").strip()
         self.claim("%s names the build that recorded it" % name, said["recorded_by"] == version != "", (said["recorded_by"], version))
-        self.claim("%s: %d steps, up to %.2f N, the same to the bit" % (name, said["steps"], said["force_n_most"]),
+        self.claim("%s: %d steps, up to %.2f N, bit-exact" % (name, said["steps"], said["force_n_most"]),
                    code == 0 and said["different"] == 0 and said["obstacle"] == "" and said["lost"] == 0 and
                    said["force_n_most"] > least_force_n and said["steps"] > 300 * self.seconds, said)
         return recording, said
 
     def late(self, scene):
-        """A recorder that comes when the rings have gone round: on a busy machine the controller needs longer for that."""
+        """A recorder that attaches after the rings have wrapped; on a busy machine the controller needs longer for that."""
         for rest_s in (3.7, 15.0, 60.0):
             controller = subprocess.Popen([os.path.join(self.programs, "tact-rt"), scene, "--rate", "20000", "--priority", "0", "--arm"],
                                           env=self.env, stderr=subprocess.DEVNULL)
@@ -72,7 +72,7 @@ class Sessions:
             said = json.loads(out) if code == 3 else {}
             if code == 3:
                 break
-        self.claim("a recording from the middle of a run says so", "middle of a run" in said.get("obstacle", ""), (code, out))
+        self.claim("a recording from the middle of a run is reported as such", "middle of a run" in said.get("obstacle", ""), (code, out))
 
     def close(self):
         shutil.rmtree(self.dir)
@@ -93,21 +93,21 @@ def main():
         s.session("surface", s.path("ground.tact"), "--hand", "stroke", "--tool-radius-mm", 1)
         s.session("surface, adaptive", s.path("ground.tact"), "--hand", "stroke", "--tool-radius-mm", 1, "--mode", "chr")
         s.must("tact-prep", "drill", "--synthetic", "--voxels", 64, "-o", s.path("bone.tact"))
-        s.seconds = max(s.seconds, 8.0)  # the surgeon first has to find the bone
+        s.seconds = max(s.seconds, 8.0)  # the surgeon needs time to reach the bone
         _, said = s.session("drilling", s.path("bone.tact"), "--hand", "surgeon", "--hand2", "suction-tube", "--hand-at-mm", "-6,-1.5")
-        s.claim("bone was taken in it", said.get("removed_levels", 0) > 255, said)
+        s.claim("bone was removed in it", said.get("removed_levels", 0) > 255, said)
         with open(recording, "rb") as file:
             s.claim("no folder of the run is in it", s.dir.encode() not in file.read())
         elsewhere = tempfile.mkdtemp(prefix="tact_elsewhere_", dir=s.dir)
         moved = shutil.copy(recording, elsewhere)
         code, _, err = s.run("tact", "replay", moved)
-        s.claim("away from its scene it asks for it", code == 1 and "--scene" in err and "dock.tact" in err, (code, err))
+        s.claim("without its scene nearby, a replay asks for --scene", code == 1 and "--scene" in err and "dock.tact" in err, (code, err))
         code, _, err = s.run("tact", "replay", moved, "--scene", s.path("dock.tact"), "--json")
-        s.claim("named, it is replayed", code == 0, (code, err))
+        s.claim("with --scene it is replayed", code == 0, (code, err))
         code, _, err = s.run("tact", "replay", recording, "--scene", s.path("ground.tact"))
-        s.claim("another scene is refused", code == 1 and "another scene" in err, (code, err))
+        s.claim("another scene is refused", code == 1 and "differs from the recorded one" in err, (code, err))
         code, _, err = s.run("tact", "replay", s.path("dock.tact"))
-        s.claim("a file that is no recording is refused", code == 1 and "no HDF5 file" in err, (code, err))
+        s.claim("a file that is not a recording is refused", code == 1 and "not an HDF5 file" in err, (code, err))
         code, _, err = s.run("tact", "run", s.path("dock.tact"), "--no-gui", "--seconds", 1, "--record", recording)
         s.claim("a recording is not overwritten", code == 1 and "exists already" in err, (code, err))
         s.late(s.path("dock.tact"))

@@ -7,6 +7,7 @@ tact_test(unit/safety_output_chain_test.cpp USES base safety SYSTEM rapidcheck)
 tact_test(unit/safety_smooth_gain_test.cpp USES base safety SYSTEM rapidcheck)
 tact_test(unit/safety_watchdogs_test.cpp USES base safety)
 tact_test(unit/govern_governor_test.cpp USES base govern SYSTEM rapidcheck)
+tact_test(unit/govern_level_fit_test.cpp USES base govern)
 tact_test(unit/govern_rate_hold_test.cpp USES base govern)
 tact_test(unit/govern_replay_test.cpp USES base govern)
 tact_test(unit/hal_sim_test.cpp USES base hal)
@@ -23,6 +24,7 @@ tact_test(unit/threads_head_feed_test.cpp USES base hal topics servo threads con
 tact_test(unit/threads_supervisor_test.cpp USES base servo threads config LABELS tsan)
 tact_test(unit/config_arm_test.cpp USES base arm hal servo threads config)
 tact_test(unit/threads_housekeeping_test.cpp USES base topics servo threads config)
+tact_test(unit/threads_command_feed_test.cpp USES base topics servo threads)
 tact_test(unit/threads_log_sink_test.cpp USES servo threads config SYSTEM spdlog::spdlog)
 tact_test(unit/config_problems_test.cpp USES base hal servo threads config start)
 tact_test(unit/threads_service_notify_test.cpp USES base servo threads config SYSTEM spdlog::spdlog)
@@ -32,11 +34,14 @@ tact_test(unit/start_systems_test.cpp USES base shm topics scene hal force servo
 tact_test(unit/start_drill_test.cpp USES base shm topics scene hal force servo threads config start)
 
 # The stages of a cycle, without a Servo.
+tact_test(unit/servo_orders_test.cpp USES base shm topics servo LABELS tsan)
 tact_test(unit/servo_input_stages_test.cpp USES base topics hal_api force servo)
 tact_test(unit/servo_force_stages_test.cpp USES base topics hal_api force servo)
+tact_test(unit/servo_armed_metrics_test.cpp USES base servo)
 tact_test(unit/servo_output_stages_test.cpp USES base topics hal_api force servo)
 
 tact_test(unit/bench_servo_test.cpp USES base bench_servo)
+tact_test(unit/bench_governor_test.cpp USES base bench SYSTEM nlohmann_json::nlohmann_json)
 
 # The whole loop in lockstep.
 tact_test(scenario/servo_scenario_test.cpp USES base topics hal force servo threads config start)
@@ -49,7 +54,7 @@ tact_test(scenario/record_scenario_test.cpp USES base topics hal force servo thr
 tact_test(scenario/bodies_scenario_test.cpp USES base topics scene hal force servo threads config start)
 tact_test(scenario/governor_scenario_test.cpp USES base topics hal force servo threads config start govern)
 
-# Nothing on the servo path touches the heap or a mutex: the test carries the interposers of tact-rt.
+# The servo path uses neither heap nor mutex: the test includes the interposers of tact-rt.
 tact_program(rt_safe_test SOURCES rt_safe/rt_safe_test.cpp ${CMAKE_SOURCE_DIR}/rt/servo/interpose.cpp
     USES base topics scene arm phantom phantom_usb hal emu_board force servo threads config start SYSTEM GTest::gtest GTest::gtest_main)
 set_target_properties(rt_safe_test PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/tests)

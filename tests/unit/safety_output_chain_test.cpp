@@ -1,4 +1,4 @@
-// The output chain: its bounds for any input, each stage, and their order.
+// The output chain: bounds for any input, each stage, and the order of the stages.
 #include "rt/safety/output_chain.hpp"
 
 #include <gtest/gtest.h>
@@ -27,7 +27,7 @@ ChainInput on(const Vec3& force_n, Duration dt = milliseconds(1)) {
     return in;
 }
 
-// Long enough for ramp and slew to be over.
+// Runs until ramp and slew have ended.
 ChainOutput settled(OutputChain& chain, const ChainInput& in) {
     ChainOutput out;
     for (int i = 0; i < 1000; ++i) out = chain.apply(in);
@@ -64,7 +64,7 @@ TEST(OutputChain, any_input_gives_a_finite_wrench_within_the_limits) {
             RC_ASSERT(out.gain >= 0.0 && out.gain <= 1.0);
             RC_ASSERT(in.gate_open || !out.enable);
             RC_ASSERT(out.enable || out.wrench_dev.force_n.isZero(0.0));
-            // Slew of at most two milliseconds' worth upwards, plus what the ramp may take away or give.
+            // An upward slew of at most 2 ms, plus the change by the ramp.
             const double step =
                 settings.force_slew_n_s * 2e-3 +
                 settings.force_n_max * 2e-3 / std::min(settings.ramp_in_s, settings.ramp_out_s);
@@ -75,7 +75,7 @@ TEST(OutputChain, any_input_gives_a_finite_wrench_within_the_limits) {
     EXPECT_TRUE(held);
 }
 
-TEST(OutputChain, a_force_inside_all_limits_comes_out_as_it_went_in) {
+TEST(OutputChain, a_force_inside_all_limits_passes_unchanged) {
     OutputChain chain;
     const Vec3 wanted(1.0, -0.5, 0.25);
     const ChainOutput out = settled(chain, on(wanted));
@@ -93,18 +93,18 @@ TEST(OutputChain, saturation_keeps_the_direction) {
     EXPECT_DOUBLE_EQ(out.wanted_n, 50.0);
 }
 
-TEST(OutputChain, a_force_that_is_not_a_number_becomes_zero_and_is_named) {
+TEST(OutputChain, a_force_that_is_not_finite_becomes_zero_and_is_reported) {
     OutputChain chain;
     static_cast<void>(settled(chain, on(Vec3(1.0, 0.0, 0.0))));
     ChainInput in = on(Vec3(1.0, kNan, 0.0));
-    in.gate_open = false;  // what the state machine makes of it in the same cycle
+    in.gate_open = false;  // as the state machine does in the same cycle
     const ChainOutput out = chain.apply(in);
     EXPECT_NE(out.acts & kChainNotFinite, 0U);
     EXPECT_TRUE(out.wrench_dev.force_n.isZero(0.0));
     EXPECT_FALSE(out.enable);
 }
 
-TEST(OutputChain, a_closed_gate_is_zero_at_once_and_the_ramp_starts_anew) {
+TEST(OutputChain, a_closed_gate_gives_zero_at_once_and_restarts_the_ramp) {
     OutputChain chain;
     static_cast<void>(settled(chain, on(Vec3(2.0, 0.0, 0.0))));
     ChainInput shut = on(Vec3(2.0, 0.0, 0.0));
@@ -114,7 +114,7 @@ TEST(OutputChain, a_closed_gate_is_zero_at_once_and_the_ramp_starts_anew) {
     EXPECT_LT(again.wrench_dev.force_n.norm(), 0.005);
 }
 
-TEST(OutputChain, the_ramp_reaches_full_force_after_its_time_and_leaves_it_within_fifty_milliseconds) {
+TEST(OutputChain, the_ramp_reaches_full_force_in_its_time_and_ends_it_within_fifty_milliseconds) {
     OutputChain chain;
     const ChainInput in = on(Vec3(1.0, 0.0, 0.0));
     double before = -1.0;
@@ -147,8 +147,8 @@ TEST(OutputChain, the_slope_is_limited_to_its_setting) {
     EXPECT_NEAR(chain.apply(on(Vec3(3.3, 0.0, 0.0))).wrench_dev.force_n.x(), 3.3, 1e-9);
 }
 
-// A limit that does not act must not say that it did: the rounding of before + (wanted - before) once did.
-TEST(OutputChain, a_slow_force_passes_the_slope_stage_untouched_and_unsaid) {
+// The slope stage must not report an action when it has none; rounding of before + (wanted - before) once caused it.
+TEST(OutputChain, a_slow_force_passes_the_slope_stage_unchanged_and_unreported) {
     OutputChain chain(ChainSettings{});
     for (int i = 0; i < 2000; ++i) {
         const double s = 1e-3 * i;
@@ -171,7 +171,7 @@ TEST(OutputChain, the_wall_pushes_inwards_and_is_saturated_like_any_force) {
     EXPECT_TRUE(alone.isApprox(Vec3(-1.0, 0.0, 0.0), 1e-9));
 }
 
-TEST(OutputChain, the_wall_is_as_stiff_as_its_gain_says) {
+TEST(OutputChain, the_wall_stiffness_scales_with_its_gain) {
     OutputChain chain;
     ChainInput in = on(Vec3::Zero());
     in.T_dev_tool.p_m = {0.097, 0.0, 0.0};  // 2 mm deep
@@ -181,15 +181,15 @@ TEST(OutputChain, the_wall_is_as_stiff_as_its_gain_says) {
     EXPECT_NEAR(settled(chain, in).wrench_dev.force_n.x(), -1.0, 1e-9);
 }
 
-TEST(StiffnessLimit, is_the_damping_over_half_a_period_and_the_delay) {
+TEST(StiffnessLimit, is_damping_over_half_a_period_plus_the_delay) {
     EXPECT_NEAR(stages::stiffness_max_n_m(0.05, 1e-3, 1e-3), 0.05 / 1.5e-3, 1e-9);  // 33 N/m
     EXPECT_NEAR(stages::stiffness_max_n_m(3.0, 1e-3, 5e-3), 3.0 / 5.5e-3, 1e-9);
-    // Unknown is a period.
+    // A delay of 0 is unknown and counts as one period.
     EXPECT_EQ(stages::stiffness_max_n_m(3.0, 1e-3, 0.0), stages::stiffness_max_n_m(3.0, 1e-3, 1e-3));
     EXPECT_TRUE(std::isinf(stages::stiffness_max_n_m(3.0, 0.0, 0.0)));
 }
 
-// A heavy damped mass on a sampled spring whose force comes some periods late, without any other loss.
+// A heavy mass with little damping on a sampled spring whose force is some periods late.
 double amplitude_after(double stiffness_n_m, int late_periods) {
     constexpr double kMass = 0.25, kDamping = 0.05, kPeriod = 1e-3;
     constexpr int kSubsteps = 20;
@@ -207,7 +207,7 @@ double amplitude_after(double stiffness_n_m, int late_periods) {
     return most;
 }
 
-TEST(StiffnessLimit, below_it_a_sampled_and_delayed_spring_comes_to_rest_and_above_it_does_not) {
+TEST(StiffnessLimit, below_the_limit_a_delayed_spring_comes_to_rest_and_above_it_does_not) {
     for (const int late : {1, 2, 5}) {
         const double limit = stages::stiffness_max_n_m(0.05, 1e-3, late * 1e-3);
         EXPECT_LT(amplitude_after(0.7 * limit, late), 1e-3) << late;
@@ -215,7 +215,7 @@ TEST(StiffnessLimit, below_it_a_sampled_and_delayed_spring_comes_to_rest_and_abo
     }
 }
 
-TEST(OutputChain, a_motor_above_its_continuous_force_weakens_to_it_and_never_overheats) {
+TEST(OutputChain, a_motor_above_its_continuous_force_is_reduced_to_it_and_never_overheats) {
     ChainSettings settings;
     settings.force_n_continuous = 1.4;
     settings.heat_tau_s = 5.0;
@@ -225,7 +225,7 @@ TEST(OutputChain, a_motor_above_its_continuous_force_weakens_to_it_and_never_ove
         out = chain.apply(on(Vec3(3.3, 0.0, 0.0)));
         ASSERT_LE(out.heat, 1.0 + 1e-6);
     }
-    // Rest: theta = (F/Fc)^2 where F is the line from 3.3 N at 0.8 to 1.4 N at 1. Solved by bisection.
+    // Equilibrium: theta = (F/Fc)^2, where F falls linearly from 3.3 N at 0.8 to 1.4 N at 1. Solved by bisection.
     double low = 0.8, high = 1.0;
     for (int i = 0; i < 60; ++i) {
         const double middle = 0.5 * (low + high);
@@ -236,7 +236,7 @@ TEST(OutputChain, a_motor_above_its_continuous_force_weakens_to_it_and_never_ove
     EXPECT_NE(out.acts & kChainHeat, 0U);
 }
 
-TEST(OutputChain, heat_follows_the_exact_solution_whatever_the_step) {
+TEST(OutputChain, heat_follows_the_exact_solution_for_any_step) {
     const double exact = 4.0 * (1.0 - std::exp(-2.0 / 60.0));
     double coarse = stages::heated(0.0, 2.0, 1.0, 60.0, 2.0);
     double fine = 0.0;
@@ -245,7 +245,7 @@ TEST(OutputChain, heat_follows_the_exact_solution_whatever_the_step) {
     EXPECT_NEAR(fine, exact, 1e-9);
 }
 
-// A mass bounces on a sampled wall: the sampling makes energy (Colgate), with the control it does not last.
+// A mass bounces on a sampled wall. Sampling adds energy (Colgate); the control dissipates it.
 double bounce_energy_j(bool passivity) {
     PassivitySettings settings;
     settings.position_step = 3e-5;
@@ -257,7 +257,7 @@ double bounce_energy_j(bool passivity) {
         if (passivity) force = control.shape(force, Vec3(x - x_before, 0.0, 0.0), dt);
         control.applied(force);
         x_before = x;
-        // The hand pushes with 1 N towards the wall.
+        // The hand pushes towards the wall with 1 N.
         const double a = (force.x() - 1.0) / m;
         x += v * dt + 0.5 * a * dt * dt;
         v += a * dt;
@@ -265,11 +265,11 @@ double bounce_energy_j(bool passivity) {
     return 0.5 * m * v * v + (x > 0.0 ? x : 0.5 * k * x * x);
 }
 
-TEST(PassivityControl, takes_out_the_energy_that_a_sampled_wall_makes) {
+TEST(PassivityControl, dissipates_the_energy_that_a_sampled_wall_adds) {
     EXPECT_LT(bounce_energy_j(true), 0.5 * bounce_energy_j(false));
 }
 
-TEST(PassivityControl, leaves_a_passive_force_alone) {
+TEST(PassivityControl, leaves_a_passive_force_unchanged) {
     PassivityControl control;
     double x = 0.0;
     for (int i = 1; i < 1000; ++i) {

@@ -1,4 +1,4 @@
-// The gain's glide: its law against the closed form, no step in gain or slope, and what it does to a hand.
+// The smooth gain: its law against the closed form, no step in gain or slope, and its effect on a hand.
 #include "rt/safety/smooth_gain.hpp"
 
 #include <gtest/gtest.h>
@@ -15,7 +15,7 @@ namespace {
 
 constexpr double kMs = 1e-3;
 
-TEST(SmoothGain, is_two_equal_lags_of_the_logarithm_down_faster_than_up) {
+TEST(SmoothGain, applies_two_equal_lags_to_the_logarithm_faster_down_than_up) {
     for (const auto& [from, to, tau_s] : {std::array{1.0, 0.25, 0.1}, std::array{0.25, 1.0, 0.25}}) {
         SmoothGain g;
         g.settle(from);
@@ -29,7 +29,7 @@ TEST(SmoothGain, is_two_equal_lags_of_the_logarithm_down_faster_than_up) {
     }
 }
 
-TEST(SmoothGain, settled_it_is_there_at_once_and_stays_to_the_bit) {
+TEST(SmoothGain, settle_takes_the_gain_at_once_and_keeps_it_exactly) {
     SmoothGain g;
     g.settle(0.3);
     const double there = g.gain();
@@ -37,9 +37,9 @@ TEST(SmoothGain, settled_it_is_there_at_once_and_stays_to_the_bit) {
     for (int i = 0; i < 100; ++i) EXPECT_EQ(g.follow(0.3, kMs), there);
 }
 
-TEST(SmoothGain, whatever_is_asked_it_lies_between_and_neither_it_nor_its_slope_steps) {
+TEST(SmoothGain, the_gain_stays_in_range_without_steps_in_gain_or_slope) {
     constexpr double kLeast = 0.05;
-    // Of the logarithm in a cycle: the whole way in one lag, and the change of that in the other.
+    // Largest change of the logarithm per cycle: the whole range through one lag; through both, for the slope.
     const double way = std::log(1.0 / kLeast), share = kMs / SmoothGain::kDownS;
     EXPECT_TRUE(rc::check([&] {
         SmoothGain g;
@@ -64,7 +64,7 @@ TEST(SmoothGain, whatever_is_asked_it_lies_between_and_neither_it_nor_its_slope_
     }));
 }
 
-TEST(SmoothGain, a_gain_of_nothing_or_beyond_one_is_bounded) {
+TEST(SmoothGain, a_gain_of_zero_or_beyond_one_is_bounded) {
     SmoothGain g;
     g.settle(0.0);
     EXPECT_GT(g.gain(), 0.0);
@@ -72,7 +72,7 @@ TEST(SmoothGain, a_gain_of_nothing_or_beyond_one_is_bounded) {
     EXPECT_EQ(g.gain(), 1.0);
 }
 
-// A hand of 0.25 kg and 3 N s/m on a field with a sampled damper in it, both late by so many periods.
+// A hand of 0.25 kg and 3 N s/m on a field with a sampled damper, both late by a number of periods.
 struct Hand {
     int late = 1;
     double x = 1e-4, v = 0.0;
@@ -93,7 +93,7 @@ struct Hand {
     }
 };
 
-TEST(SmoothGain, when_the_delay_makes_a_field_twice_too_stiff_a_vibration_grows_a_few_times_and_then_dies) {
+TEST(SmoothGain, a_vibration_at_twice_the_stable_stiffness_stays_small_and_dies_out) {
     const double b = 3.0, stable_late = stages::stiffness_max_n_m(b, kMs, 5 * kMs);
     const double stiffness = 2.0 * stable_late;
     ASSERT_LT(stiffness, stages::stiffness_max_n_m(b, kMs, kMs));
@@ -122,7 +122,7 @@ TEST(SmoothGain, when_the_delay_makes_a_field_twice_too_stiff_a_vibration_grows_
     }
 }
 
-TEST(DampingLimit, within_it_a_late_damper_only_helps_and_at_twice_it_swings_by_itself) {
+TEST(DampingLimit, within_the_limit_a_late_damper_damps_and_at_twice_it_oscillates) {
     for (const int late : {1, 5, 20}) {
         for (const double mass_kg : {0.1, 0.25}) {
             const double damping = stages::damping_max_n_s_m(mass_kg, kMs, late * kMs);

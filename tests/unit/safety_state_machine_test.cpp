@@ -18,7 +18,7 @@ struct Named {
     void (*set)(RunEvents&);
 };
 
-// Every event there is; trips by what they concern.
+// All events; trips by cause.
 constexpr std::array kEvents{
     Named{"nothing", [](RunEvents&) {}},
     Named{"open", [](RunEvents& e) { e.open = true; }},
@@ -47,7 +47,7 @@ constexpr std::array kEvents{
 
 RunStatus in(RunState state) { return {state, RunReason::none, instant_from_ns(1)}; }
 
-// What must hold of one transition, whatever the events; the text says what does not.
+// Checks the rules for one transition; returns the broken rule, or nothing.
 std::string broken_rule(const RunStatus& from, const RunEvents& e, const RunStatus& to) {
     const bool device_trip = e.trip == RunReason::device_lost || e.trip == RunReason::device_fault ||
                              e.trip == RunReason::sample_stale || e.trip == RunReason::emergency_stop ||
@@ -59,12 +59,12 @@ std::string broken_rule(const RunStatus& from, const RunEvents& e, const RunStat
     if (to.state == RunState::armed && from.state == RunState::fault) return "armed straight from a fault";
     if (to.state == RunState::armed && from.state == RunState::off) return "armed straight from off";
     if (to.state == RunState::armed && from.state == RunState::ready && !e.arm)
-        return "armed without being asked";
+        return "armed without a request";
     if (amplifier_on(to.state) && !amplifier_on(from.state) && e.arm_barred) return "armed though barred";
     if (amplifier_on(to.state) && e.trip != RunReason::none && amplifier_on(from.state))
-        return "on in spite of a trip";
+        return "amplifier on despite a trip";
     if (amplifier_on(to.state) && (e.close || e.stop || e.disarm || e.gui_silent))
-        return "on in spite of an end";
+        return "amplifier on despite the end of the run";
     if (to.state == RunState::active && !e.hand_present) return "force without a hand";
     if (from.state == RunState::fault && to.state == RunState::ready && (!e.reset || device_trip))
         return "fault left";
@@ -100,7 +100,7 @@ TEST(StateMachine, every_pair_of_events_in_every_state_keeps_the_rules) {
     }
 }
 
-TEST(StateMachine, every_pair_of_events_one_after_the_other_never_leads_to_a_force_that_nobody_asked_for) {
+TEST(StateMachine, no_two_events_in_sequence_lead_to_a_force_without_an_order) {
     for (const RunState state : {RunState::off, RunState::ready, RunState::fault}) {
         for (const Named& a : kEvents) {
             for (const Named& b : kEvents) {
@@ -119,7 +119,7 @@ TEST(StateMachine, every_pair_of_events_one_after_the_other_never_leads_to_a_for
     }
 }
 
-TEST(StateMachine, the_way_up_needs_open_arm_and_a_hand) {
+TEST(StateMachine, active_requires_open_arm_and_a_hand) {
     RunStatus s;
     s = next_status(s, {.open = true}, instant_from_ns(10));
     EXPECT_EQ(s.state, RunState::ready);
@@ -136,7 +136,7 @@ TEST(StateMachine, the_way_up_needs_open_arm_and_a_hand) {
     EXPECT_EQ(s.reason, RunReason::hand_left);
 }
 
-TEST(StateMachine, the_first_fault_stays_through_later_ones) {
+TEST(StateMachine, the_first_fault_persists_through_later_ones) {
     RunStatus s = next_status(in(RunState::active), {.hand_present = true, .trip = RunReason::too_late},
                               instant_from_ns(7));
     s = next_status(s, {.hand_present = true, .trip = RunReason::device_lost}, instant_from_ns(8));
@@ -152,7 +152,7 @@ TEST(StateMachine, a_device_that_is_still_lost_cannot_be_reset) {
     EXPECT_EQ(next_status(fault, {.reset = true}, instant_from_ns(9)).state, RunState::ready);
 }
 
-TEST(StateMachine, lateness_while_nothing_is_powered_is_no_fault) {
+TEST(StateMachine, lateness_without_power_is_no_fault) {
     EXPECT_EQ(next_status(in(RunState::ready), {.trip = RunReason::too_late}, instant_from_ns(9)).state,
               RunState::ready);
     EXPECT_EQ(next_status(in(RunState::armed), {.trip = RunReason::too_late}, instant_from_ns(9)).state,

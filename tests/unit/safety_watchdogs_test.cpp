@@ -1,4 +1,4 @@
-// The watchdogs: what is counted, what is warned of, what trips.
+// The watchdogs: counts, warnings and trips.
 #include "rt/safety/watchdogs.hpp"
 
 #include <gtest/gtest.h>
@@ -12,7 +12,7 @@ WatchdogInput fine(std::int64_t now_ns = 1'000'000'000) {
     return {.now = instant_from_ns(now_ns), .sample_taken_at = instant_from_ns(now_ns)};
 }
 
-TEST(Watchdogs, one_overrun_is_counted_three_are_warned_of_five_trip) {
+TEST(Watchdogs, one_overrun_counts_three_warn_and_five_trip) {
     Watchdogs dogs;
     WatchdogInput late = fine();
     late.overran = true;
@@ -26,7 +26,7 @@ TEST(Watchdogs, one_overrun_is_counted_three_are_warned_of_five_trip) {
     EXPECT_DOUBLE_EQ(trip.measured, 5.0);
 }
 
-TEST(Watchdogs, a_good_cycle_between_forgets_the_row) {
+TEST(Watchdogs, a_good_cycle_restarts_the_count) {
     Watchdogs dogs;
     WatchdogInput late = fine();
     late.overran = true;
@@ -35,7 +35,7 @@ TEST(Watchdogs, a_good_cycle_between_forgets_the_row) {
     }
 }
 
-TEST(Watchdogs, five_milliseconds_late_trips_and_no_less) {
+TEST(Watchdogs, lateness_above_five_milliseconds_trips) {
     Watchdogs dogs;
     WatchdogInput in = fine();
     in.lateness = microseconds(5000);
@@ -44,7 +44,7 @@ TEST(Watchdogs, five_milliseconds_late_trips_and_no_less) {
     EXPECT_EQ(dogs.check(in).reason, RunReason::too_late);
 }
 
-TEST(Watchdogs, where_timing_does_not_latch_it_is_still_counted) {
+TEST(Watchdogs, without_latching_lateness_is_still_counted) {
     WatchdogSettings settings;
     settings.timing_latches = false;
     Watchdogs dogs(settings);
@@ -64,7 +64,7 @@ TEST(Watchdogs, a_sample_is_held_for_three_cycles_and_trips_at_the_fourth) {
     }
 }
 
-TEST(Watchdogs, a_lost_device_is_named_before_what_follows_from_it) {
+TEST(Watchdogs, a_lost_device_is_reported_before_its_consequences) {
     Watchdogs dogs;
     WatchdogInput in = fine();
     in.device_lost = in.device_fault = true;

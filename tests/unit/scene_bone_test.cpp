@@ -1,5 +1,5 @@
-// The sections of a drilling scene: densities, labels, distances. What is written comes back, and what no maker
-// would write is refused.
+// The sections of a drilling scene (densities, labels, distances): data reads back unchanged, and invalid data is
+// refused.
 #include <gtest/gtest.h>
 
 #include <cstring>
@@ -16,7 +16,7 @@ namespace {
 constexpr SectionTag kBone{'B', 'O', 'N', 'E'}, kLabl{'L', 'A', 'B', 'L'}, kDist{'D', 'I', 'S', 'T'};
 
 struct Bone {
-    BoneBricks bricks{{9, 8, 3}, 0.3e-3, Vec3(0.01, -0.02, 0.5)};  // two bricks, the second nearly empty
+    BoneBricks bricks{{9, 8, 3}, 0.3e-3, Vec3(0.01, -0.02, 0.5)};  // two bricks, the second almost empty
     std::vector<std::uint8_t> density = std::vector<std::uint8_t>(bricks.bytes());
     std::vector<std::uint8_t> label = std::vector<std::uint8_t>(bricks.bytes());
     std::vector<std::int16_t> quanta = std::vector<std::int16_t>(3 * 2 * 2);
@@ -56,7 +56,7 @@ struct Bone {
     }
 };
 
-// The scene with one section changed, as an attacker would who gets the checksums right.
+// Returns the scene with one section changed and valid checksums, as an attacker would.
 template <class Change>
 std::vector<std::byte> changed(const std::vector<std::byte>& bytes, SectionTag tag, Change&& change) {
     const SceneFile file = SceneFile::from_bytes(bytes, "good");
@@ -74,7 +74,7 @@ void poke(std::vector<std::byte>& bytes, std::size_t at, T value) {
     std::memcpy(bytes.data() + at, &value, sizeof value);
 }
 
-TEST(BoneVolume, comes_back_as_it_was_written) {
+TEST(BoneVolume, reads_back_unchanged) {
     const Bone bone;
     const std::vector<std::byte> bytes = bone.scene();
     const SceneFile file = SceneFile::from_bytes(bytes, "bone");
@@ -97,7 +97,7 @@ TEST(BoneVolume, comes_back_as_it_was_written) {
     ASSERT_EQ(read_distance_fields(file, 2).size(), 1U);
 }
 
-TEST(BoneVolume, without_hounsfield_units_it_says_so) {
+TEST(BoneVolume, without_hounsfield_units_it_reports_none) {
     const Bone bone;
     BoneVolumeView v = bone.view();
     v.hu_at_0 = v.hu_at_255 = std::numeric_limits<float>::quiet_NaN();
@@ -108,7 +108,7 @@ TEST(BoneVolume, without_hounsfield_units_it_says_so) {
     EXPECT_TRUE(bone.view().has_hu());
 }
 
-TEST(BoneVolume, what_no_maker_writes_is_refused_by_name) {
+TEST(BoneVolume, invalid_sections_are_refused_by_name) {
     const std::vector<std::byte> bytes = Bone().scene();
     const auto refused = [&](SectionTag tag, const char* word, auto&& change) {
         SCOPED_TRACE(word);
@@ -143,7 +143,7 @@ TEST(BoneVolume, what_no_maker_writes_is_refused_by_name) {
     refused(kLabl, "size", [](Bytes& b) { poke(b, 0, 8U); });
     refused(kLabl, "structures", [](Bytes& b) { poke(b, 12, 0U); });
     refused(kLabl, "structures", [](Bytes& b) { poke(b, 12, 255U); });
-    refused(kLabl, "label 2, but there are 1", [](Bytes& b) {
+    refused(kLabl, "label 2, but the table has 1", [](Bytes& b) {
         poke(b, 12, 1U);
         b.erase(b.begin() + 128, b.begin() + 192);
     });
@@ -161,7 +161,7 @@ TEST(BoneVolume, what_no_maker_writes_is_refused_by_name) {
     refused(kDist, "error", [](Bytes& b) { poke(b, 56, 1.0); });
 }
 
-TEST(BoneVolume, nothing_is_written_that_could_not_be_read) {
+TEST(BoneVolume, nothing_unreadable_is_written) {
     Bone bone;
     SceneWriter out;
     BoneVolumeView v = bone.view();
@@ -173,8 +173,8 @@ TEST(BoneVolume, nothing_is_written_that_could_not_be_read) {
     EXPECT_THROW(write_distance_field(out, 0, bone.field), StartupError);
 }
 
-TEST(DistanceField, is_linear_between_its_points_and_never_too_large_beyond_them) {
-    const Bone bone;  // 10 quanta more along x, 5 less along y, 7 more along z
+TEST(DistanceField, is_linear_between_its_points_and_a_lower_bound_beyond_them) {
+    const Bone bone;  // +10 quanta per step along x, -5 along y, +7 along z
     const DistanceField& f = bone.field;
     const auto at = [&](double x, double y, double z) {
         return f.distance_m(f.origin_m + 1e-3 * Vec3(x, y, z)) / f.quantum_m;
@@ -183,7 +183,8 @@ TEST(DistanceField, is_linear_between_its_points_and_never_too_large_beyond_them
     EXPECT_NEAR(at(2, 1, 1), 22.0, 1e-9);
     EXPECT_NEAR(at(1.25, 0.5, 0.75), 12.5 - 2.5 + 5.25, 1e-9);
     EXPECT_NEAR(at(5, 0, 0), std::hypot(20.0, 300.0), 1e-9);
-    EXPECT_NEAR(at(0, 4, 0), 300.0, 1e-9) << "inside the structure at the edge: 0 is all that is known";
+    EXPECT_NEAR(at(0, 4, 0), 300.0, 1e-9)
+        << "at the edge inside the structure only the lower bound 0 is known";
     EXPECT_TRUE(std::isfinite(at(0.5, 0.5, 0.5)));
     EXPECT_FALSE(std::isfinite(at(std::nan(""), 0, 0)));
     EXPECT_GT(at(1e300, -1e300, 0), 1e100);

@@ -1,4 +1,4 @@
-// Clash counts against the sum over all pairs, and pairs whose answer is known.
+// Clash counts against the sum over all pairs, and pairs with known results.
 #include "ipc/scene/fit/clashes.hpp"
 
 #include <gtest/gtest.h>
@@ -67,7 +67,7 @@ ClashCounts by_all_pairs(std::span<const PlacedStructure> placed) {
     return counts;
 }
 
-TEST(Clashes, are_those_of_the_sum_over_all_pairs) {
+TEST(Clashes, match_the_sum_over_all_pairs) {
     SeededRandom random(5);
     const std::array<Structure, 3> s{cloud(300, 30.0 * kA, 1), cloud(700, 40.0 * kA, 2),
                                      cloud(50, 10.0 * kA, 3)};
@@ -97,14 +97,14 @@ TEST(Clashes, begin_at_an_overlap_of_six_tenths_of_an_angstrom) {
     EXPECT_FALSE(clashes(carbon, carbon, 2.81));
     EXPECT_TRUE(clashes(carbon, oxygen, 2.61));
     EXPECT_FALSE(clashes(carbon, oxygen, 2.63));
-    // A hydrogen bond is none.
+    // A hydrogen bond is not a clash.
     EXPECT_FALSE(clashes(nitrogen, oxygen, 2.7));
     EXPECT_TRUE(clashes(nitrogen, oxygen, 2.06));
     EXPECT_FALSE(clashes(nitrogen, oxygen, 2.08));
     EXPECT_TRUE(clashes(unknown, carbon, 2.79));
 }
 
-TEST(Clashes, what_is_not_a_number_clashes_with_nothing) {
+TEST(Clashes, non_finite_positions_clash_with_nothing) {
     Structure broken = cloud(100, 20.0 * kA, 1);
     const Structure good = cloud(100, 20.0 * kA, 2);
     const PlacedStructure whole[] = {{&broken, Pose{}}, {&good, Pose{}}};

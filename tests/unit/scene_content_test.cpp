@@ -1,5 +1,5 @@
-// META, NOTE, GRID, BODY and CODE: round trips, and every field given a value that a reader must refuse.
-// The checksums are right in all of these: the writer is the attacker.
+// META, NOTE, GRID, BODY and CODE: round trips, and invalid values in each field, which a reader must refuse.
+// All checksums are valid: the writer is the attacker.
 #include <gtest/gtest.h>
 
 #include <functional>
@@ -56,7 +56,7 @@ TEST(SceneContent, round_trips_exactly) {
     }
 }
 
-// Reads everything of a scene and returns what was refused.
+// Reads all content of a scene and returns the error.
 std::string refusal(const SceneWriter& out) {
     const auto bytes = out.to_bytes();
     return sample::error_of([&] {
@@ -113,7 +113,7 @@ TEST(SceneContent, every_field_of_the_grid_is_checked) {
                        "GRID", word);
     };
     refused("voxels", [](DensityGrid& g) { g.size[0] = 6; });
-    refused("left over", [](DensityGrid& g) { g.size[0] = 4; });
+    refused("follow its content", [](DensityGrid& g) { g.size[0] = 4; });
     refused("along an axis", [](DensityGrid& g) { g.size[1] = 0; });
     refused("along an axis", [](DensityGrid& g) { g.size[2] = 0xffffffffU; });
     refused("voxels", [](DensityGrid& g) { g.size = {8192, 8192, 8192}; });
@@ -147,7 +147,7 @@ TEST(SceneContent, every_field_of_a_structure_is_checked) {
     refused("chain 2", [](Structure& s) { s.chain[1] = 2; });
     refused("element 119", [](Structure& s) { s.element[1] = 119; });
     refused("trace", [](Structure& s) { s.trace[1] = 2; });
-    refused("left over", [](Structure& s) { s.trace.push_back(0); });
+    refused("follow its content", [](Structure& s) { s.trace.push_back(0); });
     refused("trace", [](Structure& s) { s.trace.pop_back(); });
 }
 
@@ -171,7 +171,7 @@ TEST(SceneContent, every_field_of_a_codebook_is_checked) {
     refused("edge", [](Codebook& c) { c.levels[1].edges[0] = {1, 1}; });
 }
 
-TEST(SceneContent, a_codebook_may_have_no_levels) {
+TEST(SceneContent, a_codebook_without_levels_is_valid) {
     const auto bytes = sample::scene(sample::meta(), sample::structure(), Codebook{}).to_bytes();
     EXPECT_TRUE(read_codebook(SceneFile::from_bytes(bytes, "s"), 0).levels.empty());
 }

@@ -1,4 +1,4 @@
-// What a contour level means, and the file that a surface at another level travels in.
+// Contour levels and fractions, and the file with a surface at another level.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -13,7 +13,7 @@
 namespace tact::test {
 namespace {
 
-TEST(ContourScale, fractions_are_those_of_counting_voxels) {
+TEST(ContourScale, fractions_match_counted_voxels) {
     DensityGrid grid;
     grid.size = {40, 30, 20};
     grid.spacing_m = Vec3(1e-10, 2e-10, 3e-10);
@@ -42,7 +42,7 @@ TEST(ContourScale, level_and_fraction_are_inverse) {
         last = level;
         EXPECT_NEAR(scale.fraction_inside(level), fraction, 1e-3);
     }
-    // A ball of radius 1/2 in a cube of side 2; the outermost samples stand for half a voxel too much.
+    // A ball of radius 1/2 in a cube of side 2; the outermost samples add half a voxel.
     const double ball = std::numbers::pi / 6.0 / std::pow(2.0 + 2.0 / 24.0, 3);
     EXPECT_NEAR(scale.fraction_inside(-0.5), ball, 0.05 * ball);
 }
@@ -62,7 +62,7 @@ TEST(ContourScale, bad_maps_give_zeros) {
     EXPECT_EQ(ContourScale(grid, 0.0, 1.0).fraction_inside(0.5), 0.0);
     EXPECT_EQ(ContourScale().level_of_fraction(0.5), 0.0);
     grid.size = {2, 2, 2};
-    grid.values.assign(8, 4.0F);  // all the same
+    grid.values.assign(8, 4.0F);  // constant
     const ContourScale flat(grid, 4.0, 0.0);
     EXPECT_EQ(flat.fraction_inside(3.0), 1.0);
     EXPECT_EQ(flat.fraction_inside(4.0), 0.0);
@@ -85,7 +85,7 @@ ProgressiveMeshData triangle() {
     return mesh;
 }
 
-TEST(ContourMesh, comes_back_and_is_refused_where_it_is_not_the_one_asked_for) {
+TEST(ContourMesh, reads_back_and_is_refused_for_another_scene_or_level) {
     SceneWriter out;
     write_contour(out, {77, 0.25}, triangle());
     const auto bytes = out.to_bytes();

@@ -1,4 +1,4 @@
-// The density sampler against a slow reference and against what defines it.
+// The density sampler against a slow reference and against its definition.
 #include "ipc/scene/density/density_map.hpp"
 
 #include <gtest/gtest.h>
@@ -31,9 +31,8 @@ Vec3 in_voxels(const DensityGrid& grid, const Vec3& v) {
     return grid.origin_m + grid.spacing_m.cwiseProduct(v);
 }
 
-// Interpolation with the cardinal cubic spline, whose infinite weights are known in closed form: the spline
-// that is 1 at one voxel and 0 at all others is sum_k c_k B(t - k), c_k = (-6 z / (1 - z^2)) z^|k|. No
-// recursion, no padding.
+// Interpolation with the cardinal cubic spline (1 at one voxel, 0 at all others), whose infinite weights have a
+// closed form: sum_k c_k B(t - k), c_k = (-6 z / (1 - z^2)) z^|k|. No recursion and no padding.
 double cardinal(double t) {
     const double z = std::sqrt(3.0) - 2.0;
     const auto bspline = [](double u) {
@@ -119,7 +118,7 @@ TEST(DensityMap, reproduces_a_cubic_polynomial_far_from_the_border) {
     }
 }
 
-TEST(DensityMap, gradient_is_the_slope_of_the_density_everywhere) {
+TEST(DensityMap, gradient_is_the_derivative_of_the_density_everywhere) {
     const DensityGrid grid = noise_grid({6, 6, 6}, 5);
     const DensityMap map(grid, 3.0, 2.0);
     std::mt19937 random(6);
@@ -132,9 +131,9 @@ TEST(DensityMap, gradient_is_the_slope_of_the_density_everywhere) {
     }
 }
 
-TEST(DensityMap, force_does_not_jump_at_voxel_faces_nor_at_the_box_nor_where_the_spline_ends) {
+TEST(DensityMap, force_is_continuous_at_voxel_faces_the_box_and_the_end_of_the_spline) {
     const DensityGrid grid = noise_grid({5, 5, 5}, 7);
-    const DensityMap map(grid, 0.0, 1.0);  // not normalized: the border is steep
+    const DensityMap map(grid, 0.0, 1.0);  // not normalised: the border is steep
     for (int axis = 0; axis < 3; ++axis) {
         for (int face = -13; face <= 18; ++face) {
             Vec3 t(1.37, 2.61, 0.83), below, above;
@@ -147,7 +146,7 @@ TEST(DensityMap, force_does_not_jump_at_voxel_faces_nor_at_the_box_nor_where_the
     }
 }
 
-TEST(DensityMap, is_exactly_nothing_far_outside) {
+TEST(DensityMap, is_exactly_zero_far_outside) {
     const DensityGrid grid = noise_grid({4, 4, 4}, 8);
     const DensityMap map(grid, 0.0, 1.0);
     for (const double far : {-12.0, 15.0, 1e3, -1e9, 1e300, -std::numeric_limits<double>::infinity()}) {
@@ -160,7 +159,7 @@ TEST(DensityMap, is_exactly_nothing_far_outside) {
     }
 }
 
-TEST(DensityMap, not_a_number_has_a_defined_answer) {
+TEST(DensityMap, non_finite_input_has_a_defined_result) {
     const DensityGrid grid = noise_grid({4, 4, 4}, 9);
     const DensityMap map(grid, 0.0, 1.0);
     const double nan = std::numeric_limits<double>::quiet_NaN();
@@ -177,7 +176,7 @@ TEST(DensityMap, not_a_number_has_a_defined_answer) {
 TEST(DensityMap, closed_loops_cost_no_work) {
     const DensityGrid grid = noise_grid({8, 8, 8}, 10);
     const DensityMap map(grid, 3.0, 2.0);
-    // A circle through faces, corners and the border of the box; the trapezoid rule converges fast on it.
+    // A circle through faces, corners and the border of the box, on which the trapezoid rule converges fast.
     double work = 0.0, size = 0.0;
     constexpr int kSteps = 20000;
     for (int i = 0; i < kSteps; ++i) {
@@ -195,7 +194,7 @@ TEST(DensityMap, closed_loops_cost_no_work) {
     EXPECT_LT(std::abs(work), 1e-5 * size);
 }
 
-TEST(DensityMap, refuses_what_is_not_a_map) {
+TEST(DensityMap, refuses_invalid_maps) {
     DensityGrid grid = noise_grid({4, 4, 4}, 11);
     EXPECT_THROW(DensityMap(grid, 0.0, 0.0), StartupError);
     EXPECT_THROW(DensityMap(grid, 0.0, std::numeric_limits<double>::quiet_NaN()), StartupError);

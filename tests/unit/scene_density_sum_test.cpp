@@ -60,7 +60,7 @@ DensitySums reference(const DensityMap& map, const Points& p, const Pose& T) {
     return sums;
 }
 
-// Relative to the size of a single point's share, which sums to about one.
+// Tolerances relative to the contribution of a single point; contributions sum to about one.
 void expect_close(const DensitySums& a, const DensitySums& b, double radius_m, const char* kernel) {
     EXPECT_NEAR(a.density_sigma, b.density_sigma, 3e-5) << kernel;
     EXPECT_LT((a.gradient - b.gradient).norm() * 2e-10, 3e-5) << kernel;
@@ -74,7 +74,7 @@ Pose pose_in(const DensityGrid& grid, const Vec3& t, const Quat& q) {
 class DensitySum : public testing::TestWithParam<std::size_t> {
 protected:
     void SetUp() override {
-        if (!kernel().runs_here()) GTEST_SKIP() << "this processor has no " << kernel().name;
+        if (!kernel().runs_here()) GTEST_SKIP() << "this processor does not support " << kernel().name;
     }
     [[nodiscard]] static DensityMap::Options options() {
         DensityMap::Options o;
@@ -100,8 +100,8 @@ TEST_P(DensitySum, agrees_with_sample_for_every_count_of_points) {
     }
 }
 
-// Of every width modulo four, because of the rows of four that the coefficients are stored in.
-TEST_P(DensitySum, agrees_with_sample_in_maps_too_large_to_be_stored_fourfold) {
+// All widths modulo four, because the coefficients are stored in rows of four.
+TEST_P(DensitySum, agrees_with_sample_in_maps_too_large_for_fourfold_storage) {
     for (const std::uint32_t width : {21U, 22U, 23U, 24U}) {
         const DensityGrid grid = noise_grid({width, 20, 16});
         const DensityMap fourfold(grid, 0.0, 1.0, options()), once(grid, 0.0, 1.0, stored_once());
@@ -114,8 +114,8 @@ TEST_P(DensitySum, agrees_with_sample_in_maps_too_large_to_be_stored_fourfold) {
     }
 }
 
-// The corners of where points are clamped, where the last rows of the coefficients are.
-TEST_P(DensitySum, is_nothing_in_the_farthest_corners) {
+// The corners to which points are clamped, next to the last rows of the coefficients.
+TEST_P(DensitySum, is_zero_in_the_farthest_corners) {
     const DensityGrid grid = noise_grid({8, 8, 8});
     const DensityMap fourfold(grid, 0.0, 1.0, options()), once(grid, 0.0, 1.0, stored_once());
     const Points p = random_points(16, 1e-12, 4);
@@ -135,7 +135,7 @@ TEST_P(DensitySum, agrees_with_sample_where_points_leave_the_box) {
     }
 }
 
-TEST_P(DensitySum, absurd_poses_give_nothing) {
+TEST_P(DensitySum, invalid_poses_give_zero) {
     const DensityGrid grid = noise_grid({10, 12, 8});
     const DensityMap map(grid, 0.0, 1.0, options());
     const Points p = random_points(37, 10e-10, 6);
@@ -159,7 +159,7 @@ TEST_P(DensitySum, absurd_poses_give_nothing) {
     }
 }
 
-TEST_P(DensitySum, absurd_points_give_finite_sums) {
+TEST_P(DensitySum, invalid_points_give_finite_sums) {
     const DensityGrid grid = noise_grid({10, 12, 8});
     const DensityMap map(grid, 0.0, 1.0, options());
     const Pose middle = pose_in(grid, Vec3(5, 6, 4), Quat(0.5, 0.5, 0.5, 0.5));

@@ -1,4 +1,4 @@
-// The docking gain against a map whose forces are known in closed form.
+// The docking gain on a map whose forces have a closed form.
 #include "ipc/scene/density/docking_gain.hpp"
 
 #include <gtest/gtest.h>
@@ -12,8 +12,8 @@ namespace {
 
 constexpr double kA = 1e-10;
 
-// One Gaussian of 12 A in the middle of a box; one atom. Then the slope is at most exp(-1/2) / s and the
-// curvature at most 1 / s^2, in units of the peak.
+// One Gaussian of 12 A in the centre of a box and one atom: the slope is at most exp(-1/2) / s and the curvature at
+// most 1 / s^2, in units of the peak.
 constexpr double kSigmaM = 12.0 * kA;
 constexpr double kPeak = 8.0;
 
@@ -47,7 +47,7 @@ Structure one_atom() {
 const std::vector<Structure> kStructures{one_atom()};
 const std::vector<Codebook> kNoCodebook(1);
 
-TEST(DockingGain, stiffness_at_its_limit_where_the_blob_is_sharp) {
+TEST(DockingGain, stiffness_reaches_its_limit_for_a_sharp_blob) {
     const DensityMap map(blob(), 0.0, 1.0);
     const double scale = 0.1 / (150.0 * kA);
     GainSettings settings;
@@ -58,7 +58,7 @@ TEST(DockingGain, stiffness_at_its_limit_where_the_blob_is_sharp) {
     EXPECT_NEAR(gain.energy_j_per_sigma, expected, 0.05 * expected);
 }
 
-TEST(DockingGain, force_at_its_limit_where_the_blob_is_wide) {
+TEST(DockingGain, force_reaches_its_limit_for_a_wide_blob) {
     const DensityMap map(blob(), 0.0, 1.0);
     const double scale = 0.1 / (150.0 * kA);
     GainSettings settings;

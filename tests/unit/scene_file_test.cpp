@@ -1,4 +1,4 @@
-// The container: round trip, atomic writing, and every byte of it attacked.
+// The container: round trip, atomic writing, and corruption of every byte.
 #include <gtest/gtest.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -32,7 +32,7 @@ std::vector<std::byte> text(const char* s) {
     return {p, p + std::strlen(s)};
 }
 
-TEST_F(SceneFileOnDisk, sections_come_back_as_they_were_written) {
+TEST_F(SceneFileOnDisk, sections_read_back_unchanged) {
     SceneWriter out;
     out.add({'M', 'E', 'T', 'A'}, 3, 0, text("hello"));
     out.add({'B', 'O', 'D', 'Y'}, 1, 0, text("first"));
@@ -40,7 +40,7 @@ TEST_F(SceneFileOnDisk, sections_come_back_as_they_were_written) {
     out.add({'N', 'O', 'N', 'E'}, 1, 0, {});
     const fs::path path = path_ / "a.tact";
     out.write(path);
-    EXPECT_EQ(entries(), 1U) << "the temporary file stayed";
+    EXPECT_EQ(entries(), 1U) << "the temporary file was left behind";
     const SceneFile file = SceneFile::open(path);
     EXPECT_EQ(file.count({'B', 'O', 'D', 'Y'}), 2U);
     EXPECT_EQ(file.count({'C', 'O', 'D', 'E'}), 0U);
@@ -54,7 +54,7 @@ TEST_F(SceneFileOnDisk, sections_come_back_as_they_were_written) {
     EXPECT_NE(version.find("version 3, this program reads 1"), std::string::npos) << version;
 }
 
-TEST_F(SceneFileOnDisk, checksum_names_the_content) {
+TEST_F(SceneFileOnDisk, checksum_identifies_the_content) {
     const fs::path path = path_ / "a.tact";
     sample::scene().write(path);
     const std::uint64_t first = SceneFile::open(path).checksum();
@@ -72,7 +72,7 @@ TEST_F(SceneFileOnDisk, an_old_scene_survives_a_failed_write) {
     const std::uint64_t before = SceneFile::open(path).checksum();
     const std::string error = sample::error_of([&] { sample::scene().write(path_ / "absent" / "b.tact"); });
     EXPECT_NE(error.find("No such file"), std::string::npos) << error;
-    EXPECT_NE(sample::error_of([&] { sample::scene().write(path_); }).find("it is a folder"),
+    EXPECT_NE(sample::error_of([&] { sample::scene().write(path_); }).find("the path is a folder"),
               std::string::npos);
     EXPECT_EQ(SceneFile::open(path).checksum(), before);
     EXPECT_EQ(entries(), 1U);
@@ -90,7 +90,7 @@ TEST_F(SceneFileOnDisk, a_mapped_scene_stays_readable_while_it_is_replaced) {
     EXPECT_EQ(read_meta(file).contour, 7.0);
 }
 
-TEST_F(SceneFileOnDisk, what_is_no_scene_is_refused_in_words) {
+TEST_F(SceneFileOnDisk, other_files_are_refused_with_a_fix) {
     const auto error = [&](const fs::path& path) {
         return sample::error_of([&] { (void)SceneFile::open(path); });
     };
@@ -107,23 +107,23 @@ TEST_F(SceneFileOnDisk, what_is_no_scene_is_refused_in_words) {
     EXPECT_NE(text_error.find("fix:"), std::string::npos);
 }
 
-TEST(SceneFile, every_changed_bit_is_found) {
+TEST(SceneFile, every_changed_bit_is_detected) {
     std::vector<std::byte> bytes = sample::scene().to_bytes();
     ASSERT_NO_THROW((void)SceneFile::from_bytes(bytes, "s"));
     for (std::size_t i = 0; i < bytes.size(); ++i) {
         for (unsigned bit = 0; bit < 8; ++bit) {
             bytes[i] ^= std::byte{1} << bit;
             const std::string error = sample::error_of([&] { (void)SceneFile::from_bytes(bytes, "s"); });
-            ASSERT_FALSE(error.empty()) << "bit " << bit << " of byte " << i << " may change unseen";
+            ASSERT_FALSE(error.empty()) << "bit " << bit << " of byte " << i << " can change undetected";
             bytes[i] ^= std::byte{1} << bit;
         }
     }
 }
 
-TEST(SceneFile, every_truncation_and_every_extension_is_found) {
+TEST(SceneFile, every_truncation_and_every_extension_is_detected) {
     const std::vector<std::byte> bytes = sample::scene().to_bytes();
     for (std::size_t n = 0; n < bytes.size(); ++n) {
-        // A copy of exactly n bytes, so that the sanitizers see a read past the end.
+        // A copy of exactly n bytes lets the sanitizers detect a read past the end.
         const std::vector<std::byte> cut(bytes.begin(), bytes.begin() + static_cast<std::ptrdiff_t>(n));
         ASSERT_THROW((void)SceneFile::from_bytes(cut, "s"), StartupError) << n;
     }

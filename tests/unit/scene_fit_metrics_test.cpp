@@ -1,4 +1,4 @@
-// Fit numbers against sums written out naively, and against cases whose answer is known.
+// Fit metrics against naive sums, and against cases with known results.
 #include "ipc/scene/fit/fit_metrics.hpp"
 
 #include <gtest/gtest.h>
@@ -27,7 +27,7 @@ Structure atoms(std::size_t count, unsigned seed) {
         s.mass_fraction.push_back(1.0F / static_cast<float>(count));
         s.element.push_back(elements[i % 4]);
     }
-    s.element[0] = 0;  // one of unknown kind: weighs its mass
+    s.element[0] = 0;  // unknown element: weighted by its mass
     return s;
 }
 
@@ -40,7 +40,7 @@ DensityGrid empty_grid() {
     return grid;
 }
 
-// Every atom on every voxel, in double precision, no cut.
+// Every atom on every voxel, in double precision, without cut-off.
 std::vector<double> slow_map(const DensityGrid& grid, const Structure& s, const Pose& pose,
                              double resolution_m) {
     std::vector<double> map(grid.count(), 0.0);
@@ -99,14 +99,14 @@ TEST(FitMetrics, agrees_with_the_naive_sums_within_one_percent) {
     EXPECT_NEAR(result.overlap, uv, 0.01 * std::abs(uv));
 }
 
-TEST(FitMetrics, a_map_of_the_structure_itself_correlates_fully) {
+TEST(FitMetrics, a_map_of_the_structure_itself_has_correlation_one) {
     const Structure s = atoms(60, 3);
     DensityGrid grid = empty_grid();
     const std::vector<double> truth = slow_map(grid, s, Pose{}, 10.0 * kA);
     for (std::size_t i = 0; i < truth.size(); ++i) grid.values[i] = static_cast<float>(5.0 + 0.1 * truth[i]);
     const FitMetrics result = fit(grid, s, Pose{}, settings_10a());
-    EXPECT_NEAR(result.cc_mean, 1.0, 1e-3);  // blind to offset and scale
-    EXPECT_LT(result.cc_zero, 0.999);        // which cc about zero is not
+    EXPECT_NEAR(result.cc_mean, 1.0, 1e-3);  // invariant to offset and scale
+    EXPECT_LT(result.cc_zero, 0.999);        // the correlation about zero is not
     EXPECT_GT(result.cc_zero, 0.8);
     EXPECT_LT(fit(grid, s, Pose{Vec3(8 * kA, 0, 0), Quat::Identity()}, settings_10a()).cc_mean, 0.8);
 }
@@ -121,7 +121,7 @@ TEST(FitMetrics, several_bodies_are_simulated_together) {
     EXPECT_NEAR(fit_metrics(grid, placed, settings_10a()).cc_mean, 1.0, 1e-3);
 }
 
-TEST(FitMetrics, each_body_has_the_numbers_that_it_has_alone) {
+TEST(FitMetrics, each_body_has_the_same_metrics_as_alone) {
     const Structure s = atoms(40, 8), other = atoms(25, 9);
     DensityGrid grid = empty_grid();
     std::mt19937 random(10);
@@ -153,7 +153,7 @@ TEST(FitMetrics, each_body_has_the_numbers_that_it_has_alone) {
     EXPECT_EQ(all.body[2].cc_mean, 0.0);
 }
 
-TEST(FitMetrics, bodies_in_each_others_way_are_counted) {
+TEST(FitMetrics, clashes_between_bodies_are_counted) {
     Structure s = atoms(2, 11);
     s.x_m = {0.0F, static_cast<float>(20.0 * kA)};
     s.y_m = s.z_m = {0.0F, 0.0F};
@@ -161,7 +161,7 @@ TEST(FitMetrics, bodies_in_each_others_way_are_counted) {
     const auto placed = [&](double x_a) {
         return PlacedStructure{&s, {Vec3(x_a * kA, 0, 0), Quat::Identity()}};
     };
-    // Carbons, 1.7 A each: both pairs 2 A apart clash, those 3 A apart do not.
+    // Carbon radii are 1.7 A: pairs 2 A apart clash, pairs 3 A apart do not.
     const std::array<PlacedStructure, 3> three{placed(0.0), placed(2.0), placed(5.0)};
     const FitOfBodies fit = fit_of_bodies(empty_grid(), three, settings_10a());
     EXPECT_EQ(fit.all.clashes, 2U);
@@ -170,7 +170,7 @@ TEST(FitMetrics, bodies_in_each_others_way_are_counted) {
     EXPECT_EQ(fit.body[2].clashes, 0U);
 }
 
-TEST(FitMetrics, mean_density_and_fraction_inside_are_those_of_the_atoms) {
+TEST(FitMetrics, mean_density_and_fraction_inside_match_the_atoms) {
     DensityGrid grid = empty_grid();
     for (std::uint32_t z = 0; z < grid.size[2]; ++z) {
         for (std::uint32_t y = 0; y < grid.size[1]; ++y) {
@@ -192,13 +192,13 @@ TEST(FitMetrics, mean_density_and_fraction_inside_are_those_of_the_atoms) {
     EXPECT_NEAR(result.mean_density_sigma, (12.5 - 3.0) / 2.0, 1e-5);
     EXPECT_EQ(result.atoms, 2U);
     EXPECT_EQ(result.fraction_inside, 0.5);
-    settings.sigma = 0.0;  // then the grid's own mean 12.5 and deviation sqrt((26^2 - 1) / 12)
+    settings.sigma = 0.0;  // uses the grid's own mean 12.5 and deviation sqrt((26^2 - 1) / 12)
     s.x_m[0] = s.x_m[1];
     EXPECT_NEAR(fit(grid, s, Pose{}, settings).mean_density_sigma, (14.0 - 12.5) / std::sqrt(675.0 / 12.0),
                 1e-5);
 }
 
-TEST(FitMetrics, outside_or_nowhere_there_is_no_fit) {
+TEST(FitMetrics, outside_the_map_the_fit_is_zero) {
     const Structure s = atoms(20, 6);
     DensityGrid grid = empty_grid();
     grid.values[500] = 1.0F;

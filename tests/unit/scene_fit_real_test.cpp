@@ -1,7 +1,7 @@
-// Fit numbers and refinement on published maps with the structures that belong to them.
+// Fit metrics and refinement on published maps with their structures.
 //
-// The fit is compared with one that is written here from the definitions alone: every atom a sphere of 5
-// sigma, an exponential for every voxel in it, loops over the voxels, all in double precision.
+// The reference fit follows only the definitions: each atom is a sphere of 5 sigma, with one exponential per voxel,
+// in double precision.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -145,7 +145,7 @@ Loaded load(const std::filesystem::path& folder, const Pair& pair) {
 }
 
 void expect_same(const FitMetrics& a, const Naive& b) {
-    // A correlation near zero is a difference of large sums: there the hundredth is of a tenth.
+    // A correlation near zero is a difference of large sums: the tolerance is 1 % of at least 0.1.
     EXPECT_NEAR(a.cc_zero, b.cc_zero, 0.01 * std::max(0.1, std::abs(b.cc_zero)));
     EXPECT_NEAR(a.cc_mean, b.cc_mean, 0.01 * std::max(0.1, std::abs(b.cc_mean)));
     EXPECT_NEAR(a.overlap, b.overlap, 0.01 * std::abs(b.overlap));
@@ -154,7 +154,7 @@ void expect_same(const FitMetrics& a, const Naive& b) {
     EXPECT_NEAR(static_cast<double>(a.region_voxels), b.region, 0.01 * b.region);
 }
 
-TEST(RealFit, numbers_are_those_of_the_definitions_within_one_percent) {
+TEST(RealFit, metrics_match_the_definitions_within_one_percent) {
     const auto folder = sample::em_folder();
     if (folder.empty()) GTEST_SKIP() << "the folder of real data is absent (set TACT_SHARED)";
     for (const Pair& pair : pairs()) {
@@ -177,7 +177,7 @@ TEST(RealFit, numbers_are_those_of_the_definitions_within_one_percent) {
         if (l.structures.size() > 1)
             expect_same(fit.body[0], naive_fit(l.grid, {l.structures[0]}, {l.homes[0]}, resolution_m,
                                                l.contour, l.statistics.background));
-        // And away from its place, where half of it may be outside of the box.
+        // Also away from its home, with up to half of it outside the box.
         const Pose away{l.homes[0].p_m + Vec3(14.0, -9.0, 4.0) * kAngstromM,
                         quat_from_rotation_vector(Vec3(0.4, 0.2, -0.3))};
         placed = {{&l.structures[0], away}};
@@ -188,7 +188,7 @@ TEST(RealFit, numbers_are_those_of_the_definitions_within_one_percent) {
     }
 }
 
-TEST(RealFit, refinement_comes_back_from_two_angstrom_and_ten_degrees) {
+TEST(RealFit, refinement_recovers_from_two_angstrom_and_ten_degrees) {
     const auto folder = sample::em_folder();
     if (folder.empty()) GTEST_SKIP() << "the folder of real data is absent (set TACT_SHARED)";
     for (const Pair& pair : pairs()) {
@@ -208,13 +208,13 @@ TEST(RealFit, refinement_comes_back_from_two_angstrom_and_ten_degrees) {
                 return std::pair((a.p_m - b.p_m).norm() / kAngstromM, a.q.angularDistance(b.q) / kDegreeRad);
             };
             const auto [d, angle] = away(r.T_model_body, from_home.T_model_body);
-            // The top that is nearest to the file's place, wherever the climb began.
+            // The nearest maximum to the home in the file, from either start.
             EXPECT_EQ(r.end, RefineEnd::converged);
             EXPECT_LT(d, 0.1);
             EXPECT_LT(angle, 0.1);
             EXPECT_GT(r.score, r.score_start);
             EXPECT_GE(from_home.score, from_home.score_start);
-            std::printf("%-32s goal %d: %2u steps, %.4f -> %.4f; %.3f A, %.3f deg from the same top\n",
+            std::printf("%-32s goal %d: %2u steps, %.4f -> %.4f; %.3f A, %.3f deg from the same maximum\n",
                         pair.structures.front(), static_cast<int>(goal), r.iterations, r.score_start, r.score,
                         d, angle);
         }

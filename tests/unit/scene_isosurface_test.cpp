@@ -18,12 +18,12 @@ void expect_manifold(const TriangleMesh& mesh) {
     EXPECT_EQ(t.flat_triangles, 0U);
 }
 
-TEST(Isosurface, sphere_is_closed_outward_and_of_the_right_size) {
+TEST(Isosurface, sphere_is_closed_with_outward_normals_and_the_right_size) {
     const TriangleMesh mesh = isosurface(sampled(41, sphere), -0.7);
     expect_manifold(mesh);
     EXPECT_EQ(topology(mesh).euler, 2);
     EXPECT_EQ(topology(mesh).border_edges, 0U);
-    // Chords of voxels h = 0.05 lie inside by about h²/8r: 0.1 % of the radius.
+    // Chords of voxels h = 0.05 lie inside the sphere by about h²/8r: 0.1 % of the radius.
     EXPECT_NEAR(area(mesh), 4.0 * std::numbers::pi * 0.49, 0.01 * 4.0 * std::numbers::pi * 0.49);
     EXPECT_NEAR(volume(mesh), 4.0 / 3.0 * std::numbers::pi * 0.343,
                 0.006 * 4.0 / 3.0 * std::numbers::pi * 0.343);
@@ -54,11 +54,11 @@ TEST(Isosurface, vertices_follow_anisotropic_voxels_and_the_origin) {
     for (std::size_t t = 0; t < mesh.triangles(); ++t) EXPECT_GT(double_area(mesh, t).z(), 0.0);
 }
 
-TEST(Isosurface, every_one_of_the256_cells_is_a_manifold_whose_border_lies_on_its_faces) {
+TEST(Isosurface, each_of_the_256_cells_is_a_manifold) {
     for (unsigned inside = 1; inside < 255; ++inside) {
         DensityGrid grid;
         grid.size = {4, 4, 4};
-        grid.values.assign(64, -1.0F);  // padding closes what the cell leaves open
+        grid.values.assign(64, -1.0F);  // padding closes the surface around the cell
         for (unsigned c = 0; c < 8; ++c) {
             if ((inside >> c & 1U) != 0)
                 grid.values[((c >> 2U) + 1) * 16 + ((c >> 1U & 1U) + 1) * 4 + (c & 1U) + 1] = 1.0F;
@@ -70,7 +70,7 @@ TEST(Isosurface, every_one_of_the256_cells_is_a_manifold_whose_border_lies_on_it
     }
 }
 
-TEST(Isosurface, noise_gives_a_watertight_manifold_whatever_its_signs) {
+TEST(Isosurface, noise_gives_a_watertight_manifold) {
     std::mt19937 random(7);
     for (int round = 0; round < 20; ++round) {
         DensityGrid grid;
@@ -78,7 +78,7 @@ TEST(Isosurface, noise_gives_a_watertight_manifold_whatever_its_signs) {
         for (std::size_t i = 0; i < grid.count(); ++i) {
             const std::size_t x = i % 12, y = i / 12 % 11, z = i / 132;
             const bool rim = x == 0 || y == 0 || z == 0 || x == 11 || y == 10 || z == 9;
-            // Few distinct values, so that many samples lie exactly at the level.
+            // Few distinct values put many samples exactly on the level.
             grid.values.push_back(rim ? -2.0F : static_cast<float>(static_cast<int>(random() % 5) - 2));
         }
         const TriangleMesh mesh = isosurface(grid, 0.0);
@@ -88,7 +88,7 @@ TEST(Isosurface, noise_gives_a_watertight_manifold_whatever_its_signs) {
     }
 }
 
-TEST(Isosurface, stays_open_where_it_leaves_the_box) {
+TEST(Isosurface, stays_open_at_the_border_of_the_box) {
     const TriangleMesh mesh =
         isosurface(sampled(21, [](const Vec3& p) { return -p.z() - 0.2 * p.x(); }), 0.0123);
     expect_manifold(mesh);
@@ -96,7 +96,7 @@ TEST(Isosurface, stays_open_where_it_leaves_the_box) {
     EXPECT_GT(topology(mesh).border_edges, 0U);
 }
 
-TEST(Isosurface, survives_values_that_are_not_numbers_and_refuses_what_makes_no_sense) {
+TEST(Isosurface, handles_non_finite_values_and_refuses_invalid_grids) {
     DensityGrid grid = sampled(9, sphere);
     std::mt19937 random(3);
     for (float& value : grid.values) {

@@ -1,4 +1,4 @@
-// The table of scene kinds: complete, without duplicates, and what it demands of a scene is checked.
+// The table of scene kinds: complete, without duplicates, and its required sections are checked.
 #include "ipc/scene/file/scene_kinds.hpp"
 
 #include <gtest/gtest.h>
@@ -11,7 +11,7 @@
 namespace tact {
 namespace {
 
-TEST(SceneKinds, every_row_has_names_and_raw_files_of_its_own) {
+TEST(SceneKinds, every_row_has_unique_names_and_raw_files) {
     std::set<std::string> names, commands, types, endings;
     std::size_t folders = 0;
     for (const SceneKindRow& row : scene_kinds()) {
@@ -31,7 +31,7 @@ TEST(SceneKinds, every_row_has_names_and_raw_files_of_its_own) {
             }
         }
     }
-    EXPECT_LE(folders, 1U) << "a folder can stand for one type of raw file only";
+    EXPECT_LE(folders, 1U) << "only one type of raw file may be a folder";
     EXPECT_EQ(find_scene_kind(static_cast<SceneKind>(0)), nullptr);
     EXPECT_STREQ(scene_kind_text(static_cast<SceneKind>(4'000'000'000U)), "unknown");
 }

@@ -1,4 +1,4 @@
-// The contour filter against Gaussians and polynomials, whose Laplacians are known.
+// The contour filter against Gaussians and polynomials with known Laplacians.
 #include "ipc/scene/density/laplacian_map.hpp"
 
 #include <gtest/gtest.h>
@@ -31,9 +31,9 @@ DensityGrid filled(const std::array<std::uint32_t, 3>& size, const Vec3& spacing
     return grid;
 }
 
-// A Gaussian of sigma s filtered with one of sigma f is one of r^2 = s^2 + f^2 and height (s / r)^3, and the
-// Laplacian of exp(-d^2 / 2 r^2) is (d^2 / r^4 - 3 / r^2) of it.
-TEST(LaplacianMap, of_a_gaussian_is_the_analytic_one) {
+// A Gaussian of sigma s filtered with sigma f is a Gaussian with r^2 = s^2 + f^2 and height (s / r)^3; the Laplacian
+// of g = exp(-d^2 / 2 r^2) is (d^2 / r^4 - 3 / r^2) g.
+TEST(LaplacianMap, of_a_gaussian_matches_the_closed_form) {
     const double resolution_m = 20.0 * kA, f = kSigmaPerResolution * resolution_m, s = 6.0 * kA;
     const double r2 = s * s + f * f, height = std::pow(s * s / r2, 1.5);
     const std::array<std::uint32_t, 3> size{44, 40, 36};
@@ -59,7 +59,7 @@ TEST(LaplacianMap, of_a_gaussian_is_the_analytic_one) {
     EXPECT_EQ(got.origin_m, grid.origin_m);
 }
 
-TEST(LaplacianMap, is_positive_on_a_hump_and_negative_just_outside_of_it) {
+TEST(LaplacianMap, is_positive_on_a_hump_and_negative_around_it) {
     const auto blob = [](const Vec3& p) {
         return std::exp(-(p - Vec3::Constant(45.0 * kA)).squaredNorm() / (2.0 * 64.0 * kA * kA));
     };
@@ -81,10 +81,10 @@ TEST(LaplacianMap, is_positive_on_a_hump_and_negative_just_outside_of_it) {
         1e-3 * static_cast<double>(got.count()));
 }
 
-TEST(LaplacianMap, of_a_quadratic_is_constant_and_of_what_is_flat_or_linear_nothing) {
+TEST(LaplacianMap, of_a_quadratic_is_constant_and_of_a_linear_function_zero) {
     const double resolution_m = 12.0 * kA, f = kSigmaPerResolution * resolution_m;
     for (const double voxel_a : {0.9, 2.0, 4.0, 8.0}) {
-        // Far enough from the faces, where the map ends.
+        // Far enough from the faces of the map.
         const std::array<std::uint32_t, 3> size{45, 45, 45};
         const auto middle = [&](const DensityGrid& g) { return static_cast<double>(g.at(22, 22, 22)); };
         const double unit = voxel_a * kA;
@@ -95,7 +95,7 @@ TEST(LaplacianMap, of_a_quadratic_is_constant_and_of_what_is_flat_or_linear_noth
         const DensityGrid bowl = filled(size, Vec3::Constant(unit), [&](const Vec3& p) {
             return (p.x() * p.x() + 2.0 * p.y() * p.y() - 0.5 * p.z() * p.z()) / (1000.0 * unit * unit);
         });
-        // A filter never is narrower than half a voxel.
+        // A filter is at least half a voxel wide.
         const double width = std::max(f, 0.5 * unit);
         const double expected = -width * width * 5.0 / (1000.0 * unit * unit);
         EXPECT_NEAR(middle(laplacian_map(bowl, 0.0, resolution_m)), expected,
@@ -103,7 +103,7 @@ TEST(LaplacianMap, of_a_quadratic_is_constant_and_of_what_is_flat_or_linear_noth
     }
 }
 
-TEST(LaplacianMap, refuses_a_resolution_that_is_none) {
+TEST(LaplacianMap, refuses_an_invalid_resolution) {
     const DensityGrid grid = filled({8, 8, 8}, Vec3::Constant(kA), [](const Vec3&) { return 1.0; });
     for (const double bad :
          {0.0, -1.0, std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()}) {

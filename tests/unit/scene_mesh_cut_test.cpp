@@ -16,7 +16,7 @@
 namespace {
 std::size_t allocations = 0;
 }
-// Every allocation of this program is counted. Not inlined: the compiler would pair new with free and warn.
+// Counts every allocation of this program. Not inlined: otherwise the compiler pairs new with free and warns.
 [[gnu::noinline]] void* operator new(std::size_t size) {
     ++allocations;
     if (void* p = std::malloc(size == 0 ? 1 : size)) return p;
@@ -41,7 +41,7 @@ const ProgressiveMesh& torus_mesh() {
     return mesh;
 }
 
-// The slow reference: contraction by contraction from the original, as the definition says.
+// The slow reference: contracts one vertex at a time from the original, by definition.
 struct Reference {
     std::vector<PackedVertex> vertex;
     std::vector<std::uint32_t> index;
@@ -91,7 +91,7 @@ bool same(const MeshCut& a, const MeshCut& b) {
            drawn(a) == drawn(b);
 }
 
-// What a viewer has that uploads the changes alone.
+// Buffers of a viewer that uploads only the changes.
 struct Mirror {
     explicit Mirror(const MeshCut& cut)
         : vertex(cut.vertex().size()), index(cut.index().size(), UINT32_MAX) {}
@@ -114,7 +114,7 @@ struct Mirror {
     std::vector<std::uint32_t> index;
 };
 
-// Triangles at random and contractions of any two vertices: no surface, no edges between what is contracted.
+// Random triangles and contractions of any two vertices: no surface, and contracted vertices need no edge.
 ProgressiveMeshData soup(std::uint32_t vertices, std::uint32_t base, std::uint32_t triangle_count,
                          std::uint64_t seed) {
     SeededRandom random(seed);
@@ -152,7 +152,7 @@ ProgressiveMeshData soup(std::uint32_t vertices, std::uint32_t base, std::uint32
     return d;
 }
 
-TEST(MeshCut, any_walk_ends_in_the_state_that_contraction_by_contraction_gives) {
+TEST(MeshCut, any_sequence_of_levels_ends_in_the_state_of_the_reference) {
     const ProgressiveMeshData torus_15 = make_progressive(isosurface(sampled(15, torus), -0.25));
     const ProgressiveMeshData any = soup(300, 7, 500, 1);
     for (const ProgressiveMeshData& data : {torus_15, any}) {
@@ -165,7 +165,7 @@ TEST(MeshCut, any_walk_ends_in_the_state_that_contraction_by_contraction_gives) 
             levels.resize(std::min<std::size_t>(levels.size(), 12));  // the reference is slow
             for (const std::uint32_t level : levels) {
                 RC_ASSERT(cut.set_vertices(level) == level);
-                // A near neighbour too, so that single steps are walked.
+                // A near level as well, so that single steps are used.
                 RC_ASSERT(cut.set_vertices(std::max(level, mesh.vertices_min() + 5) - 5) <= level);
                 RC_ASSERT(same(cut, reference(data, cut.vertices())));
                 mirror.upload(cut);
@@ -175,8 +175,8 @@ TEST(MeshCut, any_walk_ends_in_the_state_that_contraction_by_contraction_gives) 
     }
 }
 
-TEST(MeshCut, single_steps_and_rebuilds_agree_bit_for_bit) {
-    // Ten thousand triangles are three patches; the other has no surface.
+TEST(MeshCut, single_steps_and_rebuilds_agree_exactly) {
+    // Ten thousand triangles form three patches; the second mesh is not a surface.
     for (const ProgressiveMesh& mesh :
          {ProgressiveMesh(torus_data()), ProgressiveMesh(soup(2500, 3, 10000, 2))}) {
         MeshCut up(mesh), down(mesh), jumps(mesh);
@@ -198,13 +198,13 @@ TEST(MeshCut, single_steps_and_rebuilds_agree_bit_for_bit) {
     }
 }
 
-TEST(MeshCut, what_is_uploaded_is_what_changed) {
+TEST(MeshCut, uploads_cover_only_changes) {
     const ProgressiveMesh& mesh = torus_mesh();
     MeshCut cut(mesh);
     Mirror mirror(cut);
     cut.set_vertices(mesh.vertices());
     mirror.upload(cut);
-    // Longest stretch of a range that did not change: two blocks and the gap that is joined.
+    // Longest unchanged stretch of a range: two blocks and a joined gap.
     const auto longest_idle = [](const auto& before, const auto& now, std::span<const MeshRange> ranges) {
         std::size_t longest = 0;
         for (const MeshRange r : ranges) {
@@ -223,7 +223,7 @@ TEST(MeshCut, what_is_uploaded_is_what_changed) {
         const bool same_lists = std::equal(draws.begin(), draws.end(), cut.draws().begin());
         const Mirror before = mirror;
         const MeshChanges changes = cut.changes();
-        if (same_lists) {  // a patch that changes lists is written anew
+        if (same_lists) {  // a patch that changes lists is rewritten
             ++steps;
             ASSERT_LE(longest_idle(before.vertex, cut.vertex(), changes.vertex), 16U + 16U + 32U);
             ASSERT_LE(longest_idle(before.index, cut.index(), changes.index), 64U + 64U + 128U);
@@ -239,7 +239,7 @@ TEST(MeshCut, what_is_uploaded_is_what_changed) {
     EXPECT_GT(steps, 500U);
 }
 
-TEST(MeshCut, a_far_goal_is_reached_within_the_budget_of_each_call) {
+TEST(MeshCut, a_far_goal_is_reached_by_calls_within_their_budget) {
     const ProgressiveMesh& mesh = torus_mesh();
     MeshCut cut(mesh), jumps(mesh);
     const double enough_ns = 1e12;
@@ -258,7 +258,7 @@ TEST(MeshCut, a_far_goal_is_reached_within_the_budget_of_each_call) {
     EXPECT_EQ(cut.whole_ns(cut.vertices()), 0.0);
     const double whole_ns = cut.whole_ns(0);
     EXPECT_GT(whole_ns, 0.0);
-    EXPECT_NE(cut.approach(0, 0.99 * whole_ns), mesh.vertices_min());  // steps, which are dearer
+    EXPECT_NE(cut.approach(0, 0.99 * whole_ns), mesh.vertices_min());  // single steps, which cost more
     EXPECT_EQ(cut.approach(0, enough_ns), mesh.vertices_min());
     EXPECT_EQ(cut.approach(UINT32_MAX, std::nan("")), mesh.vertices_min() + MeshCut::kStepsMin);
 }
@@ -303,7 +303,7 @@ TEST(MeshCut, every_level_is_a_valid_surface_and_the_finest_is_the_original) {
     }
     cut.set_vertices(UINT32_MAX);
     ASSERT_EQ(cut.vertices(), mesh.vertices());
-    // The same triangles at the same places, in another order.
+    // The same triangles at the same positions, in another order.
     const auto places = [](auto&& corner, std::size_t count) {
         std::multiset<std::array<std::array<float, 3>, 3>> set;
         for (std::size_t t = 0; t < count; ++t)
@@ -332,14 +332,14 @@ TEST(MeshCut, normals_are_unit_vectors_that_point_outward_at_every_level) {
             const Vec3 n(part[0], part[1], part[2]);
             const Vec3 p(v.position_m[0], v.position_m[1], v.position_m[2]);
             const Vec3 ring = Vec3(p.x(), p.y(), 0.0).normalized() * 0.6;
-            EXPECT_NEAR(n.norm(), 1.0, 2e-3);  // half of a 511th in three parts
+            EXPECT_NEAR(n.norm(), 1.0, 2e-3);  // half of 1/511 in three components
             worst = std::min(worst, n.dot((p - ring).normalized()));
         }
         EXPECT_GT(worst, level < 500 ? 0.9 : 0.97) << level;
     }
 }
 
-TEST(MeshCut, walking_does_not_allocate) {
+TEST(MeshCut, changing_levels_does_not_allocate) {
     const ProgressiveMesh& mesh = torus_mesh();
     MeshCut cut(mesh);
     const std::size_t before = allocations;

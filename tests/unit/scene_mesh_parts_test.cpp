@@ -1,4 +1,4 @@
-// What MeshCut is made of: kernels, marks of what changed, the order of triangles.
+// The parts of MeshCut: kernels, marks of changes, triangle order.
 #include <gtest/gtest.h>
 #include <rapidcheck.h>
 
@@ -41,7 +41,7 @@ TEST(MeshKernels, all_instruction_sets_give_the_same) {
             fast.look_up(corner.data(), size, vertex.data(), other.data(), false);
             ASSERT_EQ(to, other);
             alignas(64) std::array<std::uint32_t, 301> past{};
-            for (const std::size_t first : {0U, 1U}) {  // a line of the cache, and not
+            for (const std::size_t first : {0U, 1U}) {  // aligned to a cache line and not
                 fast.look_up(corner.data(), size, vertex.data(), &past[first], true);
                 ASSERT_TRUE(std::equal(to.begin(), to.end(), &past[first]));
             }
@@ -58,7 +58,7 @@ TEST(MeshKernels, all_instruction_sets_give_the_same) {
     }
 }
 
-TEST(ChangedBlocks, report_what_was_marked_and_join_small_gaps) {
+TEST(ChangedBlocks, report_marked_blocks_and_join_small_gaps) {
     rc::check([] {
         const auto elements = *rc::gen::inRange<std::size_t>(1, 3000);
         ChangedBlocks changed(elements, 2, 3);
@@ -81,7 +81,7 @@ TEST(ChangedBlocks, report_what_was_marked_and_join_small_gaps) {
             std::size_t end = 0;
             for (const MeshRange r : changed.take()) {
                 RC_ASSERT(r.first % 4 == 0U && r.count > 0U && r.first + r.count <= elements);
-                RC_ASSERT(end == 0 || r.first > end + 3 * 4);  // or they would be one
+                RC_ASSERT(end == 0 || r.first > end + 3 * 4);  // otherwise they would be joined
                 end = r.first + r.count;
                 RC_ASSERT(block[r.first / 4] && block[(end - 1) / 4]);
                 for (std::size_t k = r.first / 4; 4 * k < end; ++k) reported[k] = true;
@@ -96,7 +96,7 @@ TEST(ChangedBlocks, report_what_was_marked_and_join_small_gaps) {
     });
 }
 
-TEST(CacheOrder, holds_every_triangle_once_whatever_they_are) {
+TEST(CacheOrder, holds_every_triangle_once) {
     CacheOrder order;
     rc::check([&] {
         const auto vertices = *rc::gen::inRange<std::size_t>(1, 60);

@@ -1,4 +1,4 @@
-// Section MESH: what is written is read again, what is damaged is refused or harmless.
+// Section MESH: data reads back unchanged; damaged data is refused or harmless.
 #include "ipc/scene/mesh/progressive_mesh.hpp"
 
 #include <gtest/gtest.h>
@@ -18,7 +18,7 @@ namespace {
 
 ProgressiveMeshData small_data() { return make_progressive(isosurface(sampled(13, torus), -0.25)); }
 
-TEST(ProgressiveMesh, survives_the_file_unchanged) {
+TEST(ProgressiveMesh, reads_back_from_a_file_unchanged) {
     const ProgressiveMeshData data = small_data();
     SceneWriter out;
     write_mesh(out, 0, data);
@@ -32,7 +32,7 @@ TEST(ProgressiveMesh, survives_the_file_unchanged) {
     EXPECT_EQ(back.triangle_count, data.triangle_count);
 }
 
-// Whatever is accepted can be walked: the sanitizers watch.
+// Accepted data can be traversed; the sanitizers check the access.
 void check(const MeshCut& cut) {
     for (const MeshRange draw : cut.draws())
         for (const std::uint32_t v : cut.index().subspan(draw.first, draw.count))
@@ -67,7 +67,7 @@ TEST(ProgressiveMesh, refuses_each_kind_of_damage) {
     damaged([](ProgressiveMeshData& d) { d.triangle_count[2] = UINT32_MAX; });
     damaged([](ProgressiveMeshData& d) { d.triangle_count.back() -= 1; });
     damaged([](ProgressiveMeshData& d) { d.triangle_count.front() = d.triangle_count.back(); });
-    // Gone one level before its corners meet.
+    // Removed one level before its corners meet.
     damaged([](ProgressiveMeshData& d) {
         const auto last = static_cast<std::ptrdiff_t>(d.triangle_count.size() - 1);
         const auto begin = d.triangle_count.begin();
@@ -115,8 +115,8 @@ TEST(ProgressiveMesh, random_damage_is_refused_or_harmless) {
     });
 }
 
-TEST(ProgressiveMesh, chains_that_would_take_quadratic_work_are_refused) {
-    // Every vertex goes into the one before it and every triangle hangs at the end of the chain.
+TEST(ProgressiveMesh, chains_with_quadratic_cost_are_refused) {
+    // A chain: each vertex merges into the one before it, and each triangle uses the end of the chain.
     ProgressiveMeshData d;
     const std::uint32_t n = 20000;
     d.base_vertices = 3;

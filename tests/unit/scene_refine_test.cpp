@@ -1,4 +1,4 @@
-// The refinement on maps made from the structure itself, where the best place is known.
+// The refinement on maps made from the structure itself, with a known best pose.
 #include "ipc/scene/fit/refine.hpp"
 
 #include <gtest/gtest.h>
@@ -18,7 +18,7 @@ constexpr double kResolutionM = 8.0 * kA;
 constexpr RefineGoal kGoals[] = {RefineGoal::mean_density, RefineGoal::correlation_zero,
                                  RefineGoal::correlation_mean};
 
-// A lopsided cloud of carbons: no axis of symmetry, three unlike lengths.
+// An asymmetric cloud of carbon atoms: no symmetry axis, three different extents.
 Structure cloud() {
     Structure s;
     s.name = "cloud";
@@ -97,7 +97,7 @@ double mean_density(const Pose& pose) {
     return sum;
 }
 
-TEST(Refine, returns_to_the_top_from_two_angstrom_and_ten_degrees) {
+TEST(Refine, returns_to_the_maximum_from_two_angstrom_and_ten_degrees) {
     for (const RefineGoal goal : kGoals) {
         SeededRandom random(11);
         for (int trial = 0; trial < 8; ++trial) {
@@ -114,7 +114,7 @@ TEST(Refine, returns_to_the_top_from_two_angstrom_and_ten_degrees) {
     }
 }
 
-TEST(Refine, where_it_ends_every_way_leads_down) {
+TEST(Refine, ends_at_a_local_maximum) {
     SeededRandom random(12);
     const Pose start = displaced(kTruth, 3.0 * kA, 12.0 * kDegreeRad, random);
     const RefineResult r = refine(map(), scene().structure, start);
@@ -132,7 +132,7 @@ TEST(Refine, where_it_ends_every_way_leads_down) {
     }
 }
 
-TEST(Refine, never_lowers_the_score_wherever_it_starts) {
+TEST(Refine, never_lowers_the_score_from_any_start) {
     SeededRandom random(13);
     for (const RefineGoal goal : kGoals) {
         for (int trial = 0; trial < 12; ++trial) {
@@ -151,13 +151,13 @@ TEST(Refine, never_lowers_the_score_wherever_it_starts) {
     }
 }
 
-TEST(Refine, does_not_leap_from_the_hill_it_stands_on) {
+TEST(Refine, keeps_its_step_limit) {
     SeededRandom random(14);
     const Pose start = displaced(kTruth, 2.0 * kA, 10.0 * kDegreeRad, random);
     RefineSettings s = settings(RefineGoal::mean_density);
     s.step_m_max = 0.1 * kA;
     Pose last = start;
-    for (std::uint32_t n = 1; n <= 10; ++n) {  // the n-th iteration, seen from outside
+    for (std::uint32_t n = 1; n <= 10; ++n) {  // the n-th iteration, as seen by the caller
         s.iterations_max = n;
         const RefineResult r = refine(map(), scene().structure, start, s);
         EXPECT_LE((r.T_model_body.p_m - last.p_m).norm(), 0.1 * kA * 1.0001);
@@ -188,7 +188,7 @@ TEST(Refine, repeats_exactly_and_can_be_cancelled) {
     EXPECT_GT(c.score, c.score_start);
 }
 
-TEST(Refine, where_there_is_no_density_nothing_moves) {
+TEST(Refine, without_density_nothing_moves) {
     const Pose far{Vec3(0.0, 1e-6, 0.0), Quat::Identity()};
     for (const RefineGoal goal : kGoals) {
         const RefineResult r = refine(map(), scene().structure, far, settings(goal));
@@ -197,7 +197,7 @@ TEST(Refine, where_there_is_no_density_nothing_moves) {
     }
 }
 
-TEST(Refine, a_rod_and_a_single_atom_are_structures_too) {
+TEST(Refine, handles_a_rod_and_a_single_atom) {
     Structure rod = scene().structure;
     for (std::size_t i = 0; i < rod.size(); ++i) rod.y_m[i] = rod.z_m[i] = 0.0F;
     Structure atom = scene().structure;
@@ -214,7 +214,7 @@ TEST(Refine, a_rod_and_a_single_atom_are_structures_too) {
     }
 }
 
-TEST(Refine, what_cannot_be_is_refused) {
+TEST(Refine, invalid_input_is_refused) {
     EXPECT_THROW(refine(map(), scene().structure, {Vec3(NAN, 0, 0), Quat::Identity()}), StartupError);
     EXPECT_THROW(refine(map(), scene().structure, {Vec3::Zero(), Quat(0, 0, 0, 0)}), StartupError);
     RefineSettings s;

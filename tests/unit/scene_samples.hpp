@@ -84,7 +84,7 @@ inline SceneWriter scene(const SceneMeta& m = meta(), const Structure& s = struc
     return out;
 }
 
-// What a call throws as StartupError; empty when it does not.
+// Returns the text of a call's StartupError, or "" without one.
 template <class Call>
 std::string error_of(Call&& call) {
     try {

@@ -1,4 +1,4 @@
-// The simulated map against every atom on every voxel, in double precision and without a cut.
+// The simulated map against a full sum over atoms and voxels, in double precision without cut-off.
 #include "ipc/scene/density/simulated_map.hpp"
 
 #include <gtest/gtest.h>
@@ -23,7 +23,8 @@ Structure cloud(std::size_t count, unsigned seed) {
         s.y_m.push_back(static_cast<float>(normal(random)));
         s.z_m.push_back(static_cast<float>(normal(random)));
         s.mass_fraction.push_back(1.0F / static_cast<float>(count));
-        s.element.push_back(static_cast<std::uint8_t>(i % 3 == 0 ? 0 : 5 + i % 4));  // 0 weighs its 13 u
+        s.element.push_back(
+            static_cast<std::uint8_t>(i % 3 == 0 ? 0 : 5 + i % 4));  // 0: weighted by its mass of 13 u
     }
     return s;
 }
@@ -69,11 +70,12 @@ TEST(SimulatedMap, is_the_sum_of_gaussians_over_all_atoms) {
                 }
             }
         }
-        EXPECT_LT(worst, 1e-3 * most) << resolution_a;  // the cut is 3e-4 of an atom's height, and atoms add
+        EXPECT_LT(worst, 1e-3 * most)
+            << resolution_a;  // the cut-off is 3e-4 of an atom's height, and atoms add up
     }
 }
 
-TEST(SimulatedMap, a_box_holds_the_same_numbers_as_the_whole_and_nothing_lies_outside_of_the_reached_one) {
+TEST(SimulatedMap, a_box_matches_the_whole_map_and_the_rest_is_zero) {
     const Structure s = cloud(30, 2);
     const DensityGrid grid = box_of({60, 50, 40}, Vec3(2.0, 2.0, 2.0) * kA);
     const PlacedStructure placed{&s, kTilted};
@@ -98,7 +100,7 @@ TEST(SimulatedMap, a_box_holds_the_same_numbers_as_the_whole_and_nothing_lies_ou
     for (const float v : rest) ASSERT_EQ(v, 0.0F);
 }
 
-TEST(SimulatedMap, what_was_added_can_be_taken_away_again) {
+TEST(SimulatedMap, an_added_structure_can_be_subtracted_again) {
     const Structure s = cloud(30, 3);
     const DensityGrid grid = box_of({30, 30, 30}, Vec3(2.0, 2.0, 2.0) * kA);
     const PlacedStructure placed{&s, kTilted};
@@ -108,7 +110,7 @@ TEST(SimulatedMap, what_was_added_can_be_taken_away_again) {
     for (const float v : map) ASSERT_NEAR(v, 1.0F, 1e-4F);
 }
 
-TEST(SimulatedMap, off_the_grid_there_is_nothing) {
+TEST(SimulatedMap, off_the_grid_the_map_is_zero) {
     const Structure s = cloud(10, 4);
     const DensityGrid grid = box_of({10, 10, 10}, Vec3(2.0, 2.0, 2.0) * kA);
     for (const double far : {1e-6, -1e300, std::nan(""), HUGE_VAL}) {

@@ -54,7 +54,7 @@ double norm_above(const DensityGrid& grid, double background) {
     return std::sqrt(sum);
 }
 
-TEST(SubtractedMap, of_exactly_what_the_map_holds_is_the_background) {
+TEST(SubtractedMap, of_all_contents_leaves_the_background) {
     const Scene s(30.0);
     const PlacedStructure both[] = {s.placed_left, s.placed_right};
     const SubtractedMap out = subtract_placed(s.grid, -3.0, both, kResolutionM);
@@ -64,8 +64,8 @@ TEST(SubtractedMap, of_exactly_what_the_map_holds_is_the_background) {
     EXPECT_LT(norm_above(out.grid, -3.0), 1e-4 * norm_above(s.grid, -3.0));
 }
 
-TEST(SubtractedMap, leaves_the_one_that_was_not_placed) {
-    const Scene s(50.0);  // do not overlap
+TEST(SubtractedMap, leaves_the_structure_that_was_not_placed) {
+    const Scene s(50.0);  // without overlap
     const SubtractedMap out = subtract_placed(s.grid, -3.0, {&s.placed_left, 1}, kResolutionM);
     EXPECT_NEAR(out.scale, 0.25, 1e-3);
     const std::vector<float> rest = simulated_map(s.grid, {&s.placed_right, 1}, kResolutionM);
@@ -76,16 +76,16 @@ TEST(SubtractedMap, leaves_the_one_that_was_not_placed) {
     }
 }
 
-TEST(SubtractedMap, a_neighbour_that_overlaps_changes_the_scale_only_a_little) {
+TEST(SubtractedMap, an_overlapping_structure_changes_the_scale_only_slightly) {
     const Scene s(24.0);  // in contact
     const SubtractedMap out = subtract_placed(s.grid, -3.0, {&s.placed_left, 1}, kResolutionM);
     EXPECT_GT(out.scale, 0.25);
     EXPECT_LT(out.scale, 0.30);
 }
 
-TEST(SubtractedMap, digs_no_holes) {
+TEST(SubtractedMap, never_lowers_the_map_below_the_background) {
     Scene s(50.0);
-    // Half of the left one is missing in the map, and the solvent is uneven.
+    // Half of the left structure is missing in the map, and the solvent is uneven.
     for (std::uint32_t z = 0; z < s.grid.size[2]; ++z) {
         for (std::uint32_t y = 0; y < s.grid.size[1]; ++y) {
             for (std::uint32_t x = 0; x < s.grid.size[0]; ++x) {
@@ -101,13 +101,13 @@ TEST(SubtractedMap, digs_no_holes) {
     }
 }
 
-TEST(SubtractedMap, with_nothing_placed_or_nothing_to_explain_the_map_stays) {
+TEST(SubtractedMap, without_overlap_the_map_is_unchanged) {
     const Scene s(30.0);
     EXPECT_EQ(subtract_placed(s.grid, -3.0, {}, kResolutionM).grid.values, s.grid.values);
     PlacedStructure away = s.placed_left;
     away.T_model_body.p_m.x() = 1e-6;
     EXPECT_EQ(subtract_placed(s.grid, -3.0, {&away, 1}, kResolutionM).grid.values, s.grid.values);
-    // A map that is darker where the structure is: no negative scale.
+    // A map that is darker at the structure gets no negative scale.
     DensityGrid dark = s.grid;
     for (float& v : dark.values) v = -6.0F - v;
     const SubtractedMap out = subtract_placed(dark, -3.0, {&s.placed_left, 1}, kResolutionM);

@@ -14,7 +14,7 @@
 namespace tact {
 namespace {
 
-// A scene in memory and the surface in it.
+// A scene in memory and its surface.
 struct Held {
     std::vector<std::byte> bytes;
     std::unique_ptr<SceneFile> file;
@@ -31,7 +31,7 @@ Held held(const SurfaceData& data) {
     return h;
 }
 
-// Triangles anywhere, some of them needles, points or repeated.
+// Random triangles; some are needles, points or repeated.
 TriangleMesh soup(std::uint32_t count, std::uint64_t seed) {
     SeededRandom random(seed);
     TriangleMesh mesh;
@@ -53,7 +53,7 @@ TriangleMesh octahedron() {
     return mesh;
 }
 
-RC_GTEST_PROP(SurfaceMesh, the_nearest_point_is_that_of_all_triangles_tried, ()) {
+RC_GTEST_PROP(SurfaceMesh, the_nearest_point_matches_brute_force, ()) {
     const auto count = *rc::gen::inRange<std::uint32_t>(1, 400);
     const auto seed = *rc::gen::arbitrary<std::uint32_t>();
     const Held h = held(build_surface(soup(count, seed)));
@@ -71,7 +71,7 @@ RC_GTEST_PROP(SurfaceMesh, the_nearest_point_is_that_of_all_triangles_tried, ())
     }
 }
 
-RC_GTEST_PROP(SurfaceMesh, the_leaves_near_hold_every_triangle_in_the_ball, ()) {
+RC_GTEST_PROP(SurfaceMesh, the_nearby_leaves_contain_every_triangle_in_the_ball, ()) {
     const auto count = *rc::gen::inRange<std::uint32_t>(1, 300);
     const auto seed = *rc::gen::arbitrary<std::uint32_t>();
     const Held h = held(build_surface(soup(count, seed)));
@@ -100,7 +100,7 @@ RC_GTEST_PROP(SurfaceMesh, the_leaves_near_hold_every_triangle_in_the_ball, ()) 
     }
 }
 
-RC_GTEST_PROP(SurfaceMesh, sixteen_triangles_looked_at_together_agree_with_one_at_a_time, ()) {
+RC_GTEST_PROP(SurfaceMesh, batch_queries_agree_with_single_queries, ()) {
     const Held h = held(build_surface(soup(kLooks, *rc::gen::arbitrary<std::uint32_t>())));
     SeededRandom random(*rc::gen::arbitrary<std::uint32_t>());
     std::array<std::uint32_t, kLooks> triangle;
@@ -159,7 +159,7 @@ TEST(SurfaceMesh, only_an_oriented_surface_without_a_border_is_closed) {
     EXPECT_FALSE(build_surface(mesh).closed);
 }
 
-TEST(SurfaceMesh, normals_are_kept_to_a_hundredth_of_a_degree) {
+TEST(SurfaceMesh, normals_are_accurate_to_a_hundredth_of_a_degree) {
     SeededRandom random(5);
     for (int i = 0; i < 1000; ++i) {
         const Vec3 n = random.direction();
@@ -167,12 +167,12 @@ TEST(SurfaceMesh, normals_are_kept_to_a_hundredth_of_a_degree) {
     }
 }
 
-TEST(SurfaceMesh, a_search_without_visits_says_so) {
+TEST(SurfaceMesh, a_search_out_of_visits_reports_it) {
     const Held h = held(build_surface(soup(300, 1)));
     EXPECT_TRUE(h.mesh.nearest(Vec3(0, 0, 0), 10.0, SurfacePoint::kNone, 3).exhausted);
 }
 
-TEST(SurfaceMesh, every_wrong_index_range_and_box_is_refused) {
+TEST(SurfaceMesh, every_invalid_index_range_and_box_is_refused) {
     const SurfaceData good = build_surface(soup(40, 2));
     const auto refused = [&](auto&& spoil) {
         SurfaceData bad = good;
@@ -183,7 +183,7 @@ TEST(SurfaceMesh, every_wrong_index_range_and_box_is_refused) {
     refused([](SurfaceData& d) { d.triangle[5] = 4000; });
     refused([](SurfaceData& d) { d.triangle.resize(d.triangle.size() - 3); });
     refused([](SurfaceData& d) { d.position_m[7] = std::numeric_limits<float>::quiet_NaN(); });
-    refused([](SurfaceData& d) { d.position_m[7] = 50.0F; });  // out of its box
+    refused([](SurfaceData& d) { d.position_m[7] = 50.0F; });  // outside its box
     refused([](SurfaceData& d) { d.normal.resize(d.normal.size() / 2); });
     refused([](SurfaceData& d) { d.node[0].child[0] = 0; });
     refused([](SurfaceData& d) { d.node[0].child[1] = d.node[0].child[0]; });
@@ -201,7 +201,7 @@ TEST(SurfaceMesh, every_wrong_index_range_and_box_is_refused) {
     refused([](SurfaceData& d) { d = {}; });
 }
 
-TEST(SurfaceMesh, a_mesh_that_is_none_is_refused) {
+TEST(SurfaceMesh, an_invalid_mesh_is_refused) {
     EXPECT_THROW((void)build_surface({}), StartupError);
     TriangleMesh mesh = octahedron();
     mesh.triangle[4] = 6;

@@ -1,4 +1,4 @@
-// The stages between a pose and a force, each called by itself: exchange of models, model, shape, safety, actuate.
+// Stages between pose and force, each tested alone: model exchange, model, shape, safety, actuate.
 #include <gtest/gtest.h>
 
 #include "rt/servo/model_exchange.hpp"
@@ -27,7 +27,7 @@ TEST(ModelExchange, another_model_enters_with_a_reset_and_the_old_one_goes_back)
     delete fresh;
 }
 
-// Remembers how it was driven.
+// Keeps its last drive input.
 class DrivenModel final : public ForceModel {
 public:
     ToolDrive driven;
@@ -100,7 +100,7 @@ TEST(StageModel, a_line_that_cannot_be_read_switches_nothing_on) {
         servo::step_models(f.c, f.settings, f.io);
         return model.driven.on;
     };
-    EXPECT_FALSE(on());  // none are fitted
+    EXPECT_FALSE(on());  // no safety lines
     f.c.lines.fitted = true;
     EXPECT_TRUE(on());
     f.c.lines.age = f.settings.lines_age_max + microseconds(1);
@@ -162,7 +162,7 @@ TEST(StageSafety, armed_with_a_hand_the_force_ramps_in) {
     EXPECT_NEAR(before_n, 1.0, 1e-9);
 }
 
-TEST(StageSafety, a_force_that_is_no_number_is_a_fault_with_a_snapshot_and_zero_force) {
+TEST(StageSafety, a_force_that_is_not_finite_is_a_fault_with_a_snapshot_and_zero_force) {
     CycleFixture f;
     f.c.run.state = RunState::active;
     f.c.hand[0].wanted_world.force_n = Vec3::Constant(std::numeric_limits<double>::quiet_NaN());

@@ -1,5 +1,8 @@
-// The stages of a cycle up to the model, each called by itself: wake, orders, lines, sense, pose.
+// Stages before the model, each tested alone: wake, orders, lines, sense, pose.
 #include <gtest/gtest.h>
+
+#include <utility>
+#include <vector>
 
 #include "rt/servo/stage_lines.hpp"
 #include "rt/servo/stage_orders.hpp"
@@ -14,7 +17,7 @@ namespace {
 using std::chrono::microseconds;
 using std::chrono::milliseconds;
 
-TEST(StageWake, a_cycle_begins_at_its_instant_and_one_reading_of_the_clock_is_kept) {
+TEST(StageWake, a_cycle_begins_at_its_planned_time_with_one_clock_reading) {
     CycleFixture f;
     const Instant planned = f.c.pacer.planned() + milliseconds(1);
     f.c.pacer.restart(planned);
@@ -23,17 +26,17 @@ TEST(StageWake, a_cycle_begins_at_its_instant_and_one_reading_of_the_clock_is_ke
     EXPECT_EQ(f.c.lateness, Duration{0});
     EXPECT_EQ(f.c.cycle, 1U);
     EXPECT_EQ(f.c.step, 1U);
-    EXPECT_EQ(f.c.dt, Duration{0});  // of the first one
+    EXPECT_EQ(f.c.dt, Duration{0});  // first cycle
     ASSERT_EQ(f.c.timestamps, 1U);
     EXPECT_EQ(f.c.timestamp[0], planned);
 }
 
-TEST(StageWake, a_late_cycle_knows_by_how_much_and_a_dry_one_is_never_late) {
+TEST(StageWake, a_late_cycle_measures_its_lateness_and_a_dry_one_is_never_late) {
     CycleFixture f;
     servo::wake(f.c, f.settings, f.clock);
     f.clock.advance(microseconds(1300));
     servo::wake(f.c, f.settings, f.clock);
-    EXPECT_EQ(f.c.lateness, microseconds(1300));  // its instant has not moved on
+    EXPECT_EQ(f.c.lateness, microseconds(1300));  // the planned time is unchanged
     EXPECT_EQ(f.c.dt, microseconds(1300));
     f.c.dry = true;
     servo::wake(f.c, f.settings, f.clock);
@@ -55,18 +58,84 @@ TEST(StageOrders, a_level_is_set_answered_and_recorded) {
     EXPECT_EQ(recorded.order.value, 0.5);
 }
 
-TEST(StageOrders, an_order_for_the_state_waits_for_the_state_machine_and_for_the_orders_behind_it) {
+TEST(StageOrders, an_order_for_the_state_waits_for_the_state_machine_and_the_others_wait_for_it) {
     CycleFixture f;
+    f.order(CommandKind::mark);
     f.order(CommandKind::arm);
-    f.order(CommandKind::disarm);
     servo::take_orders(f.c, f.settings, f.io);
     EXPECT_TRUE(f.c.events.arm);
-    EXPECT_FALSE(f.c.events.disarm);  // in the next cycle
     EXPECT_EQ(f.c.report.last_sequence, 0U);
     f.c.run.state = RunState::armed;
     servo::answer_state_order(f.c, RunState::ready, *f.region);
-    EXPECT_EQ(f.c.report.last_sequence, 1U);
+    EXPECT_EQ(f.c.report.last_sequence, 2U);
     EXPECT_EQ(f.c.report.last_result, CommandResult::done);
+    servo::take_orders(f.c, f.settings, f.io);
+    EXPECT_FALSE(f.c.events.arm);
+    EXPECT_EQ(f.c.report.last_sequence, 1U);
+    EXPECT_EQ(f.c.report.state_sequence, 2U);  // still to be read by who armed
+    EXPECT_EQ(f.c.report.state_result, CommandResult::done);
+}
+
+TEST(StageOrders, a_disarm_behind_a_flood_of_others_is_taken_in_the_next_cycle) {
+    for (const int flood : {70, 10'000}) {
+        CycleFixture f;
+        for (int i = 0; i < flood; ++i) f.order(CommandKind::set_level, 0.5, kForcePathIndex);
+        const ServoOrder disarm = f.order(CommandKind::disarm);
+        for (int i = 0; i < flood; ++i) f.order(CommandKind::mark);
+        servo::take_orders(f.c, f.settings, f.io);
+        EXPECT_TRUE(f.c.events.disarm) << flood;
+        EXPECT_EQ(f.c.order.sequence, disarm.sequence) << flood;
+        servo::answer_state_order(f.c, RunState::armed, *f.region);
+        EXPECT_EQ(f.c.report.state_sequence, disarm.sequence) << flood;
+        EXPECT_EQ(f.c.report.state_result, CommandResult::done) << flood;
+        MailboxTopic recorded{};
+        RingCursor cursor;
+        ASSERT_TRUE(f.region->mailbox.next(cursor, recorded));
+        EXPECT_EQ(recorded.order.kind, static_cast<std::uint32_t>(CommandKind::disarm));
+        EXPECT_EQ(recorded.order.sequence, disarm.sequence);
+    }
+}
+
+TEST(StageOrders, a_disarm_wins_over_an_arm_that_is_pending_with_it_and_both_are_answered) {
+    for (const bool arm_first : {true, false}) {
+        CycleFixture f;
+        f.c.run.state = RunState::active;
+        f.order(arm_first ? CommandKind::arm : CommandKind::disarm);
+        f.order(arm_first ? CommandKind::disarm : CommandKind::arm);
+        servo::take_orders(f.c, f.settings, f.io);
+        EXPECT_TRUE(f.c.events.disarm);
+        EXPECT_FALSE(f.c.events.arm);
+        f.c.run.state = RunState::ready;
+        servo::answer_state_order(f.c, RunState::active, *f.region);
+        std::vector<std::pair<CommandKind, CommandResult>> answers;
+        for (const EventTopic& e : f.events())
+            if (e.code == static_cast<std::uint16_t>(EventCode::command_done))
+                answers.emplace_back(static_cast<CommandKind>(e.a), static_cast<CommandResult>(e.b));
+        using Answer = std::pair<CommandKind, CommandResult>;
+        const Answer arm{CommandKind::arm, CommandResult::refused_state},
+            disarm{CommandKind::disarm, CommandResult::done};
+        EXPECT_EQ(answers, (arm_first ? std::vector{arm, disarm} : std::vector{disarm, arm}));
+        EXPECT_EQ(f.c.report.state_sequence, 2U);  // the newest
+        // A replay needs both.
+        MailboxTopic recorded{};
+        RingCursor cursor;
+        int rows = 0;
+        while (f.region->mailbox.next(cursor, recorded)) ++rows;
+        EXPECT_EQ(rows, 2);
+        servo::take_orders(f.c, f.settings, f.io);
+        EXPECT_FALSE(f.c.events.arm || f.c.events.disarm);
+        servo::answer_state_order(f.c, RunState::ready, *f.region);
+        EXPECT_EQ(f.events().size(), 2U);
+    }
+}
+
+TEST(StageOrders, an_arm_that_is_replaced_by_a_newer_one_is_taken_once) {
+    CycleFixture f;
+    for (int i = 0; i < 3; ++i) f.order(CommandKind::arm);
+    servo::take_orders(f.c, f.settings, f.io);
+    EXPECT_EQ(f.c.order.sequence, 3U);
+    servo::take_orders(f.c, f.settings, f.io);
+    EXPECT_EQ(f.c.order.kind, 0U);
 }
 
 TEST(StageOrders, a_model_without_such_a_setting_refuses_it_and_an_unknown_command_is_answered) {
@@ -102,7 +171,7 @@ TEST(StageOrders, a_visual_process_that_falls_silent_is_reported_once_and_ramps_
 
 TEST(StageLines, a_stop_bars_arming_and_old_samples_are_lost_lines) {
     CycleFixture f;
-    servo::check_lines(f.c, f.settings, f.io);  // none are fitted
+    servo::check_lines(f.c, f.settings, f.io);  // no safety lines
     EXPECT_EQ(f.c.lines.stops, RunReason::none);
     f.fit_lines();
     servo::check_lines(f.c, f.settings, f.io);
@@ -152,7 +221,7 @@ TEST(StageLines, arming_re_arms_and_the_outputs_follow_the_state) {
     EXPECT_EQ(f.lines.command.heartbeat, 3U);
 }
 
-TEST(StageLines, a_drop_by_the_supervisor_is_seen_once_and_recorded) {
+TEST(StageLines, a_drop_by_the_supervisor_is_handled_once_and_recorded) {
     CycleFixture f;
     f.mailbox.pulse.drops.store(1);
     EXPECT_TRUE(servo::supervisor_dropped(f.c, f.io));

@@ -1,8 +1,11 @@
-// The stages after the force, each called by itself: publish, govern, close; and how a freely running loop keeps its rate.
+// Stages after the force, each tested alone: publish, govern, close; and rate keeping of a free-running loop.
 #include <gtest/gtest.h>
+
+#include <set>
 
 #include <cstring>
 
+#include "rt/servo/fit_level.hpp"
 #include "rt/servo/publish_levels.hpp"
 #include "rt/servo/rate_keeping.hpp"
 #include "rt/servo/record.hpp"
@@ -33,7 +36,7 @@ TEST(StagePublish, the_tool_is_published_each_cycle_and_health_ten_times_a_secon
     EXPECT_EQ(newest(f.region->devices).hand[0].samples, 1U);
 }
 
-// Counts what it is asked to publish.
+// Counts calls of publish().
 class ShowingModel final : public ForceModel {
 public:
     std::uint64_t shown_at = 0;
@@ -60,7 +63,7 @@ TEST(StagePublish, a_model_publishes_its_own_topic) {
     EXPECT_EQ(model.force_n, 2.0);
 }
 
-TEST(PublishLevels, a_visual_path_shows_what_the_report_has_of_it) {
+TEST(PublishLevels, a_visual_path_publishes_items_and_cost_of_the_report) {
     CycleFixture f;
     f.c.housekeeping.gui_vertices_max = 1000;
     f.c.housekeeping.gui_busy_s = 0.004;
@@ -74,10 +77,14 @@ TEST(PublishLevels, a_visual_path_shows_what_the_report_has_of_it) {
     EXPECT_EQ(t.path[kForcePathIndex].items, 1000U);
 }
 
-TEST(StageGovern, a_rate_below_the_goal_lowers_the_level_after_an_interval) {
+TEST(StageGovern,
+     a_rate_below_the_goal_lowers_the_display_after_an_interval_and_leaves_the_force_to_its_cost) {
     CycleFixture f;
+    servo::make_level_rows(f.c);
+    servo::choose_level(f.c, f.settings);
     servo::start_interval(f.c, f.c.now);
-    servo::set_display_present(f.c, f.settings, false);
+    f.c.housekeeping.gui_attached = 1;
+    servo::set_display_present(f.c, f.settings, true);
     const std::uint64_t sequence = f.c.report.levels_sequence;
     for (int i = 0; i < 400; ++i) {  // 500 Hz
         f.c.now += milliseconds(2);
@@ -85,13 +92,68 @@ TEST(StageGovern, a_rate_below_the_goal_lowers_the_level_after_an_interval) {
         ++f.c.govern.overruns;
         servo::govern(f.c, f.settings, *f.region);
     }
-    EXPECT_LT(f.c.governor.level(kForcePathIndex), 1.0F);
+    EXPECT_LT(f.c.governor.level(kDisplayPathIndex), 1.0F);
+    EXPECT_EQ(f.c.governor.level(kForcePathIndex), 1.0F);
     EXPECT_NEAR(f.c.govern.law_rate_hz, 500.0, 10.0);
     EXPECT_GT(f.c.report.levels_sequence, sequence);
     EXPECT_TRUE(f.reported(EventCode::level_changed));
 }
 
-TEST(StageGovern, dry_cycles_count_and_ask_for_nothing) {
+TEST(StageGovern, steps_that_cost_too_much_lower_the_level_at_once_with_the_reason) {
+    CycleFixture f;
+    servo::make_level_rows(f.c);
+    servo::choose_level(f.c, f.settings);
+    servo::start_interval(f.c, f.c.now);
+    f.c.model_cost = microseconds(450);  // half more than predicted
+    f.c.deadline_missed = true;
+    f.c.budget.fidelity = f.c.governor.level(kForcePathIndex);
+    for (int i = 0; i < 3; ++i) {
+        f.c.now += milliseconds(1);
+        servo::govern(f.c, f.settings, *f.region);
+    }
+    EXPECT_LT(f.c.governor.level(kForcePathIndex), 1.0F);
+    EXPECT_TRUE(f.reported(EventCode::level_changed));
+    const PathLevel force = newest(f.region->levels).path[kForcePathIndex];
+    EXPECT_EQ(force.reason, static_cast<std::uint8_t>(LevelReason::deadline_missed));
+    EXPECT_EQ(force.changed_at_ns, to_ns(f.c.now));
+    EXPECT_EQ(f.c.governor.level(kDisplayPathIndex), 1.0F);
+}
+
+TEST(StageGovern, the_law_fixed_leaves_the_level_to_the_person) {
+    CycleFixture f;
+    servo::make_level_rows(f.c);
+    f.c.governor.set_law(Law::fixed);
+    ASSERT_TRUE(f.c.governor.set_level(kForcePathIndex, 1.0));
+    f.c.model_cost = milliseconds(5);
+    f.c.deadline_missed = true;
+    for (int i = 0; i < 500; ++i) {
+        f.c.now += milliseconds(1);
+        servo::govern(f.c, f.settings, *f.region);
+    }
+    EXPECT_EQ(f.c.governor.level(kForcePathIndex), 1.0F);
+}
+
+TEST(StageGovern, dry_cycles_try_each_level_and_the_first_armed_cycle_has_the_one_that_fits) {
+    CycleFixture f;
+    f.settings.period = milliseconds(1);
+    servo::make_level_rows(f.c);
+    f.c.dry = true;
+    std::set<float> tried;
+    for (int i = 0; i < 200; ++i) {
+        f.c.budget.fidelity = f.c.governor.level(kForcePathIndex);
+        tried.insert(f.c.budget.fidelity);
+        // Five times the prediction of 300 us: 1.5 ms at level 1.
+        f.c.model_cost = microseconds(static_cast<int>(1500.0F * f.c.budget.fidelity));
+        servo::govern(f.c, f.settings, *f.region);
+    }
+    EXPECT_EQ(tried.size(), f.c.govern.fit.rows().size());
+    f.c.dry = false;
+    servo::choose_level(f.c, f.settings);
+    EXPECT_LT(1.5 * static_cast<double>(f.c.governor.level(kForcePathIndex)), 0.7);
+    EXPECT_GT(1.5 * static_cast<double>(f.c.governor.level(kForcePathIndex)), 0.45);
+}
+
+TEST(StageGovern, dry_cycles_count_and_publish_no_levels) {
     CycleFixture f;
     f.c.dry = true;
     f.c.now += milliseconds(500);
@@ -155,7 +217,7 @@ TEST(Record, the_start_names_the_devices) {
     EXPECT_STREQ(t.device[0].name, "stub");
 }
 
-TEST(RateKeeping, a_loop_of_fixed_rate_does_all_of_its_work_and_rests_nowhere) {
+TEST(RateKeeping, a_loop_of_fixed_rate_recomputes_all_work_and_never_sleeps) {
     CycleFixture f;
     EXPECT_EQ(servo::work_fraction(f.c, f.settings), 1.0);
     const Instant before = f.clock.now();
@@ -163,7 +225,7 @@ TEST(RateKeeping, a_loop_of_fixed_rate_does_all_of_its_work_and_rests_nowhere) {
     EXPECT_EQ(f.c.timestamps, 1U);
 }
 
-TEST(RateKeeping, a_free_loop_behind_its_goal_keeps_part_of_its_sums) {
+TEST(RateKeeping, a_free_running_loop_behind_its_goal_reuses_part_of_its_sums) {
     ServoSettings settings;
     settings.free_running = true;
     settings.governor.law = Law::elastic;

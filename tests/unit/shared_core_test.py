@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Two controllers pinned to one core: the second warns in its log, the first does not, and tact doctor tells of both.
+"""Two controllers pinned to one core: the second warns in its log, the first does not, and tact doctor reports both.
 
 usage: shared_core_test.py BIN_DIR WRITE_SMALL_SCENE
 
@@ -23,7 +23,7 @@ def wait(what, true):
     end = time.monotonic() + PATIENCE_S
     while not (now := true()):
         if time.monotonic() > end:
-            sys.exit("FAILED %s: not so in time" % what)
+            sys.exit("FAILED %s: timed out" % what)
         time.sleep(0.1)
     return now
 
@@ -60,21 +60,21 @@ def main():
             f.write("[servo]\ncore = %s\n" % core)
         two = controller("two", "--config", config)
         text = wait("the second warns", lambda: WARNING in log("two") and log("two"))
-        # Other controllers of this machine may be named too.
+        # The warning may also name other controllers of this machine.
         if "core %s %s" % (core, WARNING) not in text or "session one (process %d)" % one.pid not in text:
-            sys.exit("FAILED the warning:\n" + text)
+            sys.exit("FAILED: unexpected warning:\n" + text)
         if "session two" in log("one"):
-            sys.exit("FAILED the first one was alone when it started:\n" + log("one"))
+            sys.exit("FAILED: the first controller warned although it started alone:\n" + log("one"))
         row = finding()
         if row["level"] != "warn" or "(process %d)" % one.pid not in row["says"] or "(process %d)" % two.pid not in row["says"] or not row["fix"]:
-            sys.exit("FAILED the doctor's finding: %s" % row)
+            sys.exit("FAILED: unexpected finding of tact doctor: %s" % row)
         two.send_signal(signal.SIGTERM)
         two.wait(PATIENCE_S)
         controller("three", "--core", "-2")
         if WARNING in log("three"):
-            sys.exit("FAILED a controller that is not pinned warns:\n" + log("three"))
+            sys.exit("FAILED: a controller that is not pinned warned:\n" + log("three"))
         if "(process %d)" % two.pid in finding()["says"]:
-            sys.exit("FAILED the doctor's finding with one pinned controller: %s" % finding())
+            sys.exit("FAILED: unexpected finding with one pinned controller: %s" % finding())
     finally:
         for child in running:
             child.kill()

@@ -1,4 +1,4 @@
-// Where the bodies of a run start: the file of an earlier run, hostile or not, and copies about the map.
+// Start poses of the bodies: from the file of an earlier run, valid or malicious, and copies around the map.
 #include "rt/start/start_bodies.hpp"
 
 #include <gtest/gtest.h>
@@ -22,7 +22,7 @@ std::string body(const std::string& more = "") {
 }
 std::string list(const std::string& bodies) { return R"({"seconds": 3.5, "bodies": [)" + bodies + "]}"; }
 
-TEST(StartBodies, are_read_as_a_report_lists_them) {
+TEST(StartBodies, are_read_from_the_list_of_a_report) {
     const auto bodies =
         parse(list(body() + "," + body(R"(, "id": 7, "name": "2REC.pdb", "fixed": true, "in_hand": true)")));
     ASSERT_EQ(bodies.size(), 2U);
@@ -34,7 +34,7 @@ TEST(StartBodies, are_read_as_a_report_lists_them) {
     EXPECT_TRUE(bodies[1].fixed && bodies[1].in_hand);
 }
 
-TEST(StartBodies, refuse_every_file_that_cannot_be_meant_and_say_which_body) {
+TEST(StartBodies, invalid_files_are_refused_with_the_number_of_the_body) {
     for (const std::string& text : std::vector<std::string>{
              std::string(),
              std::string("{"),
@@ -69,7 +69,7 @@ TEST(StartBodies, refuse_every_file_that_cannot_be_meant_and_say_which_body) {
     EXPECT_THROW(read_start_bodies("/", kNames), StartupError);
 }
 
-TEST(StartBodies, a_damaged_file_is_refused_or_gives_possible_places) {
+TEST(StartBodies, a_damaged_file_is_refused_or_gives_valid_poses) {
     const std::string good = list(body() + "," + body());
     std::mt19937 random(5);
     for (int i = 0; i < 3000; ++i) {
@@ -86,7 +86,7 @@ TEST(StartBodies, a_damaged_file_is_refused_or_gives_possible_places) {
     }
 }
 
-TEST(StartBodies, copies_stand_outside_of_the_map_and_apart) {
+TEST(StartBodies, copies_are_placed_outside_the_map_and_apart) {
     DensityGrid grid;
     grid.size = {41, 21, 31};
     grid.spacing_m = Vec3::Constant(1e-10);

@@ -1,4 +1,4 @@
-// The tools that tact-rt starts with.
+// The tools with which tact-rt starts.
 #include <gtest/gtest.h>
 
 #include "rt/start/start_drill.hpp"
@@ -6,7 +6,7 @@
 namespace tact {
 namespace {
 
-TEST(StartDrill, the_configuration_says_what_the_tools_are) {
+TEST(StartDrill, the_configuration_defines_the_tools) {
     RtConfig c;
     c.drilling.burr_diameter_mm = 4.0;
     c.drilling.burr_shape = "cone";
@@ -24,7 +24,7 @@ TEST(StartDrill, the_configuration_says_what_the_tools_are) {
     EXPECT_EQ(suction_tube.burr_rad_s, 0.0);
 }
 
-TEST(StartDrill, the_configuration_says_what_switches_the_tools_on) {
+TEST(StartDrill, the_configuration_defines_the_switches_of_the_tools) {
     RtConfig c;
     EXPECT_EQ(drill_switch(c, 0).by, DriveSwitch::button);
     c.drilling.pedal = "line";
@@ -37,7 +37,7 @@ TEST(StartDrill, the_configuration_says_what_switches_the_tools_on) {
     EXPECT_DOUBLE_EQ(drill_rates(c).irrigation_m3_s, 1e-6);
 }
 
-TEST(StartDrill, every_sucker_that_the_configuration_allows_is_a_tool) {
+TEST(StartDrill, every_allowed_suction_tube_diameter_makes_a_tool) {
     for (double mm = 0.8; mm <= 10.0; mm += 0.1) {
         RtConfig c;
         c.drilling.suction_tube_diameter_mm = mm;
@@ -46,7 +46,7 @@ TEST(StartDrill, every_sucker_that_the_configuration_allows_is_a_tool) {
     }
 }
 
-TEST(StartDrill, what_is_thinner_than_a_voxel_is_felt_as_thick_as_one) {
+TEST(StartDrill, a_tool_thinner_than_a_voxel_is_thickened_to_a_voxel) {
     SceneMeta meta{};
     meta.world_per_model = 1.0;
     BoneBricks bricks;
@@ -57,13 +57,13 @@ TEST(StartDrill, what_is_thinner_than_a_voxel_is_felt_as_thick_as_one) {
     EXPECT_DOUBLE_EQ(burr.tool.radius_m, 3e-3);
     EXPECT_TRUE(fit_to_voxels(suction_tube, meta, bricks));
     EXPECT_NEAR(suction_tube.tool.radius_m, 1.25e-3, 1e-9);
-    EXPECT_FALSE(fit_to_voxels(burr, meta, bricks));  // once
+    EXPECT_FALSE(fit_to_voxels(burr, meta, bricks));  // changed only once
     bricks.voxel_m = 0.3e-3;
     DrillSettings fine = burr_settings({}, 1);
     EXPECT_FALSE(fit_to_voxels(fine, meta, bricks));
-    bricks.voxel_m = 5e-3;  // larger than the head, which the model refuses
+    bricks.voxel_m = 5e-3;  // larger than the head; the model refuses that
     EXPECT_FALSE(fit_to_voxels(fine, meta, bricks));
-    fine.tool.shaft_radius_m = 0.0;  // none
+    fine.tool.shaft_radius_m = 0.0;  // no shaft
     bricks.voxel_m = 1.25e-3;
     EXPECT_FALSE(fit_to_voxels(fine, meta, bricks));
 }

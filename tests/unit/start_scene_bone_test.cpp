@@ -1,4 +1,4 @@
-// The bone of a run: what the scene holds lies in the region, and what is drilled is seen by whoever maps it.
+// The bone of a run: the region contains the bone of the scene, and readers of the region get the drilled bone.
 #include <fcntl.h>
 #include <gtest/gtest.h>
 #include <unistd.h>
@@ -16,7 +16,7 @@
 namespace tact {
 namespace {
 
-TEST(SceneBone, what_the_burr_takes_is_seen_in_the_region) {
+TEST(SceneBone, removed_bone_appears_in_the_region) {
     BoneBricks bricks;
     bricks.size = {40, 40, 20};
     bricks.voxel_m = 3e-4;

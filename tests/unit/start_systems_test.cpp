@@ -1,4 +1,4 @@
-// The one table of systems of the controller.
+// The table of systems of the controller.
 #include <gtest/gtest.h>
 
 #include <set>

@@ -1,4 +1,4 @@
-// The head topic from an emulated tracker, in lockstep.
+// The head topic from an emulated tracker, in lockstep with simulated time.
 #include "rt/threads/head_feed.hpp"
 
 #include <gtest/gtest.h>
@@ -40,14 +40,14 @@ protected:
     Instant now_ = instant_from_ns(5'000'000'000);
 };
 
-TEST_F(Feed, publishes_every_sample_once_in_the_frame_of_the_screen) {
+TEST_F(Feed, publishes_each_sample_once_in_the_screen_frame) {
     run(milliseconds(1000));
     const HeadTopic h = head();
     EXPECT_EQ(h.state, static_cast<std::uint8_t>(TrackerState::fresh));
     EXPECT_EQ(h.link, static_cast<std::uint8_t>(TrackerLink::up));
     EXPECT_NEAR(static_cast<double>(h.sequence), 240.0, 5.0);
     EXPECT_NEAR(static_cast<double>(topic_.count()), static_cast<double>(h.sequence), 3.0);
-    // Noise and the filter's lag at head speed stay far within what the frames differ by.
+    // The tolerance allows noise and filter lag at head speed, but is far below the offset between the frames.
     const Pose T = settings_.T_screen_tracker * tracker_->head().at(0, instant_from_ns(h.taken_at_ns));
     EXPECT_LT((at(h.pos_screen_m) - T.p_m).norm(), 0.02);
     const Quat q(h.quat_screen_head_xyzw[3], h.quat_screen_head_xyzw[0], h.quat_screen_head_xyzw[1],
@@ -56,7 +56,7 @@ TEST_F(Feed, publishes_every_sample_once_in_the_frame_of_the_screen) {
     EXPECT_GT(at(h.velocity_screen_m_s).norm(), 0.0);
 }
 
-TEST_F(Feed, a_silent_tracker_is_frozen_then_lost_and_the_head_stands) {
+TEST_F(Feed, a_silent_tracker_is_frozen_then_lost_and_the_head_keeps_its_pose) {
     run(milliseconds(500));
     tracker_->inject(TrackerFault::silent);
     run(milliseconds(100));
@@ -72,7 +72,7 @@ TEST_F(Feed, a_silent_tracker_is_frozen_then_lost_and_the_head_stands) {
     EXPECT_EQ(head().state, static_cast<std::uint8_t>(TrackerState::fresh));
 }
 
-TEST_F(Feed, says_that_the_link_is_gone_and_back) {
+TEST_F(Feed, reports_loss_and_return_of_the_link) {
     run(milliseconds(100));
     tracker_->inject(TrackerFault::gone);
     run(milliseconds(20));
@@ -82,13 +82,13 @@ TEST_F(Feed, says_that_the_link_is_gone_and_back) {
     EXPECT_EQ(head().link, static_cast<std::uint8_t>(TrackerLink::up));
 }
 
-TEST_F(Feed, tells_ten_times_a_second_what_came_and_how_old_it_is) {
+TEST_F(Feed, publishes_sample_counts_and_age_ten_times_a_second) {
     TrackerTopic t{};
     run(milliseconds(1000));
     ASSERT_TRUE(counts_.read(t));
     EXPECT_NEAR(static_cast<double>(counts_.count()), 10.0, 1.0);
     EXPECT_LE(t.samples, tracker_->health().samples);
-    EXPECT_GT(t.samples + 30, tracker_->health().samples);  // a tenth of a second old at most
+    EXPECT_GT(t.samples + 30, tracker_->health().samples);  // at most 0.1 s old
     EXPECT_GT(t.rate_hz, 0.0);
     EXPECT_GE(t.age_ns, 0);
     EXPECT_LT(t.age_ns, 50'000'000);
@@ -117,7 +117,7 @@ TEST(HeadFeedThread, publishes_by_itself_and_ends_with_its_object) {
     EXPECT_GE(topic.count(), 10U);
 }
 
-TEST(TrackerRegistry, gives_what_is_named_and_names_what_there_is) {
+TEST(TrackerRegistry, makes_the_named_tracker_and_lists_all_names_in_its_error) {
     EXPECT_EQ(make_tracker({}), nullptr);
     for (const TrackerEntry& t : tracker_drivers())
         EXPECT_NO_THROW(static_cast<void>(make_tracker({.driver = t.name, .interface = "can0", .sim = {}})));
@@ -129,7 +129,7 @@ TEST(TrackerRegistry, gives_what_is_named_and_names_what_there_is) {
     }
 }
 
-TEST(HeadTopicWords, are_the_trackers_states_and_links) {
+TEST(HeadTopicText, names_the_states_and_links_of_the_tracker) {
     const auto state = [](TrackerState s) {
         return std::string(head_state_text(static_cast<std::uint8_t>(s)));
     };

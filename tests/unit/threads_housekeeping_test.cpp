@@ -1,4 +1,4 @@
-// What the housekeeping thread lets through from the other process.
+// Checks of the housekeeping thread on commands from the other process.
 #include "rt/threads/housekeeping.hpp"
 
 #include <gtest/gtest.h>
@@ -22,7 +22,7 @@ CommandTopic command(CommandKind kind, double value = 0.0, const char* text = ""
     return c;
 }
 
-TEST(Housekeeping, passes_good_commands_in_the_servos_terms) {
+TEST(Housekeeping, passes_valid_commands_with_path_indices) {
     const CheckedCommand level = check_command(command(CommandKind::set_level, 0.5, "docking.force"), kPaths);
     EXPECT_EQ(level.result, CommandResult::none);
     EXPECT_EQ(level.order.index, 1U);
@@ -34,7 +34,7 @@ TEST(Housekeeping, passes_good_commands_in_the_servos_terms) {
     EXPECT_EQ(check_command(command(CommandKind::set_goal_hz, 800.0), kPaths).result, CommandResult::none);
 }
 
-TEST(Housekeeping, refuses_what_cannot_be_meant) {
+TEST(Housekeeping, refuses_invalid_commands) {
     const double nan = std::numeric_limits<double>::quiet_NaN();
     EXPECT_EQ(check_command(command(CommandKind::arm, nan), kPaths).result, CommandResult::refused_value);
     EXPECT_EQ(check_command(command(CommandKind::set_level, 0.5, "nowhere"), kPaths).result,
@@ -51,7 +51,7 @@ TEST(Housekeeping, refuses_what_cannot_be_meant) {
     EXPECT_EQ(check_command(endless, kPaths).result, CommandResult::refused_value);
 }
 
-TEST(Housekeeping, passes_orders_to_bodies_whose_places_are_possible) {
+TEST(Housekeeping, passes_orders_to_bodies_with_valid_poses) {
     CommandTopic place = command(CommandKind::place_body);
     place.body = 3;
     place.pos_model_m[1] = 2e-9;
@@ -60,7 +60,7 @@ TEST(Housekeeping, passes_orders_to_bodies_whose_places_are_possible) {
     ASSERT_EQ(checked.result, CommandResult::none);
     EXPECT_EQ(checked.order.body, 3U);
     EXPECT_EQ(checked.order.pos_model_m[1], 2e-9);
-    EXPECT_DOUBLE_EQ(checked.order.quat_model_body_xyzw[3], 1.0);  // made a unit quaternion
+    EXPECT_DOUBLE_EQ(checked.order.quat_model_body_xyzw[3], 1.0);  // normalised to a unit quaternion
     CommandTopic select = command(CommandKind::select_body);
     select.body = kNoBody;
     EXPECT_EQ(check_command(select, kPaths).result, CommandResult::none);
@@ -85,7 +85,7 @@ TEST(Housekeeping, passes_orders_to_bodies_whose_places_are_possible) {
     EXPECT_EQ(check_command(filter, kPaths).result, CommandResult::refused_value);
 }
 
-TEST(Housekeeping, refuses_orders_to_bodies_that_no_scene_can_have) {
+TEST(Housekeeping, refuses_orders_to_impossible_bodies) {
     const auto judged = [](CommandKind kind, std::uint32_t body, double value = 0.0) {
         CommandTopic c = command(kind, value);
         c.body = body;
@@ -113,7 +113,7 @@ TEST(Housekeeping, refuses_orders_to_bodies_that_no_scene_can_have) {
     }
 }
 
-TEST(Housekeeping, garbage_of_any_bytes_is_judged_without_harm_and_what_passes_is_in_range) {
+TEST(Housekeeping, random_bytes_are_refused_or_pass_with_values_in_range) {
     std::mt19937_64 random(3);
     for (int i = 0; i < 20000; ++i) {
         CommandTopic c{};

@@ -1,4 +1,4 @@
-// A log that nobody reads stops nobody, and says later what was lost.
+// A log without a reader blocks no thread, and later reports the number of lost lines.
 #include <fcntl.h>
 #include <gtest/gtest.h>
 #include <spdlog/logger.h>
@@ -21,7 +21,7 @@ struct Ends {
         close(read);
         close(write);
     }
-    // All that is there now.
+    // All available bytes.
     [[nodiscard]] std::string drain() const {
         std::string all;
         std::array<char, 65536> part{};
@@ -61,11 +61,11 @@ class LogSink : public testing::Test {};
 using Kinds = testing::Types<Pipe, Socket>;
 TYPED_TEST_SUITE(LogSink, Kinds);
 
-TYPED_TEST(LogSink, drops_what_does_not_fit_and_says_how_much_when_there_is_room) {
+TYPED_TEST(LogSink, drops_lines_that_do_not_fit_and_reports_their_number_later) {
     const TypeParam ends;
     spdlog::logger log("test", make_log_sink(ends.write));
     log.set_pattern("%l %v");
-    constexpr std::size_t kLines = 20000;  // more than any pipe or socket takes
+    constexpr std::size_t kLines = 20000;  // more than any pipe or socket holds
     for (std::size_t i = 0; i < kLines; ++i) log.info("line {} of a log that nobody reads", i);
     const std::string first = ends.drain();
     const std::size_t there = count(first, "info line ");
@@ -74,11 +74,11 @@ TYPED_TEST(LogSink, drops_what_does_not_fit_and_says_how_much_when_there_is_room
     EXPECT_EQ(first.rfind("info line 0 of", 0), 0U);
 
     log.flush();
-    const std::string said =
-        "warning " + std::to_string(kLines - there) + " lines of this log were dropped: nobody read them\n";
+    const std::string said = "warning " + std::to_string(kLines - there) +
+                             " log lines were dropped because standard error was not read\n";
     EXPECT_NE(ends.drain().find(said), std::string::npos);
     log.flush();
-    EXPECT_EQ(ends.drain(), "");  // once
+    EXPECT_EQ(ends.drain(), "");  // reported once
     log.info("on");
     EXPECT_EQ(ends.drain(), "info on\n");
 
@@ -86,18 +86,18 @@ TYPED_TEST(LogSink, drops_what_does_not_fit_and_says_how_much_when_there_is_room
     static_cast<void>(ends.drain());
     log.info("with the next line");
     const std::string next = ends.drain();
-    EXPECT_NE(next.find("lines of this log were dropped"), std::string::npos);
+    EXPECT_NE(next.find("log lines were dropped"), std::string::npos);
     EXPECT_LT(next.find("dropped"), next.find("info with the next line\n"));
 }
 
-TEST(LogSinks, leave_as_it_is_what_others_have_open_too) {
+TEST(LogSinks, leave_a_shared_descriptor_blocking) {
     const Pipe ends;
     spdlog::logger log("test", make_log_sink(ends.write));
     log.info("a line");
     EXPECT_EQ(fcntl(ends.write, F_GETFL) & O_NONBLOCK, 0);
 }
 
-TEST(LogSinks, take_a_line_longer_than_a_pipe) {
+TEST(LogSinks, accept_a_line_longer_than_a_pipe) {
     const Pipe ends;
     spdlog::logger log("test", make_log_sink(ends.write));
     log.set_pattern("%v");
@@ -105,7 +105,7 @@ TEST(LogSinks, take_a_line_longer_than_a_pipe) {
     log.info("lost as well");
     static_cast<void>(ends.drain());
     log.info("next");
-    EXPECT_EQ(ends.drain(), "\n2 lines of this log were dropped: nobody read them\nnext\n");
+    EXPECT_EQ(ends.drain(), "\n2 log lines were dropped because standard error was not read\nnext\n");
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-// What the service manager is told, read from a datagram socket that stands for its own.
+// Notifications to the service manager, read from a datagram socket in its place.
 #include "rt/threads/service_notify.hpp"
 
 #include <gtest/gtest.h>
@@ -44,7 +44,7 @@ public:
     Manager(const Manager&) = delete;
     Manager& operator=(const Manager&) = delete;
 
-    // All that came since the last call.
+    // All data since the last call.
     std::string received() const {
         std::string all;
         std::array<char, 512> text{};
@@ -66,14 +66,14 @@ int count(const std::string& text, const std::string& what) {
 
 const Instant kBegin = instant_from_ns(1'000'000'000);
 
-TEST(WatchdogFeed, feeds_a_quarter_of_the_limit_apart_while_the_heartbeat_advances) {
+TEST(WatchdogFeed, feeds_four_times_per_limit_while_the_heartbeat_advances) {
     WatchdogFeed feed(2s);
     int fed = 0;
     for (int ms = 0; ms < 10000; ms += 100) fed += feed.due(ms, kBegin + ms * 1ms) ? 1 : 0;
     EXPECT_EQ(fed, 20);
 }
 
-TEST(WatchdogFeed, does_not_feed_a_servo_that_stands_still_and_feeds_it_again_when_it_runs) {
+TEST(WatchdogFeed, stops_feeding_while_the_servo_is_stopped_and_resumes_when_it_runs) {
     WatchdogFeed feed(2s);
     static_cast<void>(feed.due(1, kBegin));
     EXPECT_TRUE(feed.due(2, kBegin + 1s));
@@ -81,12 +81,12 @@ TEST(WatchdogFeed, does_not_feed_a_servo_that_stands_still_and_feeds_it_again_wh
     EXPECT_TRUE(feed.due(3, kBegin + 100s));
 }
 
-TEST(WatchdogFeed, one_heartbeat_alone_is_no_sign_of_a_running_servo) {
+TEST(WatchdogFeed, one_heartbeat_alone_is_no_proof_of_a_running_servo) {
     WatchdogFeed feed(2s);
     for (int s = 0; s < 10; ++s) EXPECT_FALSE(feed.due(7, kBegin + s * 1s));
 }
 
-TEST(WatchdogFeed, feeds_nothing_where_there_is_no_watchdog) {
+TEST(WatchdogFeed, feeds_nothing_without_a_watchdog) {
     WatchdogFeed feed(0s);
     for (int s = 0; s < 10; ++s) EXPECT_FALSE(feed.due(s, kBegin + s * 1s));
 }
@@ -106,7 +106,7 @@ TEST(ServiceNotify, is_ready_once_the_servo_runs_and_not_before) {
     EXPECT_EQ(count(manager.received(), "READY=1"), 0);  // once
 }
 
-TEST(ServiceNotify, feeds_the_watchdog_while_the_servo_runs_and_not_once_it_stands) {
+TEST(ServiceNotify, feeds_the_watchdog_only_while_the_servo_runs) {
     const Manager manager;
     ServiceNotify service;
     std::string text;
@@ -117,7 +117,7 @@ TEST(ServiceNotify, feeds_the_watchdog_while_the_servo_runs_and_not_once_it_stan
     EXPECT_EQ(count(text, "WATCHDOG=1"), 20);
     for (int i = 100; i < 200; ++i)
         service.update({.heartbeat = 99, .state = "active", .rate_hz = 1000.0}, kBegin + i * 100ms);
-    EXPECT_LE(count(manager.received(), "WATCHDOG=1"), 1);  // for the cycles before it stood
+    EXPECT_LE(count(manager.received(), "WATCHDOG=1"), 1);  // for the cycles before the servo stopped
 }
 
 TEST(ServiceNotify, reports_a_changed_state_within_a_second_and_its_end_once) {
@@ -134,12 +134,12 @@ TEST(ServiceNotify, reports_a_changed_state_within_a_second_and_its_end_once) {
     EXPECT_EQ(count(manager.received(), "STOPPING=1"), 1);
 }
 
-TEST(ServiceNotify, waits_for_no_manager_that_does_not_read) {
+TEST(ServiceNotify, does_not_wait_for_a_manager_that_does_not_read) {
     const Manager manager;
     ServiceNotify service;
     for (int i = 0; i < 10000; ++i)
         service.update({.heartbeat = i, .state = "active", .rate_hz = 1.0 * i}, kBegin + i * 1s);
-    EXPECT_GE(count(manager.received(), "WATCHDOG=1"), 5);  // what there was room for
+    EXPECT_GE(count(manager.received(), "WATCHDOG=1"), 5);  // as many as the socket buffer holds
     service.update({.heartbeat = -1, .state = "active", .rate_hz = 1000.0}, kBegin + 20000s);
     EXPECT_EQ(count(manager.received(), "WATCHDOG=1"), 1);
 }
@@ -157,7 +157,7 @@ std::string formatted(spdlog::level::level_enum level, const char* text) {
     return {into.data(), into.size()};
 }
 
-TEST(JournalFormat, has_the_level_in_front_of_each_line_and_no_time) {
+TEST(JournalFormat, puts_the_level_before_each_line_without_time) {
     EXPECT_EQ(formatted(spdlog::level::warn, "late\n  fix: a shorter period"),
               "<4>late\n<4>  fix: a shorter period\n");
     EXPECT_EQ(formatted(spdlog::level::info, "ready"), "<6>ready\n");
@@ -165,7 +165,7 @@ TEST(JournalFormat, has_the_level_in_front_of_each_line_and_no_time) {
     EXPECT_EQ(formatted(spdlog::level::debug, "x"), "<7>x\n");
 }
 
-TEST(JournalFormat, is_for_the_stream_that_the_journal_made_alone) {
+TEST(JournalFormat, is_used_only_for_the_stream_of_the_journal) {
     int ends[2];
     ASSERT_EQ(pipe(ends), 0);
     struct stat what {};
@@ -174,7 +174,7 @@ TEST(JournalFormat, is_for_the_stream_that_the_journal_made_alone) {
     EXPECT_FALSE(is_journal_stream(ends[1]));
     setenv("JOURNAL_STREAM", (std::to_string(what.st_dev) + ":" + std::to_string(what.st_ino)).c_str(), 1);
     EXPECT_TRUE(is_journal_stream(ends[1]));
-    EXPECT_FALSE(is_journal_stream(STDIN_FILENO));  // redirected since
+    EXPECT_FALSE(is_journal_stream(STDIN_FILENO));  // standard input is a different stream
     unsetenv("JOURNAL_STREAM");
     close(ends[0]);
     close(ends[1]);

@@ -1,4 +1,4 @@
-// The supervisor: as a function of what it sees, and once as a thread.
+// The supervisor: its decision as a function, and once as a thread.
 #include "rt/threads/supervisor.hpp"
 
 #include <gtest/gtest.h>
@@ -12,7 +12,7 @@ namespace {
 constexpr Duration kMs = std::chrono::milliseconds(1);
 const Instant kBegin = instant_from_ns(7'000'000'000);
 
-TEST(Supervision, drops_in_the_first_look_at_a_heartbeat_older_than_its_limit) {
+TEST(Supervision, drops_at_the_first_check_with_a_heartbeat_older_than_its_limit) {
     Supervision s(5 * kMs);
     for (int age_ms = 0; age_ms <= 5; ++age_ms) EXPECT_FALSE(s.check(kBegin, true, 0, kBegin + age_ms * kMs));
     EXPECT_TRUE(s.check(kBegin, true, 0, kBegin + 6 * kMs));
@@ -20,8 +20,7 @@ TEST(Supervision, drops_in_the_first_look_at_a_heartbeat_older_than_its_limit) {
     EXPECT_EQ(s.drops(), 1U);
 }
 
-TEST(Supervision,
-     whatever_the_phase_of_its_looks_a_servo_that_stands_is_dropped_within_the_limit_and_a_look) {
+TEST(Supervision, a_stopped_servo_is_dropped_within_the_limit_plus_one_check_at_any_phase) {
     for (int phase_us = 0; phase_us < 1000; phase_us += 37) {
         Supervision s(5 * kMs);
         Instant now = kBegin + std::chrono::microseconds(phase_us);
@@ -31,19 +30,19 @@ TEST(Supervision,
     }
 }
 
-TEST(Supervision, a_servo_that_beats_or_that_powers_nothing_is_left_alone) {
+TEST(Supervision, a_servo_with_a_heartbeat_or_without_power_is_not_dropped) {
     Supervision s(5 * kMs);
     Instant now = kBegin;
     for (int i = 0; i < 1000; ++i) {
         now += kMs;
         EXPECT_FALSE(s.check(now - (i % 5) * kMs, true, 0, now));
         EXPECT_FALSE(s.check(kBegin - std::chrono::seconds(1), false, 0, now));
-        EXPECT_FALSE(s.check(now + kMs, true, 0, now));  // the beat came after the look at the clock
+        EXPECT_FALSE(s.check(now + kMs, true, 0, now));  // the beat came after the clock was read
     }
     EXPECT_EQ(s.drops(), 0U);
 }
 
-TEST(Supervision, a_drop_stays_until_a_person_re_arms_however_well_the_servo_beats) {
+TEST(Supervision, a_drop_persists_until_a_person_re_arms_despite_heartbeats) {
     Supervision s(5 * kMs);
     ASSERT_TRUE(s.check(kBegin, true, 3, kBegin + 6 * kMs));
     Instant now = kBegin + 6 * kMs;
@@ -58,7 +57,7 @@ TEST(Supervision, a_drop_stays_until_a_person_re_arms_however_well_the_servo_bea
     EXPECT_EQ(s.drops(), 2U);
 }
 
-TEST(Supervisor, its_thread_drops_once_when_the_servo_stands_and_again_after_a_re_arm) {
+TEST(Supervisor, its_thread_drops_once_when_the_servo_stops_and_again_after_a_re_arm) {
     ServoPulse pulse;
     std::atomic<int> calls{0};
     Supervisor supervisor(pulse, 5 * kMs, [&calls] { ++calls; });
@@ -67,7 +66,7 @@ TEST(Supervisor, its_thread_drops_once_when_the_servo_stands_and_again_after_a_r
         for (int i = 0; i < 60'000 && pulse.drops.load() < drops; ++i) usleep(1000);
         return pulse.drops.load() == drops;
     };
-    // Nothing is powered: the beat of long ago is none of its business.
+    // Nothing is powered: the supervisor ignores the old beat.
     usleep(20'000);
     EXPECT_EQ(calls.load(), 0);
     pulse.beat_ns.store(to_ns(Monotonic::now()));

@@ -1,5 +1,5 @@
 // tact dock MAP MODEL...: bakes the scene once, then runs it.
-// tact demo dock: the force draws a synthetic ring of six from a displaced start to its place in the 12 A map.
+// tact demo dock: the force draws a synthetic ring of six from a displaced start to its place in the 12 Å map.
 #include <memory>
 
 #include "deploy/tact/baked_run.hpp"
@@ -15,15 +15,15 @@ constexpr PassedOption kDockPrep[] = {
     {"--resolution-a", "A", "Resolution of the map (angstrom); default: four voxels"},
     {"--force-map-resolution-a", "A",
      "Resolution (angstrom) to which the force map is smoothed, so that it attracts a structure from farther "
-     "away; default: "
-     "not smoothed"},
+     "away; default: not smoothed"},
     {"--vertices-max", "N", "Maximum number of vertices of the drawn surface; 0: no limit; default 1000000"},
 };
 
 constexpr PassedOption kDockController[] = {
-    {"--start-offset-a", "A", "Start distance of the first structure from the place in its file (angstrom)"},
+    {"--start-offset-a", "A",
+     "Start distance of the first structure from the position in its file (angstrom)"},
     {"--start-rotation-deg", "DEG",
-     "Start rotation of the first structure from the place in its file (degrees)"},
+     "Start rotation of the first structure from the orientation in its file (degrees)"},
     {"--copies", "N", "Number of bodies of the first structure; the copies are placed around the map"},
     {"--poses", "FILE.json", "Start poses of the bodies, from the report of an earlier run (JSON)"},
 };
@@ -66,12 +66,11 @@ void add_docking_commands(CLI::App& app, int& exit_code) {
 
 void add_docking_demo(CLI::App& demo, int& exit_code) {
     auto* const command =
-        demo.add_subcommand("dock", "The force draws a ring of six subunits to its place in a 12 A map");
+        demo.add_subcommand("dock", "The force draws a ring of six subunits to its position in a 12 A map");
     const auto options = std::make_shared<RunOptions>();
     add_run_options(*command, *options);
     command->callback([options, &exit_code] {
-        // Far enough that the motion is visible, near enough that the force draws it back (tact dock on real data uses
-        // the same start).
+        // Far enough that the motion is visible, near enough that the force draws the ring back.
         for (const auto& [name, value] :
              {std::pair("--start-offset-a", "15"), std::pair("--start-rotation-deg", "30")})
             if (!options->has_controller_option(name) && !options->has_controller_option("--poses"))

@@ -1,4 +1,4 @@
-// tact eval: the force model of the servo at poses from a file, for comparison with other programs.
+// tact eval: computes the servo's docking force at poses from a file, for comparison with other programs.
 #include <memory>
 
 #include "deploy/tact/docking/docking.hpp"
@@ -17,8 +17,7 @@ int eval(const EvalOptions& o) {
     const EvalSummary s = run_eval(o.scene, o.poses, o.out, o.fidelity);
     std::printf(
         "%llu poses, %llu with errors; largest force %.3f N; time per step %.2f us (median), %.2f us "
-        "(maximum)\nwrote "
-        "%s\n",
+        "(maximum)\nwrote %s\n",
         static_cast<unsigned long long>(s.poses), static_cast<unsigned long long>(s.not_ok), s.force_n_max,
         s.cost_us_p50, s.cost_us_max, o.out.c_str());
     return 0;

@@ -1,4 +1,4 @@
-// Docking's row of deploy/tact/systems: tact dock, tact eval, tact demo dock, and what a run of a docking scene reports.
+// Docking's row of deploy/tact/systems: tact dock, tact eval, tact demo dock, and the report of a docking run.
 #pragma once
 
 #include <CLI/CLI.hpp>

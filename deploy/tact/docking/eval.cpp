@@ -30,8 +30,8 @@ const char* name_of(StepStatus status) {
 EvalSummary run_eval(const std::filesystem::path& scene, const std::filesystem::path& poses_csv,
                      const std::filesystem::path& out_csv, double fidelity) {
     if (!(fidelity >= 0.0 && fidelity <= 1.0)) {
-        throw StartupError("evaluating '" + scene.string() + "'", "the fidelity is not in [0, 1]",
-                           "give 1 for all atoms, 0 for the smallest codebook");
+        throw StartupError("evaluating '" + scene.string() + "'", "the fidelity is outside 0 to 1",
+                           "give a --fidelity from 0 (smallest codebook) to 1 (all atoms)");
     }
     const std::vector<TimedPose> poses = read_poses_csv(poses_csv);
     const auto model = load_docking_model(SceneFile::open(scene), DockingSettings{});

@@ -1,13 +1,12 @@
-// The servo's own docking force, over poses given in a file: for `tact eval`.
+// The servo's docking force at poses from a file: for `tact eval`.
 //
-// In       poses of the tool, see poses_csv.hpp. Body 0 of the scene is held at the tool: its centre of mass
-//          is at the tool's origin and its axes are the tool's, T_model_body = (to_model(p), q). `tact info`
+// In       poses of the tool, see poses_csv.hpp. Body 0 of the scene is held at the tool: its centre of mass is at the
+//          tool's origin and its axes are those of the tool, T_model_body = (to_model(p), q). `tact info`
 //          prints the mapping.
 // Out      one line per pose, in order:
 //          t_s,fx_n,fy_n,fz_n,tx_n_m,ty_n_m,tz_n_m,cost_us,error_n,points,status
-//          force and torque in world axes at the tool's origin, without ramp or safety chain; cost measured
-//          on this machine; error an estimated bound against all atoms; status ok, out_of_time or
-//          out_of_range.
+//          force and torque in world axes at the tool's origin, without ramp or safety chain; cost measured on this
+//          machine; error: estimated bound relative to all atoms; status: ok, out_of_time or out_of_range.
 // Fails by StartupError; the output file is whole or absent.
 #pragma once
 

@@ -10,35 +10,31 @@ namespace {
 
 using nlohmann::json;
 
-// The force model in words and formulas; the numbers beside it are the letters.
+// The force model as text and formulas; the letters stand for the numbers printed beside it.
 constexpr const char* kDockingFormulas[] = {
     "x_world = world_per_model * (x_model - centre_model_m); axes parallel, metres",
-    "rho(x) = tricubic B-spline through (value - background) / sigma at the voxels of the felt map (see the "
-    "note), where values outside the "
-    "box "
-    "are 0",
-    "the spline interpolates: at a voxel it has the map's value; it is twice continuously differentiable",
-    "a body at (c, q) has its points at r_i = c + q * p_i; at the file's place q is 1, c is "
+    "rho(x) = tricubic B-spline through (value - background) / sigma at the voxels of the force map (see the "
+    "note); values outside the box are 0",
+    "the spline interpolates the map's values at the voxels and is twice continuously differentiable",
+    "a body at (c, q) has its points at r_i = c + q * p_i; at the position in the file q is 1, c is "
     "file_place_com_model_m",
-    "points: all atoms at level 1 (w_i their mass fractions), codebook vectors below, levels between two "
-    "blended",
+    "points: all atoms at level 1 (w_i their mass fractions), codebook vectors below; between two levels "
+    "both are blended",
     "reduced correlation C = sum_i w_i rho(r_i), in sigma; the weights sum to 1",
     "force on the hand, world, N: F = energy_j_per_sigma / world_per_model * sum_i w_i grad rho(r_i), grad "
-    "in "
-    "sigma per model metre",
+    "in sigma per model metre",
     "torque about c, world, N m: Q = energy_j_per_sigma * sum_i w_i (r_i - c) x grad rho(r_i)",
-    "so both are the slope of the energy U = -energy_j_per_sigma * C over the hand's motion; --force-scale "
-    "multiplies both",
+    "both are the negative gradient of the energy U = -energy_j_per_sigma * C over the hand's motion; "
+    "--force-scale multiplies both",
     "option laplacian: rho is -s^2 Laplacian of (Gaussian * (value - background)), s = 0.225 * "
     "max(resolution, 20 angstrom), over a unit that gives the density's force range with the same gain",
     "option subtraction: the other bodies' simulated map (Gaussians of s = 0.225 * resolution, weight Z), "
-    "scaled by least squares where it is above 5 % of its maximum, is taken out of value; not below the "
-    "background",
+    "scaled by least squares where it is above 5 % of its maximum, is subtracted from value, but not below "
+    "the background",
     "option clash: U = F (sqrt(L^2 + D^2) - L) is added, D = world_per_model * depth of the overlap (soft "
     "maximum over atoms at the surface), F = 2 N, L = F / K, K such that seeded encounters stay below 300 "
-    "N/m; F "
-    "and K times the force scale",
-    "the device gets F and Q behind the output chain (limits, slew, ramp-in); tact eval gives them before it",
+    "N/m; F and K times the force scale",
+    "the device gets F and Q after the output chain (limits, slew, ramp-in); tact eval gives them before it",
 };
 
 json vec3(const Vec3& v) { return {v.x(), v.y(), v.z()}; }

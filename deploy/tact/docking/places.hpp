@@ -1,4 +1,4 @@
-// How far a structure is from the place that its file gives it, and how well it explains the map there.
+// Distance of a structure from the position in its file, and its fit to the map.
 #pragma once
 
 #include <cstdint>
@@ -15,13 +15,13 @@
 namespace tact::launch {
 
 struct Offset {
-    double distance_a = 0.0;  // of the centre of mass
+    double distance_a = 0.0;  // distance of the centres of mass
     double angle_deg = 0.0;
 };
 
 // A body of a run: a placed copy of a structure of the scene.
 struct BodyAt {
-    std::uint32_t id = 0;  // 0: of no run
+    std::uint32_t id = 0;  // 0: not from a run
     std::uint32_t structure = 0;
     Pose T_model_body;
     bool fixed = false, in_hand = false;
@@ -35,12 +35,12 @@ public:
     [[nodiscard]] const std::vector<Structure>& structures() const { return structures_; }
     [[nodiscard]] const DensityGrid& grid() const { return grid_; }
 
-    // Empty where the topic does not fit the scene or holds no numbers.
+    // Empty if the topic does not fit the scene or holds numbers that are not finite.
     [[nodiscard]] std::optional<std::vector<BodyAt>> bodies(const BodiesTopic& topic) const;
-    // One of each structure, where its file has it.
+    // One body per structure, at the position in its file.
     [[nodiscard]] std::vector<BodyAt> file_bodies() const;
     [[nodiscard]] Offset offset(const BodyAt& body) const;
-    // Empty where the map's resolution is not known. Takes up to seconds for large maps.
+    // Empty if the map's resolution is unknown. Takes up to seconds for large maps.
     [[nodiscard]] std::optional<FitMetrics> fit(const std::vector<BodyAt>& bodies) const;
 
 private:

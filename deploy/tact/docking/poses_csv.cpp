@@ -20,7 +20,7 @@ constexpr std::size_t kLineMax = 1024;
     throw StartupError("reading the poses in '" + name + "', line " + std::to_string(line), why, fix);
 }
 
-// What may be shown of a hostile file: a few printable characters.
+// Limits the text of a malicious file in messages to a few printable characters.
 std::string shown(std::string_view text) {
     std::string out;
     for (const char c : text.substr(0, 24)) out += c >= ' ' && c <= '~' ? c : '?';
@@ -40,7 +40,8 @@ TimedPose parse(std::string_view text, const std::string& name, std::size_t line
         const std::size_t comma = text.find(',');
         const bool last = column + 1 == value.size();
         if ((comma == std::string_view::npos) != last) {
-            fail(name, line, "it has not eight columns", "write " + std::string(kHeader) + " on every line");
+            fail(name, line, "the line does not have eight columns",
+                 "write " + std::string(kHeader) + " on every line");
         }
         const std::string_view field = trimmed(text.substr(0, comma));
         const auto [end, error] = std::from_chars(field.data(), field.data() + field.size(), value[column]);
@@ -53,8 +54,9 @@ TimedPose parse(std::string_view text, const std::string& name, std::size_t line
     }
     const Quat q(value[7], value[4], value[5], value[6]);
     if (!(q.norm() > 0.9 && q.norm() < 1.1)) {
-        fail(name, line, "qx,qy,qz,qw has the length " + std::to_string(q.norm()) + " instead of 1",
-             "write the rotation as a unit quaternion, the real part last");
+        fail(name, line,
+             "the quaternion qx,qy,qz,qw has length " + std::to_string(q.norm()) + " instead of 1",
+             "write the rotation as a unit quaternion with the real part last");
     }
     return {value[0], Pose{Vec3(value[1], value[2], value[3]), q.normalized()}};
 }
@@ -69,31 +71,32 @@ std::vector<TimedPose> read_poses_csv(std::istream& in, const std::string& name)
         in.getline(buffer.data(), buffer.size());
         const auto got = static_cast<std::size_t>(in.gcount());
         if (in.fail() && got + 1 >= buffer.size()) {
-            fail(name, line, "it is longer than " + std::to_string(kLineMax - 1) + " characters",
+            fail(name, line, "the line is longer than " + std::to_string(kLineMax - 1) + " characters",
                  "write one pose per line");
         }
         if (in.bad()) fail(name, line, "the file cannot be read", "check the disk and the permissions");
         if (in.fail()) break;
-        // getline counts the newline that it takes, but there is none behind the last line.
+        // getline counts the newline; the last line has none.
         std::string_view text(buffer.data(), in.eof() ? got : got - 1);
         if (line == 1 && text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);
         text = trimmed(text);
         if (text.empty() || text.front() == '#') continue;
         if (!header) {
             if (text != kHeader) {
-                fail(name, line, "it is '" + shown(text) + "' instead of the header",
+                fail(name, line, "the line is '" + shown(text) + "' instead of the header",
                      "begin the file with " + std::string(kHeader));
             }
             header = true;
             continue;
         }
         if (poses.size() == kPosesMax) {
-            fail(name, line, "there are more than " + std::to_string(kPosesMax) + " poses", "split the file");
+            fail(name, line, "the file has more than " + std::to_string(kPosesMax) + " poses",
+                 "split the file");
         }
         poses.push_back(parse(text, name, line));
     }
     if (poses.empty()) {
-        throw StartupError("reading the poses in '" + name + "'", "there are none",
+        throw StartupError("reading the poses in '" + name + "'", "the file has no poses",
                            "write " + std::string(kHeader) + " and then one line per pose");
     }
     return poses;
@@ -105,7 +108,7 @@ std::vector<TimedPose> read_poses_csv(const std::filesystem::path& path) {
     std::ifstream in(path, std::ios::binary);
     if (!in || folder) {
         throw StartupError("reading the poses in '" + path.string() + "'", "the file cannot be opened",
-                           "check that it exists and can be read");
+                           "check that the file exists and is readable");
     }
     return read_poses_csv(in, path.string());
 }

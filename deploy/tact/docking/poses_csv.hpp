@@ -1,9 +1,8 @@
-// Poses of a hand, as text: `t_s,x_m,y_m,z_m,qx,qy,qz,qw`, a header line of these names and one line per
-// pose.
+// Poses of a hand as text: a header line `t_s,x_m,y_m,z_m,qx,qy,qz,qw`, then one line per pose.
 //
-// Frames   T_world_tool: metres and a unit quaternion (its length may be off by a tenth; it is normalized).
-// Takes    blank lines, lines that start with #, either line ending.
-// Fails by StartupError naming the line and what is wrong with it.
+// Frames   T_world_tool: metres and a unit quaternion (its norm may be off by a tenth; it is normalized).
+// Takes    empty lines, comment lines that start with #, either line ending.
+// Fails by StartupError with line and cause.
 #pragma once
 
 #include <filesystem>

@@ -1,4 +1,4 @@
-// A run of a docking scene: bodies and fit in the report, the offset of the active body in the table, --save.
+// A run of a docking scene: bodies and fit in the report, offset of the active body in the table, --save.
 #include <algorithm>
 #include <array>
 #include <cstdio>
@@ -35,7 +35,7 @@ std::optional<std::vector<BodyAt>> bodies_of(const RtRegion& region, const Place
     return topic ? places.bodies(*topic) : std::nullopt;
 }
 
-// What tact-rt --poses reads.
+// The format that tact-rt --poses reads.
 json bodies_report(const RtRegion& region, const Places& places) {
     const auto bodies = bodies_of(region, places);
     if (!bodies) return nullptr;
@@ -56,7 +56,7 @@ json bodies_report(const RtRegion& region, const Places& places) {
     return all;
 }
 
-// Offsets are those of the body in the hand, or of the first; the fit is that of all together.
+// Offsets: of the body in the hand, else of the first body. Fit: of all bodies together.
 json fit_report(const RtRegion& region, const Places& places,
                 const std::optional<std::vector<BodyAt>>& bodies_start) {
     const auto bodies = bodies_of(region, places);
@@ -112,21 +112,21 @@ public:
         check_save_folder(folder);
         if (!has_sources_)
             throw StartupError(
-                "saving into " + folder.string(),
+                "saving to " + folder.string(),
                 "the scene " + name_ +
-                    " does not name the files of its structures: it was made in code, or baked by an "
+                    " does not name the files of its structures: it is synthetic, or baked by an "
                     "older tact-prep",
-                "run it without --save, or dock files: tact dock MAP MODEL --save DIR");
+                "run the scene without --save, or dock files: tact dock MAP MODEL --save DIR");
     }
 
-    // Where the controller left the bodies, however it ended.
+    // Saves the last poses published by the controller, however it ended.
     void save(const RtRegion* region, const SaveRequest& request, Signals& signals) const override {
         const auto bodies = region != nullptr ? newest(region->bodies) : std::nullopt;
         const json poses = bodies ? poses_json(*bodies, places_.structures()) : json::object();
         if (!poses.contains("bodies") || poses["bodies"].empty())
-            throw StartupError("saving into " + request.folder.string(),
-                               "the controller did not publish the places of the bodies",
-                               "see its messages above");
+            throw StartupError("saving to " + request.folder.string(),
+                               "the controller did not publish poses of the bodies",
+                               "see the messages of tact-rt above");
         save_fit(request, poses, signals);
     }
 
@@ -154,18 +154,18 @@ std::string docking_summary(const json& r) {
     if (r.contains("fit") && r["fit"].is_object()) {
         const json& f = r["fit"];
         if (f.contains("at_start"))
-            add("structure: offset from the place in its file: %.2f A, %.1f deg at the start, %.2f A, %.1f "
-                "deg at the end\n",
+            add("structure: offset from the position in its file: %.2f A, %.1f deg at the start, %.2f A, "
+                "%.1f deg at the end\n",
                 number(f["at_start"]["offset_a"]), number(f["at_start"]["angle_deg"]), number(f["offset_a"]),
                 number(f["angle_deg"]));
         if (f["cc_zero"].is_number())
-            add("fit: correlation about zero %.4f, about the mean %.4f (at the place in the file: %.4f, "
+            add("fit: correlation about zero %.4f, about the mean %.4f (at the position in the file: %.4f, "
                 "%.4f; %s)\n",
                 number(f["cc_zero"]), number(f["cc_mean"]), number(f["at_file_place"]["cc_zero"]),
                 number(f["at_file_place"]["cc_mean"]), kFitRegion);
         else
             text +=
-                "fit: not computed, because the resolution of the map is not known (tact dock "
+                "fit: not computed, because the resolution of the map is unknown (tact dock "
                 "--resolution-a)\n";
     }
     return text;

@@ -15,7 +15,7 @@
 namespace tact::launch {
 namespace {
 
-// Writing some hundred thousand atoms for each of sixteen bodies takes seconds.
+// Writing a few hundred thousand atoms for each of sixteen bodies takes seconds.
 constexpr auto kExportLimit = std::chrono::minutes(10);
 
 }  // namespace
@@ -25,13 +25,13 @@ bool structures_have_sources(const SceneFile& scene) {
 }
 
 void check_save_folder(const std::filesystem::path& folder) {
-    const std::string attempt = "saving into " + folder.string();
+    const std::string attempt = "saving to " + folder.string();
     std::error_code ignored;
     if (std::filesystem::exists(folder, ignored)) {
         if (!std::filesystem::is_directory(folder, ignored))
-            throw StartupError(attempt, "it is not a folder", "give another name to --save");
+            throw StartupError(attempt, "the path is not a folder", "give another name to --save");
         if (!std::filesystem::is_empty(folder, ignored))
-            throw StartupError(attempt, "it is not empty, and existing files are never overwritten",
+            throw StartupError(attempt, "the folder is not empty, and existing files are never overwritten",
                                "give another name to --save, or empty the folder");
     }
 }
@@ -60,7 +60,7 @@ void save_fit(const SaveRequest& request, const nlohmann::json& poses, Signals& 
     write_whole(file, report_text(poses));
     std::printf("wrote %s\n", file.c_str());
     std::fflush(stdout);
-    signals.wait(0);  // an impatient second Ctrl-C ended the run, not the save
+    signals.wait(0);  // discards a second Ctrl-C, which was meant for the run, not for the save
     ChildSettings settings;
     settings.arguments = {"export", request.scene.string(), "--poses", file.string(), "-o", folder.string()};
     Child child("tact-prep", find_program("tact-prep", request.programs), settings);
@@ -69,15 +69,15 @@ void save_fit(const SaveRequest& request, const nlohmann::json& poses, Signals& 
     while (!child.poll()) {
         const int asked = signals.wait(50);
         if (!why.empty()) continue;
-        if (asked != 0) why = std::string("it was ended by ") + sigdescr_np(asked);
-        if (asked == 0 && Monotonic::now() >= end) why = "tact-prep did not end in ten minutes";
+        if (asked != 0) why = std::string("tact-prep was ended by ") + sigdescr_np(asked);
+        if (asked == 0 && Monotonic::now() >= end) why = "tact-prep did not end within ten minutes";
         if (!why.empty()) child.stop();
     }
     const Ending& ending = *child.poll();
     if (!ending.clean())
-        throw StartupError("saving into " + folder.string(), why.empty() ? "tact-prep " + ending.text() : why,
-                           "see its messages above; the poses are in " + file.string() +
-                               ", and tact-prep export writes them from there");
+        throw StartupError("saving to " + folder.string(), why.empty() ? "tact-prep " + ending.text() : why,
+                           "see the messages of tact-prep above; the poses are in " + file.string() +
+                               ", from which tact-prep export writes the structures");
 }
 
 }  // namespace tact::launch

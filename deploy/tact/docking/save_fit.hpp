@@ -1,7 +1,7 @@
-// --save DIR: what the hand placed, written by tact-prep export when the run is over.
+// --save DIR: tact-prep export writes the placed structures at the end of the run.
 //
-// Fails by  StartupError: before the run where it could not be saved anyway (DIR holds something, the scene
-//           was made in code), after it where tact-prep fails.
+// Fails by  StartupError: before the run if saving could not succeed (DIR is not empty, the scene is synthetic), after
+//           it if tact-prep fails.
 #pragma once
 
 #include <filesystem>
@@ -15,16 +15,16 @@
 
 namespace tact::launch {
 
-// Does the scene's note name the files that its structures came from?
+// True if the scene's note names the source files of its structures.
 bool structures_have_sources(const SceneFile& scene);
-// Throws where the folder holds something already.
+// Throws if the folder is not empty.
 void check_save_folder(const std::filesystem::path& folder);
 
-// The places as tact-prep export and a run's --poses read them; bodies that make no sense are left out.
+// The poses in the format of tact-prep export and --poses; omits invalid bodies.
 nlohmann::json poses_json(const BodiesTopic& bodies, const std::vector<Structure>& structures);
 
-// Writes DIR/poses.json, runs tact-prep, which says on standard output what it wrote. A signal that comes
-// while it works ends it, which is an error; those that came before asked for something else.
+// Writes DIR/poses.json and runs tact-prep, which prints the files that it wrote. A signal during the save ends
+// tact-prep, which is an error; earlier signals were meant for the run.
 void save_fit(const SaveRequest& request, const nlohmann::json& poses, Signals& signals);
 
 }  // namespace tact::launch

@@ -1,5 +1,5 @@
-// tact drill SCAN: bakes the bone once, then runs it, with a burr in one hand and a suction tube in the other.
-// tact demo drill: a surgeon opens the mastoid of a synthetic temporal bone, a second hand sucks.
+// tact drill SCAN: bakes the bone once, then runs it with a burr in one hand and a suction tube in the other.
+// tact demo drill: an emulated surgeon opens the mastoid of a synthetic temporal bone; a second hand holds suction.
 #include <memory>
 
 #include "deploy/tact/baked_run.hpp"

@@ -1,4 +1,4 @@
-// Drilling's row of deploy/tact/systems: tact drill, tact demo drill, and what a run in bone reports.
+// Drilling's row of deploy/tact/systems: tact drill, tact demo drill, and the report of a drilling run.
 #pragma once
 
 #include <CLI/CLI.hpp>
@@ -16,9 +16,9 @@ namespace tact::launch {
 void add_drill(CLI::App& app, int& exit_code);
 void add_drill_demo(CLI::App& demo, int& exit_code);
 std::span<const PassedOption> drilling_controller_options();
-// Without a device and an explicit choice: an emulated surgeon with a burr, and a hand with a suction tube.
+// Without a device and an explicit choice: an emulated surgeon with a burr, and a second hand with a suction tube.
 void let_the_hands_drill(RunOptions& options);
-// Where they open the synthetic temporal bone: behind the ear canal, over the antrum (--hand-at-mm).
+// Where the emulated surgeon opens the synthetic temporal bone: behind the ear canal, over the antrum (--hand-at-mm).
 inline constexpr const char* kMastoidMm = "-4.5,0";
 
 nlohmann::json drilling_info(const SceneFile& scene);

@@ -18,16 +18,16 @@ using nlohmann::json;
 constexpr const char* kDrillingFormulas[] = {
     ("x_world = world_per_model * (x_model - centre_model_m); axes parallel, metres; voxel (0, 0, 0) "
      "is centred on origin_model_m"),
-    ("m0 = integral of density / 255 over the burr, m1 = the same times the place from its centre; "
+    ("m0 = integral of density / 255 over the burr, m1 = the same times the position from its centre; "
      "metres"),
     "x^2 - x^3 / 3 = m0 / (pi R^3), x = h / R, h the penetration",
-    ("elastic: c_e R^2 x^(3/2) away from the bone, along -m1 / |m1|; N; c_e is elastic_pa, or where "
-     "depth_at_1_n_m is above 0, what holds the ball with 1 N at that depth on a flat surface (or at "
-     "R / 2)"),
-    ("friction: c_mu R^2 x (m1 / m0) x omega, bent so that it stays below friction_share of the "
-     "elastic force; impact: - c_i R^2 x V; N"),
-    ("erosion: d rho / dt = -a (1 - (r / R)^2) rho inside the burr, a = rate_per_s where it turns "
-     "with rate_at_rad_s and in proportion to its speed, and soft times as fast in the softest bone, "
+    ("elastic: c_e R^2 x^(3/2) away from the bone, along -m1 / |m1|; N; c_e is elastic_pa, or if "
+     "depth_at_1_n_m is above 0, the value that holds the ball with 1 N at that depth on a flat surface (or "
+     "at R / 2)"),
+    ("friction: c_mu R^2 x (m1 / m0) x omega, limited smoothly to friction_share of the elastic force; "
+     "impact: - c_i R^2 x V; N"),
+    ("erosion: d rho / dt = -a (1 - (r / R)^2) rho inside the burr, a = rate_per_s at the speed "
+     "rate_at_rad_s and proportional to the speed, and soft times as fast in the softest bone, "
      "linear between"),
     ("size and shape of the burr, its speed and the force limit are settings of the controller, not "
      "of the scene"),

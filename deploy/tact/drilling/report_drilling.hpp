@@ -1,7 +1,7 @@
-// What a run's report says of drilling: the tools and what they took, from the controller, and a trainee's figures, from the
-// window.
+// Drilling in the report of a run: the tools and the removed bone, from the controller, and the trainee's metrics, from
+// the window.
 //
-// Keys are stable, units are in the names; what is not known is null.
+// Keys are stable, units are in the names; unknown values are null.
 #pragma once
 
 #include <filesystem>
@@ -12,9 +12,9 @@
 
 namespace tact::launch {
 
-// Null where nothing is drilled. trainee: what tact-gui --report wrote; null in the report where it did not.
+// Null without drilling. trainee: the file of tact-gui --report; null in the report if there is none.
 nlohmann::json drilling_report(const RtRegion& region, const std::filesystem::path& trainee);
-// The lines that a person reads; of the above.
+// The text lines of the report above.
 std::string drilling_summary(const nlohmann::json& drilling);
 
 }  // namespace tact::launch

@@ -1,4 +1,4 @@
-// A run in bone: the bone taken in the table, tools and the trainee's performance in the report.
+// A drilling run: removed bone in the table; tools and trainee's performance in the report.
 #include <array>
 #include <cstdio>
 #include <nlohmann/json.hpp>

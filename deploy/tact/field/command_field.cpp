@@ -15,20 +15,21 @@ namespace {
 constexpr PassedOption kFieldPrep[] = {
     {"--unit", "m|cm|mm|um|nm|a", "Unit of length in the field file (a: angstrom); default mm"},
     {"--size-mm", "MM", "Longest edge of the field's box in the workspace (mm); default 150"},
-    {"--force-max", "N", "Force at the greatest slope of the field (N); default 2"},
-    {"--stiffness-max", "N/M", "Stiffness above which the gain is reduced (N/m); default 800"},
+    {"--force-max", "N", "Force at the largest slope of the field (N); default 2"},
+    {"--stiffness-max", "N/M",
+     "Maximum stiffness of the field (N/m); the gain is reduced to keep it; default 800"},
     {"--probe-radius-mm", "MM",
      "Radius of the ball over which the field is averaged (mm); 0: a point; default 2"},
-    {"--value-unit", "TEXT", "Unit of the values, as the window shows it; default: none"},
+    {"--value-unit", "TEXT", "Unit of the values, for display; default: none"},
 };
 
 constexpr const char* kFieldFormulas[] = {
     "x_world = world_per_model * (x_model - centre_model_m); axes parallel, metres",
     "F = -force_n_m_per_unit * mean over the ball of grad(phi); grad per model metre, world axes, N",
-    "phi: tricubic B-spline through the values; outside of the box F fades to zero over four grid steps",
+    "phi: tricubic B-spline through the values; outside the box F fades to zero over four grid steps",
 };
 
-// A field moves no hand: without a device and an explicit choice, the emulated hand wanders in it.
+// Without a device and an explicit choice, the emulated hand wanders, because a field moves no hand.
 void let_the_hand_wander(RunOptions& options) {
     if (hand_is_free(options)) options.add_for_scene({"--hand", "wander"});
 }
@@ -41,7 +42,7 @@ struct FieldOptions {
 }  // namespace
 
 void add_field(CLI::App& app, int& exit_code) {
-    auto* const command = app.add_subcommand("field", "Feel a potential field that is given on a grid");
+    auto* const command = app.add_subcommand("field", "Feel a potential field on a grid");
     const auto o = std::make_shared<FieldOptions>();
     command
         ->add_option("FILE", o->file, "Potential field: CSV with x,y,z,value in each line, or NRRD, also .gz")

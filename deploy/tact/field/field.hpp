@@ -17,6 +17,6 @@ void add_field_demo(CLI::App& demo, int& exit_code);
 
 nlohmann::json field_info(const SceneFile& scene);
 std::unique_ptr<SystemRun> open_field_run(const SceneFile& scene);
-std::string field_summary(const nlohmann::json& report);  // empty
+std::string field_summary(const nlohmann::json& report);  // always empty
 
 }  // namespace tact::launch

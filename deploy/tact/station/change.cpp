@@ -28,7 +28,7 @@ std::filesystem::path below(const std::filesystem::path& root, const std::filesy
 void sync_folder(const std::filesystem::path& folder) {
     const int fd = open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
     if (fd < 0) return;
-    static_cast<void>(fsync(fd));  // not possible on some file systems
+    static_cast<void>(fsync(fd));  // some file systems do not support it
     close(fd);
 }
 
@@ -42,7 +42,7 @@ void write_file(const std::filesystem::path& path, const FileContent& content) {
         good = n > 0 || (n < 0 && errno == EINTR);
         done += n > 0 ? static_cast<std::size_t>(n) : 0;
     }
-    // The owner first: changing it clears special bits of the mode.
+    // Set the owner first: changing it clears special bits of the mode.
     if (good && geteuid() == 0) good = fchown(fd, content.uid, content.gid) == 0;
     good = good && fchmod(fd, content.mode) == 0 && fsync(fd) == 0;
     const int why = errno;
@@ -68,7 +68,7 @@ FileContent read_content(const std::filesystem::path& path) {
         return content;
     }
     if (!S_ISREG(status.st_mode))
-        throw StartupError("read " + path.string(), "it is neither a file nor a link", "remove it");
+        throw StartupError("read " + path.string(), "the path is neither a file nor a link", "remove it");
     content.kind = FileKind::file;
     content.mode = status.st_mode & 07777U;
     std::ifstream in(path, std::ios::binary);
@@ -113,7 +113,7 @@ void apply_change(const std::filesystem::path& root, const FileChange& change, v
         if (chmod(below(root, folder).c_str(), 0755) != 0) fail("make folder", below(root, folder));
         interrupt();
     }
-    if (change.after.kind == FileKind::file) {  // as a crash would leave it
+    if (change.after.kind == FileKind::file) {  // the state that a crash would leave
         write_file(beside(below(root, change.path)), change.after);
         interrupt();
     }
@@ -134,7 +134,7 @@ void revert_change(const std::filesystem::path& root, const FileChange& change) 
     unlink(beside(path).c_str());
     if (read_content(path) != change.before) put_content(path, change.before);
     for (auto folder = change.folders.rbegin(); folder != change.folders.rend(); ++folder)
-        rmdir(below(root, *folder).c_str());  // kept where somebody else put something into it
+        rmdir(below(root, *folder).c_str());  // a folder with other content is kept
 }
 
 }  // namespace tact::launch

@@ -1,7 +1,7 @@
-// One change to a file of a machine: what was there before, byte for byte, and what is there afterwards.
+// One change to a file of a machine: its content before, byte for byte, and after.
 //
-// Crash   the new content is written beside the file under a fixed name and renamed, so that at any instant the file is
-//         as before or as wanted, and what was left beside it is found again.
+// Crash   the new content is written beside the file under a fixed name and renamed, so that at any instant the file
+//         has the old or the new content, and a leftover file is found again.
 #pragma once
 
 #include <sys/types.h>
@@ -26,23 +26,23 @@ struct FileContent {
 };
 
 struct FileChange {
-    std::filesystem::path path{};  // below the root that is worked on, without it
+    std::filesystem::path path{};  // relative to the root
     FileContent before{}, after{};
-    std::vector<std::filesystem::path> folders{};  // made for it, the outermost first
+    std::vector<std::filesystem::path> folders{};  // created for the file, the outermost first
 };
 
-// Throws StartupError for what is neither a file, a link nor absent, or cannot be read.
+// Throws StartupError if the path is neither a file, a link nor absent, or cannot be read.
 [[nodiscard]] FileContent read_content(const std::filesystem::path& path);
-// Equal in everything that put_content() restores; owners count only where both are known.
+// Makes the path equal to `content`. Sets the owner only as root.
 void put_content(const std::filesystem::path& path, const FileContent& content);
 
-// Folders above the path that are not there yet, the outermost first, without the root.
+// Missing folders above the path, the outermost first, without the root.
 [[nodiscard]] std::vector<std::filesystem::path> missing_folders(const std::filesystem::path& root,
                                                                  const std::filesystem::path& path);
 
-// Does it; `interrupt` is called between its parts, for tests.
+// Applies the change; `interrupt` is called between its parts, for tests.
 void apply_change(const std::filesystem::path& root, const FileChange& change, void (*interrupt)());
-// Why the change cannot be taken back without losing what somebody wrote since; empty: it can.
+// Why the change cannot be reverted without losing later edits; empty: it can.
 [[nodiscard]] std::string changed_since(const std::filesystem::path& root, const FileChange& change);
 void revert_change(const std::filesystem::path& root, const FileChange& change);
 

@@ -1,4 +1,4 @@
-// tact station: makes a machine a station for a device, takes that back, and measures it.
+// tact station: sets up a machine for a device, undoes that, and measures the machine.
 #include <unistd.h>
 
 #include <cstdio>
@@ -25,13 +25,13 @@ struct StationOptions {
     bool dry_run = false, no_commands = false, force = false, as_json = false;
 };
 
-// A tree other than the machine's own is not told to restart its services.
+// Services are restarted only on the machine itself, not for another tree.
 bool offline(const StationOptions& o) { return o.no_commands || std::filesystem::path(o.root) != "/"; }
 
 void need_root(const StationOptions& o, const char* attempt) {
     if (std::filesystem::path(o.root) == "/" && geteuid() != 0)
-        throw StartupError(attempt, "this needs root",
-                           "repeat it with sudo; --dry-run shows the steps without");
+        throw StartupError(attempt, "the command needs root",
+                           "repeat the command with sudo; --dry-run shows the steps without root");
 }
 
 StationTools tools_of(const StationOptions& o, json& lines, json& commands) {
@@ -45,7 +45,7 @@ StationTools tools_of(const StationOptions& o, json& lines, json& commands) {
     tools.run = [&o, &commands, report = tools.report](const Command& command) {
         commands.push_back(command_text(command));
         if (!offline(o)) return run_command(command);
-        report("    not run: only the files of " + o.root + " are changed");
+        report("    not run: only the files in " + o.root + " are changed");
         return 0;
     };
     return tools;
@@ -74,7 +74,7 @@ void print_plan(const json& steps, const StationPlan& plan) {
         for (const json& file : step["files"]) std::printf("  write: %s\n", file.get<std::string>().c_str());
         for (const json& command : step["commands"])
             std::printf("  run: %s\n", command.get<std::string>().c_str());
-        if (step["files"].empty() && step["commands"].empty()) std::printf("  already so\n");
+        if (step["files"].empty() && step["commands"].empty()) std::printf("  already done\n");
     }
 }
 
@@ -101,7 +101,7 @@ int setup(const StationOptions& o) {
         if (!o.as_json)
             std::printf("%s\n", result == SetupResult::done
                                     ? "set up; restart the machine, then: sudo tact station verify"
-                                    : "this station is set up so already; nothing was changed");
+                                    : "this station is already set up this way; nothing was changed");
     }
     if (o.as_json) std::printf("%s\n", report.dump(2).c_str());
     return 0;
@@ -127,7 +127,7 @@ struct VerifyCommand {
     bool as_json = false;
 };
 
-// What the set-up wanted: only root may read the journal.
+// The kernel arguments of the set-up; only root may read the journal.
 void add_wanted(VerifyMetrics& metrics) {
     try {
         if (const auto journal = read_journal("/")) metrics.arguments_wanted = journal->kernel_arguments;
@@ -137,11 +137,11 @@ void add_wanted(VerifyMetrics& metrics) {
 }
 
 int verify(const VerifyCommand& o) {
-    // Not after an hour of measuring.
+    // Check now, not after an hour of measuring.
     const auto folder = std::filesystem::absolute(o.out).parent_path();
     if (access(std::filesystem::exists(folder) ? folder.c_str() : folder.parent_path().c_str(), W_OK) != 0)
         throw StartupError("write " + o.out, last_error(),
-                           "repeat it with sudo, or name another file with --out");
+                           "repeat the command with sudo, or give another file with --out");
     VerifyOptions measure = o.measure;
     measure.seconds = 60.0 * o.minutes;
     auto metrics =
@@ -202,7 +202,7 @@ void add_station(CLI::App& app, int& exit_code) {
         ->type_name("NAME");
     setup_command
         ->add_option("--skip", o->request.skip,
-                     "Step to leave out: kernel, groups, rights, tuning, service or kernel-arguments")
+                     "Step to omit: kernel, groups, rights, tuning, service or kernel-arguments")
         ->type_name("STEP");
     setup_command->callback([o, &exit_code] { exit_code = setup(*o); });
 

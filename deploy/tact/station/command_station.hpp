@@ -1,4 +1,4 @@
-// tact station, for the program's parser.
+// Adds tact station to the parser.
 #pragma once
 
 #include <CLI/CLI.hpp>

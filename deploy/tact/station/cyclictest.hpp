@@ -1,4 +1,5 @@
-// cyclictest (package rt-tests) beside the controller: what the kernel alone does, by an independent program.
+// Runs cyclictest (package rt-tests) for comparison: the latency of the kernel alone, measured by an independent
+// program.
 #pragma once
 
 #include <optional>
@@ -11,15 +12,15 @@ namespace tact::launch {
 
 struct CyclictestPlace {
     int core = -1;        // -1: not pinned
-    bool beside = false;  // while the controller runs; else after it
-    std::string text;     // for people
+    bool beside = false;  // runs during the controller's run; false: after it
+    std::string text;     // description for the report
 };
 
-// On another isolated core beside the controller where there is one, else on the servo's after it.
+// Another isolated core, during the controller's run, if there is one; else the servo's core, after the run.
 [[nodiscard]] CyclictestPlace place_cyclictest(int servo_core, const std::vector<int>& isolated,
                                                const std::vector<int>& siblings_of_servo);
 
-// Largest latency in its JSON output, in microseconds; nothing: it is none, or it made no cycle.
+// Largest latency in the JSON output, in microseconds; empty if the text is invalid or has no cycles.
 [[nodiscard]] std::optional<double> parse_cyclictest(const std::string& text);
 
 [[nodiscard]] std::vector<std::string> cyclictest_arguments(int core, double seconds,

@@ -18,7 +18,7 @@ using nlohmann::json;
 constexpr int kVersion = 1;
 constexpr const char* kHex = "0123456789abcdef";
 
-// Any bytes, also such as are no UTF-8.
+// Any bytes, also invalid UTF-8.
 std::string to_hex(const std::string& bytes) {
     std::string text;
     for (const char c : bytes) {
@@ -33,7 +33,8 @@ std::string from_hex(const std::string& text) {
     if (text.size() % 2 != 0) throw std::invalid_argument("odd number of hex digits");
     for (std::size_t i = 0; i < text.size(); i += 2) {
         const std::string pair = text.substr(i, 2);
-        if (pair.find_first_not_of(kHex) != std::string::npos) throw std::invalid_argument("no hex digits");
+        if (pair.find_first_not_of(kHex) != std::string::npos)
+            throw std::invalid_argument("a character that is not a hex digit");
         bytes += static_cast<char>(std::stoi(pair, nullptr, 16));
     }
     return bytes;
@@ -53,7 +54,7 @@ FileContent content_from(const json& j) {
     const std::string kind = j.at("kind");
     if (kind != "file" && kind != "link") throw std::invalid_argument("kind " + kind);
     const auto mode = j.at("mode").get<mode_t>();
-    if (mode > 07777U) throw std::invalid_argument("a mode that is none");
+    if (mode > 07777U) throw std::invalid_argument("invalid file mode");
     return {.kind = kind == "file" ? FileKind::file : FileKind::link,
             .bytes = from_hex(j.at("bytes")),
             .mode = mode,
@@ -67,7 +68,7 @@ json paths_json(const std::vector<std::filesystem::path>& paths) {
     return all;
 }
 
-// Inside the root: no way out of it by "..".
+// Paths must stay inside the root: no "..".
 std::filesystem::path path_from(const json& j) {
     std::filesystem::path path = j.get<std::string>();
     for (const auto& part : path)
@@ -149,8 +150,8 @@ std::optional<Journal> read_journal(const std::filesystem::path& root) {
     const FileContent content = read_content(path);
     if ((content.uid != geteuid() && content.uid != 0) || (content.mode & (S_IWGRP | S_IWOTH)) != 0)
         throw StartupError(
-            "read " + path.string(), "others than you and root may have written it",
-            "check its content, then: chown root " + path.string() + "; chmod 600 " + path.string());
+            "read " + path.string(), "users other than you and root may have changed the file",
+            "check the content, then run: chown root " + path.string() + "; chmod 600 " + path.string());
     return parse_journal(content.bytes);
 }
 

@@ -1,7 +1,7 @@
-// The journal of tact station setup: what has to be done to take it back. Written before each step.
+// The journal of tact station setup: all that undo needs. Written before each step.
 //
-// Place   ROOT/var/lib/tact/station.json, mode 0600: undo writes system files from it, so it is refused where anybody
-//         but its owner may write to it, or where it belongs to a user other than root and the one who calls.
+// Place   ROOT/var/lib/tact/station.json, mode 0600. Undo writes system files from it, so it is rejected if others than
+//         its owner may write to it, or if its owner is neither root nor the caller.
 #pragma once
 
 #include <filesystem>
@@ -21,25 +21,25 @@ struct JournalStep {
     std::string name{};
     StepState state = StepState::begun;
     std::vector<FileChange> changes{};
-    std::vector<Command> undo_first{};  // commands, before and
-    std::vector<Command> undo{};        // after the files are as before
+    std::vector<Command> undo_first{};  // commands before
+    std::vector<Command> undo{};        // and after the files are restored
 };
 
 struct Journal {
     int core = -1;
     std::string kernel_arguments{};
-    bool complete = false;                         // the whole set-up
-    std::vector<std::filesystem::path> folders{};  // made for the journal itself
+    bool complete = false;                         // the set-up is complete
+    std::vector<std::filesystem::path> folders{};  // created for the journal itself
     std::vector<JournalStep> steps{};
 };
 
 inline constexpr const char* kJournalPath = "/var/lib/tact/station.json";
 
 [[nodiscard]] std::string journal_text(const Journal& journal);
-// Throws StartupError for what is no journal.
+// Throws StartupError if the text is not a journal.
 [[nodiscard]] Journal parse_journal(const std::string& text);
 
-// Nothing: there is none. Throws StartupError where it is damaged or may not be trusted.
+// Empty if there is none. Throws StartupError if it is damaged or not trustworthy.
 [[nodiscard]] std::optional<Journal> read_journal(const std::filesystem::path& root);
 void write_journal(const std::filesystem::path& root, const Journal& journal);
 void remove_journal(const std::filesystem::path& root, const Journal& journal);

@@ -20,7 +20,7 @@ std::string us_text(double us) {
 }
 
 Check timed(const char* name, double us, double pass_us, double warn_us) {
-    // Not "<=" turned round: a number that is none fails.
+    // Written so that NaN fails.
     const Grade grade = us <= pass_us ? Grade::pass : us <= warn_us ? Grade::warn : Grade::fail;
     return {name, grade,
             us_text(us) + " (pass up to " + us_text(pass_us) + ", warn up to " + us_text(warn_us) + ")"};
@@ -76,7 +76,8 @@ std::vector<Check> judge_station(const VerifyMetrics& f, const VerifyLimits& l) 
                                      {kScheduleDmaLatency, "/dev/cpu_dma_latency"}})
         if ((f.schedule_flags & flag) == 0) lacks += (lacks.empty() ? "" : ", ") + std::string(name);
     checks.push_back(required("scheduling", (f.schedule_flags & kWanted) == kWanted, Grade::warn,
-                              "FIFO priority, isolated core, locked memory", "the servo lacks " + lacks));
+                              "FIFO priority, isolated core, locked memory",
+                              "missing for the servo: " + lacks));
     checks.push_back(required("kernel", f.realtime_kernel, Grade::warn, "real-time: " + f.kernel,
                               "not a real-time kernel: " + f.kernel));
     const std::string missing = missing_arguments(f.arguments_wanted, f.arguments);
@@ -87,13 +88,12 @@ std::vector<Check> judge_station(const VerifyMetrics& f, const VerifyLimits& l) 
                                   "not in force: " + missing + " (restart the machine)"));
     checks.push_back(required("governor", f.governor.empty() || f.governor == "performance", Grade::warn,
                               f.governor.empty() ? "this machine has no frequency scaling" : f.governor,
-                              f.governor + ", wanted performance"));
+                              f.governor + ", expected performance"));
     if (f.smi_count)
-        checks.push_back(
-            required("smi", *f.smi_count == 0, Grade::warn, "none",
-                     std::to_string(*f.smi_count) +
-                         " system management interrupts: switch off USB legacy support and power "
-                         "management in the firmware set-up"));
+        checks.push_back(required("smi", *f.smi_count == 0, Grade::warn, "none",
+                                  std::to_string(*f.smi_count) +
+                                      " system management interrupts: disable USB legacy support and power "
+                                      "management in the firmware set-up"));
     else
         checks.push_back({"smi", Grade::pass, "not counted: " + f.smi_text});
     return checks;

@@ -1,4 +1,4 @@
-// What tact station verify measured, and what it is worth: a pure function.
+// Grades the measurements of tact station verify; a pure function.
 #pragma once
 
 #include <cstdint>
@@ -16,20 +16,20 @@ struct VerifyMetrics {
     std::uint64_t cycles = 0, overruns = 0, skipped = 0, allocations = 0, locks = 0, page_faults = 0;
     std::uint32_t schedule_flags = 0;  // ScheduleFlag of ipc/topics/health.hpp
     double p50_us = 0.0, p99_us = 0.0, p999_us = 0.0, max_us = 0.0;
-    int core = -1;                            // of the servo; -1: not pinned
-    std::optional<double> cyclictest_max_us;  // nothing: not run, for the reason in cyclictest_text
-    std::string cyclictest_text;              // where and when it ran, or why not
+    int core = -1;                            // core of the servo; -1: not pinned
+    std::optional<double> cyclictest_max_us;  // empty: not run, see cyclictest_text
+    std::string cyclictest_text;              // where and when it ran, or the reason why not
     std::optional<std::uint64_t> smi_count;
     std::string smi_text;
     std::string kernel, machine;
     bool realtime_kernel = false;
-    std::string arguments, arguments_wanted;  // wanted: of the journal; "": this is no station
-    std::string governor;                     // of the servo's core; "": not scaled
+    std::string arguments, arguments_wanted;  // wanted: from the journal; "": tact station setup was not run
+    std::string governor;                     // frequency governor of the servo's core; "": no scaling
     std::int64_t verified_at_s = 0;
 };
 
-// Limits in microseconds: what a station with an isolated core on a real-time kernel reaches with room to spare, and
-// where a force loop of 1 kHz begins to be wrong (a fifth of its period, all of it).
+// Limits in microseconds. Pass: a station with an isolated core on a real-time kernel stays well below. Warn: a fifth
+// of the period of a 1 kHz force loop (p99.9), and the whole period (maximum).
 struct VerifyLimits {
     double p999_pass_us = 50.0, p999_warn_us = 200.0;
     double max_pass_us = 200.0, max_warn_us = 1000.0;

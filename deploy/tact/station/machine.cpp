@@ -25,7 +25,7 @@ std::string whole(const std::filesystem::path& path) {
     return {std::istreambuf_iterator<char>(in), {}};
 }
 
-// Lines with GRUB_CMDLINE_LINUX and GRUB_CMDLINE_LINUX_DEFAULT.
+// The lines of GRUB_CMDLINE_LINUX and GRUB_CMDLINE_LINUX_DEFAULT.
 std::string grub_lines(const std::filesystem::path& file) {
     std::istringstream in(whole(file));
     std::string lines;
@@ -61,7 +61,7 @@ StationMachine read_station_machine(const std::filesystem::path& root, bool offl
     m.cores = parse_core_list(read_small(cpu / "online"));
     if (m.cores.empty())
         throw StartupError("read " + (cpu / "online").string(), "no list of processor cores",
-                           "mount /sys of the machine that is set up there");
+                           "mount the /sys of that machine there");
     for (const int core : m.cores) {
         auto all = parse_core_list(
             read_small(cpu / ("cpu" + std::to_string(core)) / "topology/thread_siblings_list"));
@@ -88,14 +88,14 @@ ServoCores choose_cores(const StationMachine& machine, int core) {
     c.servo = core == -1 ? machine.cores.back() : core;
     const std::string attempt = "keep core " + std::to_string(c.servo) + " for the servo";
     if (std::find(machine.cores.begin(), machine.cores.end(), c.servo) == machine.cores.end())
-        throw StartupError(attempt, "there is no such core",
+        throw StartupError(attempt, "the core does not exist",
                            "choose one of " + core_list(machine.cores) + " with --core");
     if (machine.cores.size() < 2)
-        throw StartupError(attempt, "it is the only one", "use a machine with two cores or more");
+        throw StartupError(attempt, "it is the only core", "use a machine with two cores or more");
     c.kept = machine.siblings.at(c.servo);
     if (c.kept.size() >= machine.cores.size()) {
         c.shared = true;
-        c.kept.assign(1, c.servo);  // g++ 14 takes the assignment of a list for an overrun
+        c.kept.assign(1, c.servo);  // g++ 14 wrongly reports an overrun for the assignment of a list
     }
     for (const int other : machine.cores)
         if (std::find(c.kept.begin(), c.kept.end(), other) == c.kept.end()) c.others.push_back(other);

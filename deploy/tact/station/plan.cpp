@@ -64,12 +64,15 @@ PlannedStep rights_step(const StationMachine& m) {
 
 std::string with_line(std::string text, const std::string& line, const std::string& instead) {
     const auto at = text.find("\n" + line + "\n");
-    if (at == std::string::npos) throw StartupError("fill in a unit", "no line " + line, "report this");
+    if (at == std::string::npos)
+        throw StartupError("fill in a unit", "the shipped unit has no line " + line,
+                           "report this as a defect of tact");
     return text.replace(at + 1, line.size(), instead);
 }
 
 PlannedStep tuning_step(const StationMachine& m, const ServoCores& cores) {
-    PlannedStep step{.name = "tuning", .purpose = "at boot: governor, idle states, interrupts"};
+    PlannedStep step{.name = "tuning",
+                     .purpose = "processor settings at boot: governor, idle states, interrupts"};
     const std::string unit = "/etc/systemd/system/tact-station.service";
     step.files = {{.path = "/usr/local/lib/tact/station-tune", .bytes = shipped::kStationTune, .mode = 0755},
                   {.path = unit,
@@ -87,7 +90,7 @@ PlannedStep tuning_step(const StationMachine& m, const ServoCores& cores) {
 }
 
 PlannedStep service_step(const StationMachine& m, const ServoCores& cores) {
-    PlannedStep step{.name = "service", .purpose = "the servo's core for tact-rt@.service"};
+    PlannedStep step{.name = "service", .purpose = "core of the servo for tact-rt@.service"};
     step.files = {
         {.path = "/etc/systemd/system/tact-rt@.service.d/station.conf",
          .bytes = "# Written by tact station setup; tact station undo removes it.\n[Service]\nCPUAffinity=" +
@@ -99,16 +102,17 @@ PlannedStep service_step(const StationMachine& m, const ServoCores& cores) {
 
 PlannedStep arguments_step(const StationMachine& m, const std::string& arguments) {
     PlannedStep step{.name = "kernel-arguments",
-                     .purpose = "the servo's core is kept free (restart to use it)"};
+                     .purpose = "kernel arguments that keep the servo's core free (restart to use them)"};
     const std::string attempt = "set kernel arguments";
     if (!m.grub || !m.update_grub)
-        throw StartupError(
-            attempt, m.grub ? "there is no command update-grub" : "there is no /etc/default/grub",
-            "give your boot loader \"" + arguments + "\", and add --skip kernel-arguments here");
+        throw StartupError(attempt,
+                           m.grub ? "the command update-grub is missing" : "/etc/default/grub does not exist",
+                           "add the arguments \"" + arguments +
+                               "\" to your boot loader, and add --skip kernel-arguments here");
     for (const char* const name : kOwnArguments)
         if (m.grub_arguments.find(name) != std::string::npos)
-            throw StartupError(attempt, std::string(name) + " is in /etc/default/grub or its folder already",
-                               "remove it there, or add --skip kernel-arguments");
+            throw StartupError(attempt, std::string(name) + " is already in /etc/default/grub or its folder",
+                               "remove the argument there, or add --skip kernel-arguments");
     step.files = {{.path = "/etc/default/grub.d/tact.cfg",
                    .bytes = "# Written by tact station setup; tact station undo removes it.\n"
                             "GRUB_CMDLINE_LINUX_DEFAULT=\"$GRUB_CMDLINE_LINUX_DEFAULT " +
@@ -128,8 +132,8 @@ std::string kernel_arguments_for(const ServoCores& cores) {
 StationPlan make_station_plan(const StationMachine& machine, const StationRequest& request) {
     for (const std::string& name : request.skip)
         if (std::find(std::begin(kStepNames), std::end(kStepNames), name) == std::end(kStepNames))
-            throw StartupError("skip step " + name, "there is no such step",
-                               "steps: kernel, groups, rights, tuning, service, kernel-arguments");
+            throw StartupError("skip step " + name, "the step does not exist",
+                               "choose one of kernel, groups, rights, tuning, service, kernel-arguments");
     StationPlan plan;
     plan.cores = choose_cores(machine, request.core);
     plan.kernel_arguments = kernel_arguments_for(plan.cores);
@@ -143,14 +147,14 @@ StationPlan make_station_plan(const StationMachine& machine, const StationReques
     if (wanted("service")) plan.steps.push_back(service_step(machine, plan.cores));
     if (wanted("kernel-arguments")) plan.steps.push_back(arguments_step(machine, plan.kernel_arguments));
     plan.remarks.push_back("core " + std::to_string(plan.cores.servo) + " for the servo, cores " +
-                           core_list(plan.cores.others) + " for all else");
+                           core_list(plan.cores.others) + " for all other work");
     if (plan.cores.kept.size() > 1)
         plan.remarks.push_back("cores " + core_list(plan.cores.kept) +
                                " are threads of one physical core: all of them are kept free");
     if (plan.cores.shared)
         plan.remarks.push_back(
             "the other thread of this physical core stays in use, because there is no other core: "
-            "expect a larger lateness");
+            "expect larger lateness");
     return plan;
 }
 

@@ -17,19 +17,19 @@ struct WantedFile {
 };
 
 struct PlannedStep {
-    std::string name{};  // as for --skip
+    std::string name{};  // name for --skip
     std::string purpose{};
     std::vector<WantedFile> files{};
-    std::vector<Command> commands{};            // after the files
+    std::vector<Command> commands{};            // run after the files are written
     std::vector<Command> undo_first{}, undo{};  // before and after the files are restored
 };
 
 struct StationRequest {
     int core = -1;
-    std::string user{};               // gets the rights; empty: nobody
+    std::string user{};               // gets the rights; empty: no user
     std::vector<std::string> skip{};  // names of steps
     std::vector<std::string>
-        kernel_packages;  // that an installation would bring; empty: the meta package alone
+        kernel_packages;  // packages that an installation would add; empty: only the meta package
 };
 
 struct StationPlan {
@@ -44,7 +44,7 @@ inline constexpr const char* kStepNames[] = {"kernel", "groups",  "rights",
 inline constexpr const char* kKernelPackage = "linux-image-rt-amd64";
 
 [[nodiscard]] std::string kernel_arguments_for(const ServoCores& cores);
-// Throws StartupError for a machine that cannot be set up so.
+// Throws StartupError if the machine cannot be set up this way.
 [[nodiscard]] StationPlan make_station_plan(const StationMachine& machine, const StationRequest& request);
 
 }  // namespace tact::launch

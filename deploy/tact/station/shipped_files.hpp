@@ -1,4 +1,4 @@
-// The files of deploy/ that a station gets, as they were when this program was built (shipped_files.cpp.in).
+// The files of deploy/ that a station gets, as of the build of this program (shipped_files.cpp.in).
 #pragma once
 
 namespace tact::launch::shipped {

@@ -27,7 +27,7 @@ SmiReading read_smi_count(int core, const std::filesystem::path& root) {
     }
     std::uint64_t value = 0;
     const ssize_t got = pread(fd, &value, sizeof value, kSmiCount);
-    const std::string why = got < 0 ? last_error() : "half a value";
+    const std::string why = got < 0 ? last_error() : "incomplete value";
     close(fd);
     if (got != static_cast<ssize_t>(sizeof value))
         return {std::nullopt, "not readable: register 0x34 of " + path.string() + ": " + why};

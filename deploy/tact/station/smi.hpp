@@ -1,4 +1,5 @@
-// How many system management interrupts a processor core took: the firmware's own, which no kernel can delay or see.
+// Counts system management interrupts of a processor core: interrupts of the firmware that no kernel can delay or
+// detect.
 #pragma once
 
 #include <cstdint>
@@ -15,7 +16,7 @@ struct SmiReading {
 
 // MSR_SMI_COUNT (0x34) of Intel processors, through /dev/cpu/N/msr below the root.
 [[nodiscard]] SmiReading read_smi_count(int core, const std::filesystem::path& root = "/");
-// Between two readings, across an overflow.
+// Difference of two readings, across an overflow.
 [[nodiscard]] std::uint64_t smi_between(std::uint64_t before, std::uint64_t after);
 
 }  // namespace tact::launch

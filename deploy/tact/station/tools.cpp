@@ -15,7 +15,7 @@
 namespace tact::launch {
 namespace {
 
-// output: a pipe's end that gets what it prints; -1: standard error.
+// output: write end of a pipe for the command's output; -1: standard error.
 int spawn_and_wait(const Command& command, int output, const std::function<void()>& meanwhile) {
     std::vector<char*> arguments;
     for (const std::string& argument : command) arguments.push_back(const_cast<char*>(argument.c_str()));

@@ -8,14 +8,14 @@
 
 namespace tact::launch {
 
-// Its exit code, 127 where it cannot be started, 128 + n where signal n ended it; its output goes to standard error.
+// Returns the exit code, 127 if it cannot be started, 128 + n after signal n. The output goes to standard error.
 int run_command(const Command& command);
-// What it prints; nothing where it fails.
+// Returns the output; empty if the command fails.
 [[nodiscard]] std::string output_of(const Command& command);
 
-// Packages that installing the real-time kernel would bring, asked of apt-get without changing anything.
+// Packages that installing the real-time kernel would add, from a simulation by apt-get.
 [[nodiscard]] std::vector<std::string> kernel_packages_to_come();
-// The lines "Inst NAME ..." of apt-get -s.
+// Parses the lines "Inst NAME ..." of apt-get -s.
 [[nodiscard]] std::vector<std::string> parse_simulated_install(const std::string& text);
 
 }  // namespace tact::launch

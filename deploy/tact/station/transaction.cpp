@@ -14,7 +14,7 @@ std::filesystem::path at(const std::filesystem::path& root, const std::filesyste
     return root / path.relative_path();
 }
 
-// The packages of the kernel that runs cannot be removed from beneath it.
+// The packages of the running kernel cannot be removed.
 bool removes_running_kernel(const Command& command) {
     utsname name{};
     if (uname(&name) != 0 || std::find(command.begin(), command.end(), "purge") == command.end())
@@ -28,7 +28,7 @@ void run_or_throw(const StationTools& tools, const Command& command) {
     const int code = tools.run(command);
     if (code != 0)
         throw StartupError("run " + command_text(command), "exit code " + std::to_string(code),
-                           "fix what it reports above, then repeat the command");
+                           "fix the problem reported above, then repeat the command");
 }
 
 void undo_step(const StationTools& tools, const JournalStep& step) {
@@ -45,9 +45,10 @@ void undo_step(const StationTools& tools, const JournalStep& step) {
     }
     for (const Command& command : step.undo) {
         if (removes_running_kernel(command)) {
-            tools.report("  not run, because this kernel is in use; after a restart with another one: " +
-                         command_text(command));
-        } else if (step.state == StepState::begun) {  // it need not have come so far
+            tools.report(
+                "  not run, because this kernel is in use; after a restart with another kernel, run: " +
+                command_text(command));
+        } else if (step.state == StepState::begun) {  // the step may not have come this far
             tools.report("  run: " + command_text(command));
             if (const int code = tools.run(command); code != 0)
                 tools.report("  exit code " + std::to_string(code) + ", ignored: the step was not complete");
@@ -78,10 +79,10 @@ void do_step(const PlannedStep& step, const StationTools& tools, Journal& journa
                       .undo_first = step.undo_first,
                       .undo = step.undo};
     tools.report(step.name + ": " + step.purpose);
-    // Files that are as wanted need no command to be read again.
+    // Unchanged files need no command to be read again.
     const bool idle = entry.changes.empty() && (step.commands.empty() || !step.files.empty());
     if (idle) {
-        tools.report("  already so");
+        tools.report("  already done");
         return;
     }
     journal.steps.push_back(entry);
@@ -111,7 +112,7 @@ std::string command_text(const Command& command) {
 
 std::vector<FileChange> changes_of(const PlannedStep& step, const std::filesystem::path& root) {
     std::vector<FileChange> changes;
-    std::vector<std::filesystem::path> made;  // by the changes before
+    std::vector<std::filesystem::path> made;  // by earlier changes
     for (const WantedFile& file : step.files) {
         FileChange change{.path = file.path,
                           .before = read_content(at(root, file.path)),
@@ -136,15 +137,16 @@ SetupResult set_up_station(const StationPlan& plan, const StationTools& tools) {
         const std::string changed = refusal(tools.root, *before);
         if (!changed.empty())
             throw StartupError("set up this station", changed,
-                               "restore the file, or take the set-up back with tact station undo --force");
+                               "restore the file, or undo the set-up with tact station undo --force");
         if (before->complete && before->core == plan.cores.servo && as_planned(plan, tools))
             return SetupResult::already_so;
-        throw StartupError("set up this station",
-                           !before->complete ? "an earlier set-up was interrupted"
-                           : before->core != plan.cores.servo
-                               ? "it is set up differently, with core " + std::to_string(before->core)
-                               : "it was set up before, and not all of it is in place",
-                           "run tact station undo, then repeat the command");
+        throw StartupError(
+            "set up this station",
+            !before->complete ? "an earlier set-up was interrupted"
+            : before->core != plan.cores.servo
+                ? "the station is set up differently, with core " + std::to_string(before->core)
+                : "the station was set up before, and not all of it is in place",
+            "run tact station undo, then repeat the command");
     }
     Journal journal{.core = plan.cores.servo,
                     .kernel_arguments = plan.kernel_arguments,
@@ -156,7 +158,7 @@ SetupResult set_up_station(const StationPlan& plan, const StationTools& tools) {
         journal.complete = true;
         write_journal(tools.root, journal);
     } catch (const StartupError&) {
-        tools.report("a step failed; what was done is taken back");
+        tools.report("a step failed; undoing the previous steps");
         undo_station(tools, true);
         throw;
     }
@@ -169,7 +171,7 @@ bool undo_station(const StationTools& tools, bool force) {
     if (const std::string changed = refusal(tools.root, *journal); !changed.empty() && !force)
         throw StartupError(
             "undo the set-up of this station", changed,
-            "save what you need of it, then run tact station undo --force, which restores the state "
+            "save the changes that you need, then run tact station undo --force, which restores the state "
             "before the set-up");
     while (!journal->steps.empty()) {
         undo_step(tools, journal->steps.back());

@@ -27,10 +27,10 @@ namespace tact::launch {
 namespace {
 
 constexpr auto kStartLimit = std::chrono::seconds(120);
-constexpr double kSettleS = 1.0;  // the first second of a controller is its start, not its work
+constexpr double kSettleS = 1.0;  // the first second belongs to the start of the controller
 constexpr auto kReportEvery = std::chrono::seconds(10);
 
-// This measurement arms by itself, which is for emulated devices alone: nobody holds the arm.
+// verify arms without a person, so only emulated devices are permitted.
 void need_emulated_device(const std::filesystem::path& config) {
     if (config.empty()) return;
     const std::string attempt = "verify with " + config.string();
@@ -48,23 +48,22 @@ void need_emulated_device(const std::filesystem::path& config) {
         if (driver != "sim" && driver != "sim-process" && driver != "none")
             throw StartupError(
                 attempt,
-                std::string(hand) + ".driver is \"" + driver + "\", and verify arms without a person",
-                "name a configuration whose drivers are \"sim\", or leave out --config");
+                std::string(hand) + ".driver is \"" + driver + "\", but verify arms without a person",
+                "give a configuration with the drivers \"sim\", or omit --config");
     }
 }
 
 std::string trimmed(const std::string& text) { return text.substr(0, text.find('\n')); }
 
-// The cycles between two samples of a histogram that only grows.
+// The cycles between two samples of a cumulative histogram.
 void lateness_between(const LatenessTopic& before, const LatenessTopic& after, VerifyMetrics& f) {
     std::array<std::uint64_t, DurationHistogram::kBuckets> counts{};
-    std::uint64_t total = 0, most_ns = 0;
+    std::uint64_t total = 0;
     for (std::size_t b = 0; b < counts.size(); ++b) {
         counts[b] = after.counts[b] - std::min(before.counts[b], after.counts[b]);
         total += counts[b];
-        if (counts[b] > 0) most_ns = DurationHistogram::upper_ns(b);
     }
-    most_ns = std::min(most_ns, static_cast<std::uint64_t>(after.max_ns));
+    const std::uint64_t most_ns = DurationHistogram::longest_ns(counts.data(), after.max_ns);
     const auto us = [&](double p) {
         return static_cast<double>(DurationHistogram::percentile_ns(counts.data(), total, most_ns, p)) * 1e-3;
     };
@@ -84,7 +83,7 @@ public:
           observer_(session_),
           json_(scratch_.path() / "cyclictest.json") {}
 
-    // False: a signal asked to end.
+    // False if a signal requested the end.
     bool run(const std::filesystem::path& scene, VerifyMetrics& f) {
         read_machine_state(f);
         start(scene);
@@ -101,11 +100,11 @@ public:
         if (!pass(o_.seconds, "controller")) return false;
         const auto health = newest(observer_.region().health);
         rt_->stop();
-        rt_->wait(std::chrono::seconds(20));  // the end publishes all lateness
+        rt_->wait(std::chrono::seconds(20));  // publishes the complete lateness at its end
         const auto late = newest(observer_.region().lateness);
         if (!health || !health_before || !late || !late_before)
-            throw StartupError("verify this station", "the controller published no health",
-                               "run tact-rt alone");
+            throw StartupError("verify this station", "the controller published no state",
+                               "run tact-rt alone to find the cause");
         lateness_between(*late_before, *late, f);
         f.rate_hz = health->force_rate_mean_hz;
         f.overruns = health->overruns - health_before->overruns;
@@ -154,7 +153,7 @@ private:
     void need_controller() {
         if (!rt_->poll()) return;
         throw StartupError("verify this station", "tact-rt " + rt_->poll()->text() + ":\n" + read_small(log_),
-                           "fix what it reports, then repeat the command");
+                           "fix the reported problem, then repeat the command");
     }
 
     bool wait_until_it_runs() {
@@ -167,11 +166,11 @@ private:
             if (h && h->cycle > 0 && newest(observer_.region().lateness)) return true;
             if (Monotonic::now() > end)
                 throw StartupError("verify this station", "the controller did not start within 120 s",
-                                   "run tact-rt alone to see why");
+                                   "run tact-rt alone to find the cause");
         }
     }
 
-    // False: a signal asked to end.
+    // False if a signal requested the end.
     bool pass(double seconds, const char* what) {
         const Instant begin = Monotonic::now();
         Instant reported = begin;
@@ -201,7 +200,7 @@ private:
         const auto program = find_in_path("cyclictest");
         f.cyclictest_text = place.text;
         if (program.empty()) {
-            f.cyclictest_text = "there is no cyclictest (apt-get install rt-tests)";
+            f.cyclictest_text = "cyclictest is not installed (apt-get install rt-tests)";
             return;
         }
         cyclictest_after_ = !place.beside;

@@ -20,14 +20,13 @@ constexpr std::uint32_t kForestVersion = 1;
 
 constexpr const char* kFormulas[] = {
     "x_world = world_per_model * (x_model - centre_model_m); axes parallel, metres",
-    "the tool is a ball of radius r (a point: 4 um) about the hand g; its centre c follows g as far as the "
-    "triangles "
-    "let the ball",
+    "the tool is a ball of radius r (a point: 4 um) around the hand g; its centre c follows g until the ball "
+    "meets triangles",
     "F = stiffness * (c - g) at rest, without friction and shading; world, N",
-    "friction: c stays where it is within friction * p of its frictionless place x along the surface, p = |x "
+    "friction: c stays in place within friction * p of its frictionless position x along the surface, p = |x "
     "- g|",
-    "shading: + stiffness * sum w_i s_i (N_i - n_i), n_i what holds x with weight w_i, N_i the normal "
-    "interpolated there, s_i 1 to 0 where they are 20 to 40 degrees apart",
+    "shading: + stiffness * sum w_i s_i (N_i - n_i), n_i the contact normals that hold x with weights w_i, "
+    "N_i the normal interpolated there, s_i from 1 to 0 for angles of 20 to 40 degrees between them",
     "stiffness, friction, radius, damping and the force limit are settings of the controller, not of the "
     "scene",
 };

@@ -1,4 +1,4 @@
-// A run on a surface: nothing of its own.
+// A run on a surface: adds nothing to the common run.
 #include <nlohmann/json.hpp>
 
 #include "deploy/tact/surface/surface.hpp"

@@ -16,11 +16,11 @@ namespace tact::launch {
 void add_touch(CLI::App& app, int& exit_code);
 void add_touch_demo(CLI::App& demo, int& exit_code);
 std::span<const PassedOption> surface_controller_options();
-// A surface moves no hand: without a device and an explicit choice, the emulated hand strokes it.
+// Without a device and an explicit choice, the emulated hand strokes the surface, because a surface moves no hand.
 void let_the_hand_stroke(RunOptions& options);
 
 nlohmann::json surface_info(const SceneFile& scene);
 std::unique_ptr<SystemRun> open_surface_run(const SceneFile& scene);
-std::string surface_summary(const nlohmann::json& report);  // empty
+std::string surface_summary(const nlohmann::json& report);  // always empty
 
 }  // namespace tact::launch

@@ -1,4 +1,4 @@
-// The options that say which tool touches: for tact touch and tact demo touch. tact-prep checks the values.
+// Options of the tool that touches the surface, for tact touch and tact demo touch. tact-prep checks the values.
 #pragma once
 
 #include <CLI/CLI.hpp>

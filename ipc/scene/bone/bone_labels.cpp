@@ -35,24 +35,24 @@ std::string label_name_fault(const std::string& name) {
                " bytes";
     for (const char c : name)
         if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f)
-            return "the name of a structure holds a control character";
+            return "the name of a structure contains a control character";
     return {};
 }
 
 std::string labels_fault(const BoneBricks& bricks, const BoneLabelsView& labels) {
     if (labels.structure.empty() || labels.structure.size() > kStructuresMax)
-        return "it has " + std::to_string(labels.structure.size()) + " structures; 1 to 255 can be";
+        return "it has " + std::to_string(labels.structure.size()) + " structures; 1 to 255 are allowed";
     for (const BoneStructure& s : labels.structure)
         if (std::string fault = label_name_fault(s.name); !fault.empty()) return fault;
     if (labels.label.size() != bricks.bytes())
-        return "it has " + std::to_string(labels.label.size()) + " labels, the bone's size asks for " +
+        return "it has " + std::to_string(labels.label.size()) + " labels, the bone's size requires " +
                std::to_string(bricks.bytes());
     std::uint8_t highest = 0;
     for (const std::uint8_t l : labels.label) highest = std::max(highest, l);
     if (highest > labels.structure.size())
-        return "a voxel has label " + std::to_string(highest) + ", but there are " +
+        return "a voxel has label " + std::to_string(highest) + ", but the table has " +
                std::to_string(labels.structure.size()) + " structures";
-    if (!zero_beyond_size(bricks, labels.label)) return "there is a label beyond the size of the bone";
+    if (!zero_beyond_size(bricks, labels.label)) return "a voxel beyond the size of the bone has a label";
     return {};
 }
 
@@ -62,7 +62,7 @@ bool has_bone_labels(const SceneFile& file) { return file.count(kLabelTag) > 0; 
 
 void write_bone_labels(SceneWriter& out, const BoneBricks& bricks, const BoneLabelsView& labels) {
     if (const std::string fault = labels_fault(bricks, labels); !fault.empty())
-        throw StartupError("write labels of a bone", fault, "give fewer structures, or shorter names");
+        throw StartupError("write labels of a bone", fault, "use fewer structures, or shorter names");
     const LabelHeader header{{bricks.size[0], bricks.size[1], bricks.size[2]},
                              static_cast<std::uint32_t>(labels.structure.size()),
                              {}};
@@ -90,13 +90,13 @@ BoneLabelsView read_bone_labels(const SceneFile& file, const BoneBricks& bricks)
     if (!std::equal(bricks.size.begin(), bricks.size.end(), header.size))
         in.fail("its size is not that of the bone");
     if (header.structures == 0 || header.structures > kStructuresMax)
-        in.fail("it has " + std::to_string(header.structures) + " structures; 1 to 255 can be");
+        in.fail("it has " + std::to_string(header.structures) + " structures; 1 to 255 are allowed");
     BoneLabelsView labels;
     for (const LabelRow& row : in.get_all<LabelRow>(header.structures, "structures")) {
         const char* const end = std::find(std::begin(row.name), std::end(row.name), '\0');
         if (end == std::end(row.name)) in.fail("a name does not end with a zero byte");
         if (row.critical > 1 || row.reserved[0] != 0 || row.reserved[1] != 0)
-            in.fail("a field of a structure is neither 0 nor 1, or reserved and not zero");
+            in.fail("the field critical of a structure is neither 0 nor 1, or a reserved field is not zero");
         labels.structure.push_back({std::string(std::begin(row.name), end),
                                     {row.rgba[0], row.rgba[1], row.rgba[2], row.rgba[3]},
                                     row.critical == 1});

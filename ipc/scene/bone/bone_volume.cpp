@@ -27,8 +27,8 @@ constexpr float kBoneHuMax = 1e6F;
 std::string bone_hu_fault(float at_0, float at_255) {
     if (std::isnan(at_0) && std::isnan(at_255)) return {};
     if (at_0 >= -kBoneHuMax && at_255 <= kBoneHuMax && at_0 < at_255) return {};
-    return "its densities stand for " + std::to_string(at_0) + " to " + std::to_string(at_255) +
-           " Hounsfield units, which cannot be";
+    return "its densities represent " + std::to_string(at_0) + " to " + std::to_string(at_255) +
+           " Hounsfield units, an impossible range";
 }
 
 }  // namespace
@@ -37,17 +37,18 @@ std::string bone_bricks_fault(const BoneBricks& bricks) {
     for (const std::uint32_t n : bricks.size) {
         if (n == 0 || n > kBoneEdgeMax)
             return "it is " + std::to_string(bricks.size[0]) + " x " + std::to_string(bricks.size[1]) +
-                   " x " + std::to_string(bricks.size[2]) + " voxels; along an axis 1 to " +
-                   std::to_string(kBoneEdgeMax) + " can be";
+                   " x " + std::to_string(bricks.size[2]) + " voxels; allowed along each axis are 1 to " +
+                   std::to_string(kBoneEdgeMax);
     }
     if (bricks.bytes() > kBoneBytesMax)
         return "it has " + std::to_string(bricks.bytes()) + " voxels, more than " +
                std::to_string(kBoneBytesMax);
     if (!(bricks.voxel_m >= kBoneVoxelMinM && bricks.voxel_m <= kBoneVoxelMaxM))
-        return "its voxel is " + std::to_string(1e3 * bricks.voxel_m) + " mm wide; 0.001 to 100 mm can be";
+        return "its voxel is " + std::to_string(1e3 * bricks.voxel_m) +
+               " mm wide; 0.001 to 100 mm are allowed";
     for (const double x : bricks.origin_m)
         if (!(std::abs(x) <= kBoneOriginMaxM))
-            return "its origin lies " + std::to_string(x) + " m away; up to 100 m can be";
+            return "its origin is " + std::to_string(x) + " m away; up to 100 m are allowed";
     return {};
 }
 
@@ -80,7 +81,8 @@ void write_bone_volume(SceneWriter& out, const BoneVolumeView& volume) {
         fault = "it has " + std::to_string(volume.density.size()) + " densities instead of " +
                 std::to_string(volume.bricks.bytes());
     if (!fault.empty())
-        throw StartupError("write a volume of bone", fault, "crop it, or resample it to another voxel");
+        throw StartupError("write a volume of bone", fault,
+                           "crop the volume, or resample it to another voxel size");
     const BoneBricks& b = volume.bricks;
     const BoneHeader header{{b.size[0], b.size[1], b.size[2]},
                             BoneBricks::kEdge,
@@ -114,11 +116,11 @@ BoneVolumeView read_bone_volume(const SceneFile& file) {
         if (!fault.empty()) in.fail(fault);
     const std::span<const std::byte> rest = bytes.subspan(sizeof header);
     if (rest.size() != volume.bricks.bytes())
-        in.fail("it has " + std::to_string(rest.size()) + " densities, its size asks for " +
+        in.fail("it has " + std::to_string(rest.size()) + " densities, its size requires " +
                 std::to_string(volume.bricks.bytes()));
     volume.density = {reinterpret_cast<const std::uint8_t*>(rest.data()), rest.size()};
     if (!zero_beyond_size(volume.bricks, volume.density))
-        in.fail("there is bone beyond its size, in its last bricks");
+        in.fail("a voxel beyond its size, in its last bricks, contains bone");
     return volume;
 }
 

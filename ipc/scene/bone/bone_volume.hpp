@@ -1,12 +1,13 @@
-// The bone of a drilling scene: how dense each voxel is.
+// The bone of a drilling scene: the density of each voxel.
 //
-// Density  0: no bone, 1 to 255: the share of 255 of solid bone. Where the volume came from a scanner, the
-//          Hounsfield units that 0 and 255 stand for are told; between them it is linear.
-// Section BONE: a header of 64 bytes, then the densities in the order of BoneBricks. Read as a view on the
-// mapped file, nothing is copied.
-// Bounds   1 to kBoneEdgeMax voxels along an axis and kBoneBytesMax bytes in all.
-// Thread   immutable; the file outlives the view.  Fails by  StartupError: every field, the length, and that
-//          what lies beyond the volume's size in its last bricks is 0.
+// Density  0: no bone, 1 to 255: fraction of solid bone, times 255. For a volume from a scanner, the
+//          Hounsfield units of 0 and 255 are stored; values between them are linear.
+// Section  BONE: a header of 64 bytes, then the densities in the order of BoneBricks. Read as a view of the
+//          mapped file, without a copy.
+// Bounds   1 to kBoneEdgeMax voxels along an axis and kBoneBytesMax bytes in all
+// Thread   immutable; the file outlives the view
+// Errors   StartupError: an invalid field or length, or a non-zero voxel beyond the volume's size in its
+//          last bricks
 #pragma once
 
 #include <cmath>
@@ -27,7 +28,7 @@ inline constexpr std::uint64_t kBoneBytesMax = std::uint64_t{1} << 32;
 
 struct BoneVolumeView {
     BoneBricks bricks;
-    float hu_at_0 = std::numeric_limits<float>::quiet_NaN();  // both NaN where there are none
+    float hu_at_0 = std::numeric_limits<float>::quiet_NaN();  // both NaN: unknown
     float hu_at_255 = std::numeric_limits<float>::quiet_NaN();
     std::span<const std::uint8_t> density;  // bricks.bytes()
 
@@ -38,13 +39,13 @@ struct BoneVolumeView {
     }
 };
 
-// What is wrong with the geometry, in words; empty: nothing. Readers, and makers before they allocate, ask it.
+// The fault of the geometry as text; empty: none. For readers, and for writers before they allocate.
 std::string bone_bricks_fault(const BoneBricks& bricks);
 
-// Whether all that lies beyond the size, in the last bricks, is 0. `voxel` has bricks.bytes().
+// True if all voxels beyond the size, in the last bricks, are 0. `voxel` has bricks.bytes().
 bool zero_beyond_size(const BoneBricks& bricks, std::span<const std::uint8_t> voxel);
 
-// Throws StartupError where the view is none that could be read again.
+// Throws StartupError for a view that could not be read again.
 void write_bone_volume(SceneWriter& out, const BoneVolumeView& volume);
 BoneVolumeView read_bone_volume(const SceneFile& file);
 

@@ -24,18 +24,19 @@ static_assert(sizeof(DistanceHeader) == 64);
 
 std::string distance_fault(const DistanceField& f, std::size_t structures) {
     if (f.label == 0 || f.label > structures)
-        return "it is for label " + std::to_string(f.label) + ", but there are " +
+        return "it is for label " + std::to_string(f.label) + ", but the scene has " +
                std::to_string(structures) + " structures";
-    // A grid of distances has the same bounds as a volume; it is as large at the most.
+    // A distance grid has the same bounds as a volume, since it is not larger.
     BoneBricks as_bone;
     as_bone.size = f.size;
     as_bone.voxel_m = f.spacing_m;
     as_bone.origin_m = f.origin_m;
     if (std::string fault = bone_bricks_fault(as_bone); !fault.empty()) return fault;
-    if (!(f.quantum_m >= 1e-9 && f.quantum_m <= f.spacing_m)) return "the step of its distances cannot be";
-    if (!(f.error_m >= 0.0 && f.error_m <= 2.0 * f.spacing_m)) return "the error it states cannot be";
+    if (!(f.quantum_m >= 1e-9 && f.quantum_m <= f.spacing_m))
+        return "the quantization step of its distances is out of range";
+    if (!(f.error_m >= 0.0 && f.error_m <= 2.0 * f.spacing_m)) return "its stated error is out of range";
     if (f.quanta.size() != f.points())
-        return "it has " + std::to_string(f.quanta.size()) + " distances, its size asks for " +
+        return "it has " + std::to_string(f.quanta.size()) + " distances, its size requires " +
                std::to_string(f.points());
     return {};
 }
@@ -45,12 +46,12 @@ std::string distance_fault(const DistanceField& f, std::size_t structures) {
 double DistanceField::distance_m(const Vec3& model_m) const noexcept {
     std::array<std::size_t, 3> low;
     std::array<double, 3> t;
-    double beyond2 = 0.0;  // of the grid, squared
+    double beyond2 = 0.0;  // distance beyond the grid, squared
     for (int a = 0; a < 3; ++a) {
         const auto k = static_cast<std::size_t>(a);
         const double at = (model_m[a] - origin_m[a]) / spacing_m;
         const double last = size[k] - 1.0;
-        const double inside = at > 0.0 ? std::min(at, last) : 0.0;  // also where it is no number
+        const double inside = at > 0.0 ? std::min(at, last) : 0.0;  // 0 for NaN
         const double off_m = spacing_m * (at - inside);
         beyond2 += off_m * off_m;
         low[k] =
@@ -66,14 +67,14 @@ double DistanceField::distance_m(const Vec3& model_m) const noexcept {
     const auto along_y = [&](std::size_t o) { return (1.0 - t[1]) * along_x(o) + t[1] * along_x(o + up); };
     const double d = quantum_m * ((1.0 - t[2]) * along_y(0) + t[2] * along_y(on));
     if (beyond2 == 0.0) return d;
-    // The grid is convex and the structure in it: the angle at the nearest point of the grid is not acute.
+    // The grid is convex and contains the structure: the angle at the nearest point of the grid is not acute.
     const double outside = std::max(d, 0.0);
     return std::sqrt(outside * outside + beyond2);
 }
 
 void write_distance_field(SceneWriter& out, std::uint32_t index, const DistanceField& field) {
     if (const std::string fault = distance_fault(field, kDistanceFieldsMax); !fault.empty())
-        throw StartupError("write distances to a structure", fault, "give a smaller volume");
+        throw StartupError("write distances to a structure", fault, "use a smaller volume");
     const DistanceHeader header{field.label,     {field.size[0], field.size[1], field.size[2]},
                                 field.spacing_m, {field.origin_m.x(), field.origin_m.y(), field.origin_m.z()},
                                 field.quantum_m, field.error_m};
@@ -91,7 +92,7 @@ std::vector<DistanceField> read_distance_fields(const SceneFile& file, std::size
         const std::span<const std::byte> bytes = file.section(kDistanceTag, kDistanceVersion, i);
         BytesIn in(bytes, file.name() + ", section DIST " + std::to_string(i));
         if (count > kDistanceFieldsMax)
-            in.fail("there are " + std::to_string(count) + " such sections, more than 255");
+            in.fail("the scene has " + std::to_string(count) + " such sections, more than 255");
         const auto header = in.get<DistanceHeader>("header");
         DistanceField f;
         f.label = header.label;
@@ -103,13 +104,13 @@ std::vector<DistanceField> read_distance_fields(const SceneFile& file, std::size
         const std::span<const std::byte> rest = bytes.subspan(sizeof header);
         if (rest.size() % 2 != 0 ||
             reinterpret_cast<std::uintptr_t>(rest.data()) % alignof(std::int16_t) != 0)
-            in.fail("its distances are no whole number of 16-bit integers in their place");
+            in.fail("its distances are not a whole number of aligned 16-bit integers");
         f.quanta = {reinterpret_cast<const std::int16_t*>(rest.data()), rest.size() / 2};
         if (const std::string fault =
                 distance_fault(f, std::min<std::size_t>(structures, kDistanceFieldsMax));
             !fault.empty())
             in.fail(fault);
-        if (seen[f.label]) in.fail("there is another for label " + std::to_string(f.label));
+        if (seen[f.label]) in.fail("the scene has another field for label " + std::to_string(f.label));
         seen[f.label] = true;
         fields.push_back(f);
     }

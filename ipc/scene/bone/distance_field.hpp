@@ -1,12 +1,13 @@
-// How far any point is from one structure of a bone volume: read off a coarse grid, between its points linearly.
+// Distance of any point from one structure of a bone volume: linear interpolation on a coarse grid.
 //
-// Distance   to the surface of the structure's voxels, taken as cubes; negative inside.
-// Error      stated in the section as error_m: no distance that is read off inside the grid is wrong by more. Where
-//            the structure is more than a spacing away it is a small part of that (prep/volume/README.md).
-// Beyond the grid the result is never more than the true distance and the error.
-// Section DIST, one per structure: a header of 64 bytes, then 16-bit integers in steps of quantum_m, x fastest. A view
-// on the mapped file.
-// Thread     immutable, no allocation; the file outlives it.  Fails by  StartupError
+// Distance   to the surface of the structure's voxels, as cubes; negative inside
+// Error      error_m in the section: bound for interpolated distances inside the grid. More than one
+//            spacing away from the structure, the error is much smaller (prep/volume/README.md)
+// Outside    the grid, the result never exceeds the true distance plus the error
+// Section    DIST, one per structure: a header of 64 bytes, then 16-bit integers in steps of quantum_m, x
+//            fastest. A view of the mapped file.
+// Thread     immutable, no allocation; the file outlives it
+// Errors     StartupError
 #pragma once
 
 #include <array>
@@ -26,18 +27,18 @@ struct DistanceField {
     Vec3 origin_m = Vec3::Zero();  // model; of grid point (0, 0, 0)
     double quantum_m = 0.0;
     double error_m = 0.0;
-    std::span<const std::int16_t> quanta;  // as many as grid points
+    std::span<const std::int16_t> quanta;  // one per grid point
 
     [[nodiscard]] std::size_t points() const noexcept { return std::size_t{size[0]} * size[1] * size[2]; }
-    // Any point, model.
+    // For any point in the model frame.
     [[nodiscard]] double distance_m(const Vec3& model_m) const noexcept;
 };
 
 inline constexpr std::uint32_t kDistanceFieldsMax = 255;
 
-// Throws StartupError where the field is none that could be read again.
+// Throws StartupError for a field that could not be read again.
 void write_distance_field(SceneWriter& out, std::uint32_t index, const DistanceField& field);
-// All of a scene, at most one for a label; `structures` as many as LABL has.
+// All fields of a scene, at most one per label; `structures`: their number in LABL.
 std::vector<DistanceField> read_distance_fields(const SceneFile& file, std::size_t structures);
 
 }  // namespace tact

@@ -1,11 +1,11 @@
-// The table is derived instead of copied. On each face of the cell the crossed edges are joined pairwise so
-// that inside corners are cut off one by one; as this depends on the signs of the face alone, both cells at a
+// The table is derived, not copied. On each face of the cell, the crossed edges are joined pairwise so that
+// each inside corner is cut off separately. This depends on the signs of the face alone, so both cells at a
 // face agree and the surface has no crack. The segments of the six faces close to loops.
 //
-// A loop is cut into triangles by diagonals. A diagonal between two edges of one face would lie in that face,
-// where the neighbour may put the same one: an edge with four triangles. The published tables have this
-// fault. Here the first triangulation without such a diagonal is taken, and where none exists a vertex in the
-// middle of the loop is added.
+// Diagonals cut a loop into triangles. A diagonal between two edges of one face would lie in that face, and
+// the adjacent cell may have the same one: an edge with four triangles. The published tables have this
+// fault. This code takes the first triangulation without such a diagonal; where none exists, it adds a
+// vertex in the middle of the loop.
 #include "ipc/scene/density/cell_cases.hpp"
 
 #include <algorithm>
@@ -14,7 +14,7 @@
 namespace tact {
 namespace {
 
-// Corners of the faces, counter-clockwise seen from outside the cell: -x, +x, -y, +y, -z, +z.
+// Corners of the faces, counter-clockwise as viewed from outside the cell: -x, +x, -y, +y, -z, +z.
 constexpr std::array<std::array<std::uint8_t, 4>, 6> kFace{
     {{0, 4, 6, 2}, {1, 3, 7, 5}, {0, 1, 5, 4}, {2, 6, 7, 3}, {0, 2, 3, 1}, {4, 5, 7, 6}}};
 
@@ -24,7 +24,7 @@ std::uint8_t edge_between(std::uint8_t a, std::uint8_t b) {
     for (std::uint8_t e = 0; e < 12; ++e) {
         if (kCellEdge[e][0] == low && kCellEdge[e][1] == axis) return e;
     }
-    return 0;  // not reached: kFace lists neighbours only
+    return 0;  // not reached: kFace lists adjacent corners only
 }
 
 bool share_face(std::uint8_t e, std::uint8_t f) {
@@ -41,7 +41,7 @@ bool share_face(std::uint8_t e, std::uint8_t f) {
 using Loop = std::vector<std::uint8_t>;
 using Triangles = std::vector<std::array<std::uint8_t, 3>>;
 
-// Triangulates loop[first..last], whose base (first, last) is a side already.
+// Triangulates loop[first..last]; its base (first, last) is already a side.
 bool cut(const Loop& loop, std::size_t first, std::size_t last, Triangles& out) {
     if (last - first < 2) return true;
     for (std::size_t tip = first + 1; tip < last; ++tip) {
@@ -60,9 +60,9 @@ CellCase make_case(unsigned inside) {
     std::array<std::uint8_t, 12> next{};
     next.fill(12);
     for (const auto& face : kFace) {
-        // From where the walk about the face comes in to where it next goes out: with the inside on its left
-        // seen from outside the cell, so the loops are counter-clockwise seen from the outside of the
-        // surface.
+        // Connects the edge at which a walk about the face enters the inside with the edge at which it next
+        // leaves. The inside is on its left, viewed from outside the cell, so the loops are
+        // counter-clockwise viewed from outside the surface.
         for (std::size_t i = 0; i < 4; ++i) {
             if (in(face[i]) || !in(face[(i + 1) % 4])) continue;
             std::size_t j = (i + 1) % 4;

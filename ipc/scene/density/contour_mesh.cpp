@@ -22,7 +22,7 @@ std::unique_ptr<ProgressiveMesh> read_contour(const SceneFile& file, const Conto
     BytesIn in(file.section(kContourTag, kContourVersion), file.name() + ", section CONT 0");
     const auto origin = in.get<ContourOrigin>("origin");
     in.finish();
-    if (!(origin == expected)) in.fail("it is of another scene or level than the one asked for");
+    if (!(origin == expected)) in.fail("it belongs to another scene or level than requested");
     return std::make_unique<ProgressiveMesh>(read_mesh(file, 0));
 }
 

@@ -43,7 +43,7 @@ double ContourScale::fraction_inside(double level) const {
 double ContourScale::level_of_fraction(double fraction) const {
     if (voxels() == 0) return 0.0;
     const double wanted = std::clamp(fraction, 0.0, 1.0) * static_cast<double>(voxels());
-    // The first bin edge with no more above it than wanted.
+    // The first bin edge with at most the requested number of voxels above it.
     const auto at = std::find_if(above_.begin(), above_.end(), [wanted](std::uint64_t above) {
         return static_cast<double>(above) <= wanted;
     });

@@ -10,7 +10,7 @@ constexpr SectionTag kGridTag{'G', 'R', 'I', 'D'};
 constexpr std::uint32_t kGridVersion = 1;
 constexpr std::uint32_t kSizeMax = 8192;
 
-// 64 bytes, so that the values lie aligned in the mapped file.
+// 64 bytes, so that the values are aligned in the mapped file.
 struct GridHeader {
     std::uint32_t size[3];
     std::uint32_t reserved;  // zero
@@ -44,7 +44,7 @@ DensityGrid read_grid(const SceneFile& file, std::uint32_t index) {
     for (int a = 0; a < 3; ++a) {
         if (header.size[a] < 2 || header.size[a] > kSizeMax) {
             in.fail("the grid has " + std::to_string(header.size[a]) +
-                    " voxels along an axis, outside of 2 to " + std::to_string(kSizeMax));
+                    " voxels along an axis; allowed are 2 to " + std::to_string(kSizeMax));
         }
         if (!(std::abs(header.origin_m[a]) <= 1e6))
             in.fail("the origin is " + std::to_string(header.origin_m[a]) + " m");

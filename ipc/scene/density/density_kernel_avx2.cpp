@@ -1,5 +1,5 @@
-// Density kernel for AVX2 and FMA: eight points at a time are prepared as in density_kernel_avx512.cpp, then
-// summed one by one, each 4 x 4 patch in two halves of two rows.
+// Density kernel for AVX2 and FMA: prepares eight points at a time as in density_kernel_avx512.cpp, then
+// sums them one by one, each 4 x 4 patch in two halves of two rows.
 #if defined(__x86_64__)
 
 #include <immintrin.h>
@@ -20,10 +20,10 @@ struct alignas(32) Block {
     float value_z[4][kLanes], slope_z[4][kLanes];  // times the point's weight
     float r[3][kLanes];
     std::int32_t offset[kLanes];
-    std::int32_t phase[kLanes];  // columns: how many of the four x are of the second row
+    std::int32_t phase[kLanes];  // columns: number of the four x in the second row
 };
 
-// By phase: which floats of two rows are of the second row.
+// By phase: mask of the floats from the second of two rows.
 alignas(32) constexpr std::int32_t kSecond[4][kLanes] = {{0, 0, 0, 0, 0, 0, 0, 0},
                                                          {-1, 0, 0, 0, -1, 0, 0, 0},
                                                          {-1, -1, 0, 0, -1, -1, 0, 0},
@@ -53,7 +53,7 @@ TACT_AVX2 inline Weights weights(__m256 f, __m256 per_spacing) {
     return w;
 }
 
-// Four vectors of eight points become four floats per point, points in order.
+// Transposes four vectors of eight points to four floats per point, points in order.
 TACT_AVX2 inline void store_per_point(const __m256* w, float* out) {
     const __m256 a = _mm256_unpacklo_ps(w[0], w[1]), b = _mm256_unpackhi_ps(w[0], w[1]);
     const __m256 c = _mm256_unpacklo_ps(w[2], w[3]), d = _mm256_unpackhi_ps(w[2], w[3]);
@@ -66,7 +66,7 @@ TACT_AVX2 inline void store_per_point(const __m256* w, float* out) {
     _mm256_store_ps(out + 24, _mm256_permute2f128_ps(p2, p3, 0x31));
 }
 
-// Each weight to where its coefficient is: w[(e - phase) mod 4] to e.
+// Rotates each weight to the position of its coefficient: w[(e - phase) mod 4] to e.
 TACT_AVX2 inline void rotate(__m256i cell, __m256* w) {
     const __m256 by_one = _mm256_castsi256_ps(_mm256_slli_epi32(cell, 31));
     const __m256 by_two = _mm256_castsi256_ps(_mm256_slli_epi32(cell, 30));
@@ -92,7 +92,7 @@ TACT_AVX2 inline void prepare(const DensityJob& job, std::size_t begin, std::siz
         _mm256_store_ps(block.r[a], r);
         const __m256 per_spacing = _mm256_set1_ps(job.per_spacing[a]);
         __m256 t = _mm256_fmadd_ps(r, per_spacing, _mm256_set1_ps(job.fraction[a]));
-        t = _mm256_max_ps(t, _mm256_set1_ps(job.low[a]));  // the second operand where t is not a number
+        t = _mm256_max_ps(t, _mm256_set1_ps(job.low[a]));  // returns the second operand for NaN
         t = _mm256_min_ps(t, _mm256_set1_ps(job.high[a]));
         const __m256 whole = _mm256_floor_ps(t);
         Weights w = weights(_mm256_sub_ps(t, whole), per_spacing);

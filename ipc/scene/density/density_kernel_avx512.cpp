@@ -1,21 +1,22 @@
 // Density kernel for AVX-512 (F only).
 //
-// Sixteen points at a time: their places and spline weights are computed in structure-of-arrays form. Then,
-// for four points at a time, each point's 64 coefficients are summed along z, with one weight for a whole
-// 4 y x 4 x; the results of the four are transposed to 4 y x 4 points and summed along x. The sums of all
-// sixteen are transposed once more, to sixteen points, and summed along y. So no weight has to be spread over
-// a vector but by a load, and what is left for each point, weight and lever arm, is done for sixteen at once.
+// Processes sixteen points at a time. Their positions and spline weights are computed in
+// structure-of-arrays form. Then, for four points at a time, each point's 64 coefficients are summed along
+// z, with one weight for a whole 4 y x 4 x; the results of the four are transposed to 4 y x 4 points and
+// summed along x. The sums of all sixteen are transposed once more, to sixteen points, and summed along y.
+// So only loads broadcast a weight over a vector, and the remaining work per point, weight and lever arm,
+// is done for sixteen at once.
 //
-// Where the coefficients are in columns, a patch is two loads, the second of which replaces the elements that
-// the first has from before the patch. So x is rotated within its four, by the same for all rows of a point;
-// the weights along x are rotated to match, and nothing else notices.
+// With coefficients in columns, a patch takes two loads; the second replaces the elements of the first that
+// are before the patch. This rotates x within its four, by the same amount for all rows of a point; the
+// weights along x are rotated to match, and the rest of the computation is unchanged.
 //
-// Weights are computed as six times the spline's and slopes as twice, per voxel; the factors are made good
-// in the end.
+// The code computes six times the spline's weights and twice its slopes, per voxel; the final sums correct
+// the factors.
 #if defined(__x86_64__)
 
 #if defined(__GNUC__) && !defined(__clang__)
-// GCC 12 warns of its own header's deliberately undefined registers (bug 105593).
+// GCC 12 warns about deliberately undefined registers in its own header (bug 105593).
 #pragma GCC diagnostic ignored "-Wmaybe-uninitialized"
 #pragma GCC diagnostic ignored "-Wuninitialized"
 #endif
@@ -30,7 +31,7 @@ namespace tact {
 namespace {
 
 constexpr int kLanes = 16;
-// Points are asked for this far ahead, past the caches that the map is to stay in.
+// Prefetch distance for points, bypassing the caches in which the map should stay.
 constexpr std::ptrdiff_t kFetchAhead = 128;
 constexpr double kValueScale = 1.0 / (6.0 * 6.0 * 6.0), kSlopeScale = 1.0 / (2.0 * 6.0 * 6.0);
 
@@ -39,7 +40,7 @@ struct alignas(64) Block {
     __m512 value_y[4], slope_y[4];
     __m512 r[3], weight;
     std::int32_t offset[kLanes];
-    std::int32_t second[kLanes];  // columns: which elements are of the second row, as a mask
+    std::int32_t second[kLanes];  // columns: mask of the elements from the second row
 };
 
 struct Weights {
@@ -62,7 +63,7 @@ TACT_AVX512 inline Weights weights(__m512 f) {
     return w;
 }
 
-// Each weight to where its coefficient is: w[(e - cell) mod 4] to e.
+// Rotates each weight to the position of its coefficient: w[(e - cell) mod 4] to e.
 TACT_AVX512 inline void rotate(__m512i cell, __m512* w) {
     const __mmask16 by_one = _mm512_test_epi32_mask(cell, _mm512_set1_epi32(1));
     const __mmask16 by_two = _mm512_test_epi32_mask(cell, _mm512_set1_epi32(2));
@@ -71,14 +72,14 @@ TACT_AVX512 inline void rotate(__m512i cell, __m512* w) {
     for (int e = 0; e < 4; ++e) w[e] = _mm512_mask_mov_ps(a[e], by_two, a[e ^ 2]);
 }
 
-// No address is wrong here, not even one behind the last point.
+// Prefetching any address is safe, also beyond the last point.
 TACT_AVX512 inline void fetch(const float* next) {
     _mm_prefetch(reinterpret_cast<const char*>(next) + 4 * kFetchAhead, _MM_HINT_NTA);
 }
 
 template <bool windows>
 TACT_AVX512 inline void prepare(const DensityJob& job, std::size_t begin, std::size_t count, Block& block) {
-    // Points beyond the last get no weight and lie at the body's origin.
+    // Points beyond the last get zero weight and the body's origin as position.
     const __mmask16 mask = count >= kLanes ? __mmask16{0xFFFF} : static_cast<__mmask16>((1U << count) - 1U);
     const __m512 x = _mm512_maskz_loadu_ps(mask, job.x + begin);
     const __m512 y = _mm512_maskz_loadu_ps(mask, job.y + begin);
@@ -98,7 +99,7 @@ TACT_AVX512 inline void prepare(const DensityJob& job, std::size_t begin, std::s
         r = _mm512_fmadd_ps(_mm512_set1_ps(row[2]), z, r);
         block.r[a] = r;
         __m512 t = _mm512_fmadd_ps(r, _mm512_set1_ps(job.per_spacing[a]), _mm512_set1_ps(job.fraction[a]));
-        t = _mm512_max_ps(t, _mm512_set1_ps(job.low[a]));  // the second operand where t is not a number
+        t = _mm512_max_ps(t, _mm512_set1_ps(job.low[a]));  // returns the second operand for NaN
         t = _mm512_min_ps(t, _mm512_set1_ps(job.high[a]));
         const __m512i whole = _mm512_cvt_roundps_epi32(t, _MM_FROUND_TO_NEG_INF | _MM_FROUND_NO_EXC);
         Weights w = weights(_mm512_sub_ps(t, _mm512_cvtepi32_ps(whole)));

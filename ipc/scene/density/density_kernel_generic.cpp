@@ -7,7 +7,7 @@ namespace tact {
 
 namespace {
 
-// Weights of the cubic B-spline at the four knots around a point, f in [0, 1) of a voxel past the second.
+// Weights of the cubic B-spline at the four knots around a point, f in [0, 1) voxels past the second.
 void weights(float f, float per_spacing, float* value, float* slope) {
     const float g = 1.0F - f;
     value[0] = g * g * g * (1.0F / 6.0F);
@@ -32,14 +32,14 @@ void add_point(const DensityJob& job, std::size_t i, Partial& out) {
         const float* row = job.rotation + 3 * a;
         r[a] = row[0] * job.x[i] + row[1] * job.y[i] + row[2] * job.z[i];
         float t = r[a] * job.per_spacing[a] + job.fraction[a];
-        t = t > job.low[a] ? t : job.low[a];  // also where t is not a number
+        t = t > job.low[a] ? t : job.low[a];  // also for NaN
         t = t < job.high[a] ? t : job.high[a];
         const float whole = std::floor(t);
         weights(t - whole, job.per_spacing[a], value[a], slope[a]);
         cell[a] = static_cast<std::int32_t>(whole) + job.cell[a] - 1;
     }
     const float* const patch = job.coefficients + cell[2] * job.plane_stride + 4 * cell[1];
-    std::ptrdiff_t place[4];  // of the four x
+    std::ptrdiff_t place[4];  // offsets of the four x
     for (int x = 0; x < 4; ++x) {
         const std::ptrdiff_t at = cell[0] + x;
         place[x] = at / 4 * job.row_stride + at % 4;

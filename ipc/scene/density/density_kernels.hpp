@@ -1,16 +1,16 @@
-// The inner loop of DensityMap::sum(), one function per instruction set. Private to ipc/assets and its tests.
+// The inner loop of DensityMap::sum(), one function per instruction set. Private to ipc/scene/density and its tests.
 //
-// Plain C types only: a translation unit that is compiled for a newer processor must not emit inline
-// functions that the linker could pick for an older one.
+// Plain C types only: a translation unit compiled for a newer processor must not emit inline functions that
+// the linker could use on an older one.
 //
-// Layout   rows of four floats along x, one behind the other along y, so that what a point needs of one z
-//          plane, 4 x 4 coefficients, is 64 bytes in a row or two times that. Row r at y and z begins at
-//          z * plane_stride + r * row_stride + 4 y:
-//          columns  row r has x = 4 r .. 4 r + 3, so every coefficient is stored once. Four x that begin at
+// Layout   rows of four floats along x, consecutive along y, so that the 4 x 4 coefficients that a point
+//          needs in one z plane are 64 consecutive bytes, or two such blocks. Row r at y and z starts at z
+//          * plane_stride + r * row_stride + 4 y:
+//          columns  row r has x = 4 r .. 4 r + 3, so every coefficient is stored once. Four x that start at
 //                   4 r + p are the last 4 - p of row r and the first p of row r + 1.
-//          windows  row r has x = r .. r + 3: four times the memory, half the cache lines for a point.
-//          Behind the last row there is room for one more: kernels read it and do not use it.
-// Thread   any; no allocation, constant time per point.
+//          windows  row r has x = r .. r + 3: four times the memory, half the cache lines per point.
+//          The memory after the last row has room for one more row: kernels read it without using it.
+// Thread   any; no allocation, constant time per point
 #pragma once
 
 #include <cstddef>
@@ -27,11 +27,11 @@ struct DensityJob {
     std::size_t count;
     float rotation[9];     // row major, body to model
     float per_spacing[3];  // 1 / voxel, per metre
-    // The body's origin in padded voxels is cell + fraction. Kept apart, so that a point's place within its
-    // voxel does not lose digits to the size of the map.
+    // The body's origin in padded voxels is cell + fraction. Separate values keep the precision of a
+    // point's position within its voxel, independently of the map's size.
     std::int32_t cell[3];
     float fraction[3];
-    // Points are clamped here, relative to cell, where all coefficients are zero. Whole numbers.
+    // Points are clamped to this range, relative to cell, where all coefficients are zero. Whole numbers.
     float low[3], high[3];
 };
 
@@ -44,7 +44,7 @@ struct DensityJobSums {
 struct DensityKernel {
     const char* name;
     bool (*runs_here)();
-    void (*sum)(const DensityJob&, DensityJobSums&);  // adds nothing: writes
+    void (*sum)(const DensityJob&, DensityJobSums&);  // overwrites the sums
 };
 
 // Fastest first; the last, "generic", runs everywhere.
@@ -57,7 +57,7 @@ void density_sum_avx2(const DensityJob& job, DensityJobSums& sums);
 void density_sum_avx512(const DensityJob& job, DensityJobSums& sums);
 #endif
 
-// Single-precision partial sums are moved to double after this many points.
+// Single-precision partial sums are added to double sums after this many points.
 inline constexpr std::size_t kDensityFlush = 512;
 
 }  // namespace tact

@@ -1,14 +1,14 @@
 // Spline coefficients and their evaluation.
 //
-// Interpolation: coefficients c with sum_k c[k] B(i - k) = s[i] for all integers i, s the normalized map
-// inside its box and zero outside (Unser, Aldroubi, Eden 1993). Per axis a causal and an anticausal recursion
-// with the pole z = sqrt(3) - 2 and gain 6; with zero outside, both have exact starts. The coefficients go on
-// beyond the box and fall by 0.268 per voxel; kReach of them are kept (0.268^8 = 3e-5 of the value at the
-// border, half of which is what the interpolation misses there), then kZero layers of zeros, in which points
-// far away are clamped: no branch, no access out of bounds, and the spline stays C2 whatever the coefficients
-// are.
+// Interpolation: coefficients c with sum_k c[k] B(i - k) = s[i] for all integers i, with s the normalized
+// map inside its box and zero outside (Unser, Aldroubi, Eden 1993). Per axis a causal and an anticausal
+// recursion with the pole z = sqrt(3) - 2 and gain 6; with zeros outside, both have exact initial values.
+// The coefficients continue beyond the box and fall by 0.268 per voxel; kReach of them are kept (0.268^8 =
+// 3e-5 of the value at the border, half of which is the interpolation error there), then kZero layers of
+// zeros, to which far points are clamped: no branch, no access out of bounds, and the spline stays C2 for
+// any coefficients.
 //
-// The same numbers come from scipy.ndimage.spline_filter(order=3) on the map padded with 12 or more zeros.
+// scipy.ndimage.spline_filter(order=3) gives the same numbers on the map padded with 12 or more zeros.
 #include "ipc/scene/density/density_map.hpp"
 
 #include <algorithm>
@@ -26,15 +26,15 @@ namespace {
 constexpr std::int32_t kReach = 8;
 constexpr std::int32_t kZero = 4;
 constexpr std::int32_t kPad = kReach + kZero;
-constexpr double kCellMax = 1e6;  // farther from the box than any pose of use; keeps the integers small
-// From so many points on, columns are faster than windows: neighbours share their cache lines, and the part
-// of the map that a body covers stays in a cache of one or two megabytes. Fewer points, far apart, share
-// nothing, and windows take half the lines. 225 000 voxels, 100 000 points: 0.9 ms, in windows 2.9; 200
-// points: 2.9 us, in windows 2.1 (fastest of many, 2026-11-21, Sapphire Rapids).
+constexpr double kCellMax = 1e6;  // farther from the box than any practical pose; keeps the integers small
+// From this number of points on, columns are faster than windows: adjacent points share cache lines, and
+// the part of the map that a body covers stays in a cache of one or two megabytes. Fewer points, far apart,
+// share none, and windows need half as many lines. 225 000 voxels, 100 000 points: 0.9 ms, with windows 2.9
+// ms; 200 points: 2.9 us, with windows 2.1 us (fastest of many, 2026-11-21, Sapphire Rapids).
 constexpr std::size_t kMany = 1024;
 
-// Filters `lines` interleaved lines of `count` samples (sample i of line j at i * stride + j), in place. The
-// first and the last kPad samples are zero on entry and hold the filter's tails, cut after kReach, on return.
+// Filters `lines` interleaved lines of `count` samples (sample i of line j at i * stride + j), in place. On
+// entry the first and last kPad samples are zero; on return they hold the filter's tails, cut after kReach.
 void prefilter_lines(float* data, std::int32_t count, std::size_t stride, std::size_t lines,
                      std::vector<double>& work) {
     const double z = std::sqrt(3.0) - 2.0;
@@ -79,7 +79,7 @@ void prefilter(HugeBuffer& c, const std::array<std::int32_t, 3>& n) {
 }
 
 struct Layout {
-    std::int32_t step, row_stride, plane_stride;  // step: of x from one row to the next
+    std::int32_t step, row_stride, plane_stride;  // step: of x between rows
 };
 
 Layout layout_of(const std::array<std::int32_t, 3>& n, bool windows) {
@@ -87,7 +87,7 @@ Layout layout_of(const std::array<std::int32_t, 3>& n, bool windows) {
     return {step, 4 * n[1], 4 * n[1] * rows};
 }
 
-// Rows of four x, see density_kernels.hpp.
+// Coefficients in rows of four x, see density_kernels.hpp.
 HugeBuffer in_rows(const HugeBuffer& c, const std::array<std::int32_t, 3>& n, bool windows) {
     const Layout layout = layout_of(n, windows);
     const auto nx = static_cast<std::size_t>(n[0]), ny = static_cast<std::size_t>(n[1]);
@@ -109,10 +109,12 @@ void check(const DensityGrid& grid, double background, double sigma) {
     const std::string attempt = "building the density map";
     for (const std::uint32_t n : grid.size) {
         if (n < 1 || n > 16384)
-            throw StartupError(attempt, "its size is out of range", "use a map of 1 to 16384 voxels a side");
+            throw StartupError(attempt, "its size is out of range",
+                               "use a map of 1 to 16384 voxels per side");
     }
     if (grid.values.size() != grid.count()) {
-        throw StartupError(attempt, "it has not as many values as voxels", "bake the scene again");
+        throw StartupError(attempt, "its number of values differs from its number of voxels",
+                           "bake the scene again");
     }
     if (!grid.origin_m.allFinite() || !grid.spacing_m.allFinite() || grid.spacing_m.minCoeff() <= 0.0) {
         throw StartupError(attempt, "its origin or voxel size is not finite or not positive",
@@ -157,8 +159,7 @@ DensityMap::DensityMap(const DensityGrid& grid, double background, double sigma,
     }
     if (count + 4 * count / static_cast<std::size_t>(padded_[0]) >
         static_cast<std::size_t>(std::numeric_limits<std::int32_t>::max())) {
-        throw StartupError("building the density map", "it has more than two thousand million voxels",
-                           "cut or bin the map");
+        throw StartupError("building the density map", "it has more than 2^31 voxels", "cut or bin the map");
     }
     HugeBuffer c(count);
     const auto nx = static_cast<std::size_t>(padded_[0]), ny = static_cast<std::size_t>(padded_[1]);
@@ -184,7 +185,7 @@ double DensityMap::sample(const Vec3& point_model_m, Vec3& gradient) const noexc
     for (int a = 0; a < 3; ++a) {
         double t = (point_model_m[a] - origin_m_[a]) / spacing_m_[a] + kPad;
         const double low = 1.0, high = padded_[static_cast<std::size_t>(a)] - 3;
-        t = t > low ? t : low;  // also where t is not a number
+        t = t > low ? t : low;  // also for NaN
         t = t < high ? t : high;
         const double whole = std::floor(t);
         spline_weights(t - whole, 1.0 / spacing_m_[a], value[a], slope[a]);
@@ -241,7 +242,7 @@ DensitySums DensityMap::sum(const PointsView& points, const Pose& T_model_body) 
     kernel_->sum(job, raw);
     const Vec3 gradient(raw.gradient[0], raw.gradient[1], raw.gradient[2]);
     const Vec3 moment(raw.moment[0], raw.moment[1], raw.moment[2]);
-    // Points that are themselves not finite, or absurdly far out, could leave a moment that is not a number.
+    // Non-finite or extremely distant points can give a non-finite moment.
     if (!std::isfinite(raw.density) || !gradient.allFinite() || !moment.allFinite()) return sums;
     sums.density_sigma = raw.density;
     sums.gradient = gradient;

@@ -1,14 +1,14 @@
-// An EM density map that can be sampled anywhere: density and gradient, twice continuously differentiable.
+// An EM density map for sampling at any point: twice continuously differentiable density, and its gradient.
 //
 // The map's values, normalized as (value - background) / sigma, are the interpolation points of a tricubic
 // B-spline (coefficients by the usual recursive prefilter; outside the box the normalized density is zero).
 // So the density is C2, its gradient C1: no force jump at a voxel face, and the force field is conservative.
 //
 // Frame    model, metres. Grid axes are parallel to the model axes; voxels may differ in x, y, z.
-// Outside  the spline runs on beyond the box and fades to nothing within eight voxels, as that of a map that
-//          is continued with its background for ever; farther away density and gradient are exactly zero.
-// Unit     sigma (standard deviation of the map); gradients are sigma per model metre.
-// Thread   immutable after construction; sample() on any thread, no allocation.
+// Outside  the spline continues beyond the box and fades to zero within eight voxels, as if the map
+//          continued with its background; farther away density and gradient are exactly zero
+// Unit     sigma (standard deviation of the map); gradients are sigma per model metre
+// Thread   immutable after construction; sample() on any thread, no allocation
 #pragma once
 
 #include <array>
@@ -24,7 +24,7 @@
 
 namespace tact {
 
-// The map as read: x fastest, values in the file's unit.
+// The map from its file: x fastest, values in the file's unit.
 struct DensityGrid {
     std::array<std::uint32_t, 3> size{};
     Vec3 origin_m = Vec3::Zero();  // model position of voxel (0,0,0)
@@ -37,12 +37,12 @@ struct DensityGrid {
     }
 };
 
-// Sections GRID: size, origin, spacing, then the values. Section 0 is the map as in its file, which is drawn
-// and measured; section 1, where there is one, is a smoothed copy that the hand feels in its place.
+// Sections GRID: size, origin, spacing, then the values. Section 0 is the map from its file, used for
+// drawing and measurement; the optional section 1 is a smoothed copy, used for the force.
 inline constexpr std::uint32_t kMapGrid = 0, kForceMapGrid = 1;
 void write_grid(SceneWriter& out, const DensityGrid& grid, std::uint32_t index = kMapGrid);
 DensityGrid read_grid(const SceneFile& file, std::uint32_t index = kMapGrid);
-DensityGrid read_force_map_grid(const SceneFile& file);  // section 1, or 0 where that is all
+DensityGrid read_force_map_grid(const SceneFile& file);  // section 1 if present, otherwise 0
 
 // Points in structure-of-arrays form, body frame, metres. Weights sum to 1.
 struct PointsView {
@@ -50,7 +50,7 @@ struct PointsView {
     [[nodiscard]] std::size_t size() const { return x.size(); }
 };
 
-// Sums over points: what force, torque and the reduced correlation are made of.
+// Sums over points: components of force, torque and the reduced correlation.
 struct DensitySums {
     double density_sigma = 0.0;    // sum w rho
     Vec3 gradient = Vec3::Zero();  // sum w grad rho, sigma per model metre, model axes
@@ -61,11 +61,11 @@ struct DensityKernel;  // ipc/scene/density/density_kernels.hpp
 
 class DensityMap {
 public:
-    // For tests; the defaults are what programs use.
+    // For tests; programs use the defaults.
     struct Options {
-        const DensityKernel* kernel = nullptr;  // null: the fastest that the processor has
-        // Sums of few points are faster with the coefficients stored fourfold, because each point then takes
-        // half as many cache lines. Not done where that would take more than this.
+        const DensityKernel* kernel = nullptr;  // null: the fastest for this processor
+        // Sums of few points are faster with the coefficients stored fourfold, because each point then
+        // needs half as many cache lines. Not used if it needs more memory than this.
         std::size_t windows_bytes_max = std::size_t{64} << 20;
     };
 
@@ -77,9 +77,9 @@ public:
     // Density in sigma and its gradient in sigma per metre at a model point.
     [[nodiscard]] double sample(const Vec3& point_model_m, Vec3& gradient) const noexcept TACT_RT;
 
-    // The same over many points of a rigid body placed by T_model_body; the servo's inner loop. Uses the
-    // widest instruction set of the processor; results agree with sample() to single precision. A pose that
-    // is not finite, or without a rotation, gives zero.
+    // The same summed over the points of a rigid body at T_model_body; the servo's inner loop. Uses the
+    // widest instruction set of the processor; results agree with sample() to single precision. Zero for a
+    // pose that is not finite or has no rotation.
     [[nodiscard]] DensitySums sum(const PointsView& points, const Pose& T_model_body) const noexcept TACT_RT;
 
     [[nodiscard]] const Vec3& origin_m() const { return origin_m_; }
@@ -91,9 +91,9 @@ public:
 private:
     Vec3 origin_m_, spacing_m_;
     std::array<std::uint32_t, 3> size_{};
-    std::array<std::int32_t, 3> padded_{};  // size_ and the border on both sides
+    std::array<std::int32_t, 3> padded_{};  // size_ plus the border on both sides
     const DensityKernel* kernel_ = nullptr;
-    HugeBuffer columns_, windows_;  // layouts: density_kernels.hpp; no windows where they were too many
+    HugeBuffer columns_, windows_;  // layouts: density_kernels.hpp; no windows if too large
 };
 
 }  // namespace tact

@@ -1,11 +1,12 @@
-// With U = -k_E sum w rho and S = world_per_model the force is (k_E / S) |g|, g = sum w grad rho, and the
-// stiffness felt along a direction (k_E / S^2) times the curvature of sum w rho, whose largest magnitude is
-// the spectral norm of the Hessian H. H is taken from differences of g over a quarter of a voxel, on which
-// the spline is smooth.
+// With U = -k_E sum w rho and S = world_per_model, the force is (k_E / S) |g|, g = sum w grad rho, and the
+// stiffness along a direction is (k_E / S^2) times the curvature of sum w rho, whose largest magnitude is
+// the spectral norm of the Hessian H. H is computed from differences of g over a quarter of a voxel, on
+// which the spline is smooth.
 //
-// Poses: one half within 20 A and 30 degrees of home, as a structure is that belongs in the map; the other
-// half anywhere, turned at random, its centre at the densest of 16 random points of the box. Of all of them
-// those count whose own mean density is above that of the median pose, because near nothing nothing is felt.
+// Poses: half of them within 20 A and 30 degrees of home, like a structure that belongs in the map; the
+// other half anywhere, with random rotation and the centre at the densest of 16 random points of the box.
+// Only poses whose own mean density is above the median count, because there is no force far from any
+// density.
 #include "ipc/scene/density/docking_gain.hpp"
 
 #include <Eigen/Eigenvalues>
@@ -81,7 +82,7 @@ DockingGain docking_gain(const DensityMap& map, std::span<const GainBody> bodies
                          const GainSettings& settings, const Progress& progress) {
     const std::string attempt = "choosing the gain of the docking force";
     if (bodies.empty() || !(world_per_model > 0.0)) {
-        throw StartupError(attempt, "there is no structure with a codebook, or no scale", "give a structure");
+        throw StartupError(attempt, "no structure with a codebook, or no scale, is given", "add a structure");
     }
     double slope_p99 = 0.0, curvature_max = 0.0;
     for (std::size_t i = 0; i < bodies.size(); ++i) {
@@ -107,7 +108,7 @@ DockingGain docking_gain(const DensityMap& map, std::span<const GainBody> bodies
         slope_p99 = std::max(slope_p99, felt[(felt.size() - 1) * 99 / 100].slope);
     }
     if (!(slope_p99 > 0.0) || !(curvature_max > 0.0)) {
-        throw StartupError(attempt, "no pose of the structures feels any density of the map",
+        throw StartupError(attempt, "no pose of the structures overlaps any density of the map",
                            "check that the map holds a molecule, and that its voxel size is right");
     }
     const double by_force = settings.force_n * world_per_model / slope_p99;

@@ -1,12 +1,12 @@
-// How strong docking is felt: the energy that one sigma of density is worth, for a map and its structures.
+// Strength of the docking force: the energy per sigma of density, for a map and its structures.
 //
-// Chosen so that, over poses near high density, the force stays about at force_n (its 99th percentile: below
-// the 3.3 N that a small haptic device gives) and the largest stiffness at stiffness_n_m, which such a device
-// renders stably at 1 kHz; the smaller of the two gains wins, over all structures.
+// Chosen so that, over poses near high density, the 99th percentile of the force is at most force_n (below
+// the 3.3 N of a small haptic device) and the largest stiffness at most stiffness_n_m, which such a device
+// renders stably at 1 kHz: the smaller of the two gains, over all structures.
 //
-// Unit     joules per sigma, as SceneMeta::energy_j_per_sigma. World is the hand's, see SceneMeta.
-// Repeats  exactly for the same input and seed.
-// Thread   slow (some 30 ms for each structure); never on the servo thread.
+// Unit     joules per sigma, as SceneMeta::energy_j_per_sigma. World is the hand's space, see SceneMeta
+// Repeats  exactly for the same input and seed
+// Thread   slow (about 30 ms per structure); never on the servo thread
 #pragma once
 
 #include <cstdint>
@@ -31,18 +31,18 @@ struct DockingGain {
     double stiffness_n_m_max = 0.0;
 };
 
-// A body by some hundreds of points, and where it is at home.
+// A body as some hundreds of points, with its home pose.
 struct GainBody {
     PointsView points;
     Pose home;
 };
-// As many vectors as are enough to feel like the body, few enough for thousands of sums.
+// Enough vectors to represent the body, few enough for thousands of sums.
 inline constexpr std::size_t kGainVectors = 800;
 
-// Throws StartupError where no pose feels any density.
+// Throws StartupError if no pose overlaps any density.
 DockingGain docking_gain(const DensityMap& map, std::span<const GainBody> bodies, double world_per_model,
                          const GainSettings& settings = {}, const Progress& progress = {});
-// The same; codebooks: one for each structure.
+// The same; codebooks: one per structure.
 DockingGain docking_gain(const DensityMap& map, std::span<const Structure> structures,
                          std::span<const Codebook> codebooks, double world_per_model,
                          const GainSettings& settings = {}, const Progress& progress = {});

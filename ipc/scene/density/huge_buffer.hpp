@@ -1,8 +1,8 @@
-// A large array of floats on large pages, where the kernel has them.
+// A large array of floats on large pages, if the kernel supports them.
 //
-// A density map is read at places far apart: with pages of 4 KiB nearly every one of the sixteen rows that a
-// point needs is another entry of the translation cache. 100 000 points of a 56 MB map: 1.16 ms, with pages
-// of 2 MiB 0.99 ms (fastest of 200, 2026-11-20, Zen 4).
+// A density map is accessed at distant places: with pages of 4 KiB, nearly every one of the sixteen rows of
+// a point needs another TLB entry. 100 000 points of a 56 MB map: 1.16 ms, with pages of 2 MiB 0.99 ms
+// (fastest of 200, 2026-11-20, Zen 4).
 #pragma once
 
 #include <stdlib.h>
@@ -25,7 +25,7 @@ public:
         void* memory = nullptr;
         if (posix_memalign(&memory, kPage, bytes) != 0) throw std::bad_alloc();
         data_.reset(static_cast<float*>(memory));
-        (void)madvise(memory, bytes, MADV_HUGEPAGE);  // advice: without it the buffer is only slower
+        (void)madvise(memory, bytes, MADV_HUGEPAGE);  // advice: if refused, the buffer is only slower
         std::memset(memory, 0, bytes);
     }
     [[nodiscard]] float* data() { return data_.get(); }

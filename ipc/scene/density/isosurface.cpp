@@ -1,6 +1,6 @@
-// Marching cubes (Lorensen, Cline 1987) over the derived case table of ipc/scene/density/cell_cases.cpp. Vertices
-// are welded by the edge that they lie on: ids are kept for the edges of two slices, in three planes of x, y
-// and z.
+// Marching cubes (Lorensen, Cline 1987) with the derived case table of ipc/scene/density/cell_cases.cpp.
+// Vertices are welded by the edge that contains them: ids are stored for the edges of two slices, in three
+// planes of x, y and z.
 #include "ipc/scene/density/isosurface.hpp"
 
 #include <algorithm>
@@ -15,8 +15,9 @@ namespace {
 
 constexpr std::uint32_t kNone = UINT32_MAX;
 constexpr std::size_t kVerticesMax = std::size_t{1} << 28;
-// Keeps vertices off the corners, where several edges would share one place and triangles vanish. The surface
-// is displaced by at most this part of a voxel edge, and only where a sample is that near to the level.
+// Keeps vertices off the corners, where several edges would share one position and triangles degenerate.
+// Displaces the surface by at most this fraction of a voxel edge, and only where a sample is that close to
+// the level.
 constexpr double kCornerGap = 1.0 / 128.0;
 
 [[noreturn]] void refuse(const std::string& why, const std::string& fix) {
@@ -110,7 +111,7 @@ private:
         const double a = grid_.at(low[0], low[1], low[2]);
         const double b = grid_.at(high[0], high[1], high[2]);
         double t = (level_ - a) / (b - a);
-        if (!std::isfinite(t)) t = 0.5;  // a neighbour that is NaN or infinite
+        if (!std::isfinite(t)) t = 0.5;  // an adjacent sample is NaN or infinite
         Vec3 place(low[0], low[1], low[2]);
         place[static_cast<Eigen::Index>(axis)] += std::clamp(t, kCornerGap, 1.0 - kCornerGap);
         return grid_.origin_m + grid_.spacing_m.cwiseProduct(place);
@@ -138,9 +139,9 @@ private:
 
 TriangleMesh isosurface(const DensityGrid& grid, double level, const Progress& progress) {
     if (!std::isfinite(level))
-        refuse("the level is not a finite number", "give the contour level as a number");
+        refuse("the level is not a finite number", "enter the contour level as a number");
     if (grid.values.size() != grid.count()) {
-        refuse("the grid holds " + std::to_string(grid.values.size()) + " values, its sizes say " +
+        refuse("the grid holds " + std::to_string(grid.values.size()) + " values, its size requires " +
                    std::to_string(grid.count()),
                "import the map again");
     }

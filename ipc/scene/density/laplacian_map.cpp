@@ -1,17 +1,16 @@
-// Contour-sensitive docking (Chacon, Wriggers 2002, J. Mol. Biol. 317:375) correlates the Laplacians of both
+// Contour-based docking (Chacon, Wriggers 2002, J. Mol. Biol. 317:375) correlates the Laplacians of both
 // maps,
-//     C = integral L[rho_em] L[rho_calc],   rho_calc = sum_i w_i G(x - x_i)  (G: Gaussian of the resolution),
-// of which the plain reduced correlation, with G a delta, is sum_i w_i rho_em(x_i). The Laplacian is
-// symmetric (integration by parts, nothing at infinity), so everything moves to the side of the map that
-// stands still:
+//     C = integral L[rho_em] L[rho_calc],   rho_calc = sum_i w_i G(x - x_i)  (G: Gaussian of the resolution).
+// The plain reduced correlation, with G a delta, is sum_i w_i rho_em(x_i). The Laplacian is symmetric
+// (integration by parts, zero at infinity), so both operators can be applied to the fixed map:
 //     integral L[rho_em] L[G_i] = (L L G * rho_em)(x_i),
 //     integral grad rho_em . grad G_i = (-L G * rho_em)(x_i).
-// Both are fields sampled at points, energies like the density itself. The second, the correlation of
-// gradients, is what is used here: it weighs a wave of the map by k^2. The first weighs it by k^4, and its
-// basins are narrower: of ten starts 15 A and 30 degrees away in the simulated 1OEL it found 2 where the
-// second found 9 (10 A), and it was not better in the experimental maps (docking_finds, 2026-11-21).
+// Both are fields sampled at points, energies like the density itself. This code uses the second, the
+// correlation of gradients, which weighs a wave of the map by k^2. The first weighs it by k^4, and its
+// basins are narrower: of ten starts 15 A and 30 degrees away in the simulated 1OEL it found 2, the second
+// 9 (10 A), and it was not better in the experimental maps (docking_finds, 2026-11-21).
 //
-// Separable: L = Gxx Gy Gz + Gx Gyy Gz + Gx Gy Gzz, in seven passes of lines. The tables are samples of a
+// Separable: L = Gxx Gy Gz + Gx Gyy Gz + Gx Gy Gzz, in seven passes over lines. The tables are samples of a
 // Gaussian and of its second derivative, cut at five sigma, the first scaled to sum 1, the second to sum 0
 // and second moment 2, so polynomials up to the third degree are filtered exactly at any sigma.
 #include "ipc/scene/density/laplacian_map.hpp"
@@ -27,11 +26,11 @@ namespace tact {
 namespace {
 
 constexpr double kCutSigmas = 5.0;
-constexpr double kSigmaVoxelsMax = 1000.0;  // 200 A, the widest that is baked, in voxels of 0.05 A
-constexpr double kSigmaVoxelsMin = 0.5;  // finer than that the samples of a Gaussian no longer stand for it
+constexpr double kSigmaVoxelsMax = 1000.0;  // 200 A, the largest in a scene, in voxels of 0.05 A
+constexpr double kSigmaVoxelsMin = 0.5;     // below this, samples do not represent a Gaussian
 
 struct Tables {
-    std::vector<double> smooth, bend;  // halves: [0] in the middle
+    std::vector<double> smooth, bend;  // halves: [0] is the middle
 };
 
 Tables tables(double sigma_voxels) {
@@ -52,19 +51,20 @@ Tables tables(double sigma_voxels) {
         moment += (i == 0 ? 0.0 : 2.0) * t.bend[i] * static_cast<double>(i) * static_cast<double>(i);
     }
     for (double& v : t.smooth) v /= sum;
-    // Times sigma^2: the Laplacian's unit goes.
+    // The factor sigma^2 cancels the Laplacian's unit.
     for (double& v : t.bend) v *= 2.0 * s * s / moment;
     return t;
 }
 
-// out[x] (+)= sum_k half[|k|] in[x + k] along one axis; outside the box the input is zero. Whole rows at a
-// time: the innermost loop always runs along x.
+// out[x] (+)= sum_k half[|k|] in[x + k] along one axis; outside the box the input is zero. Processes whole
+// rows: the innermost loop always runs along x.
 std::vector<float> filtered(const std::vector<float>& in, const std::array<std::uint32_t, 3>& size,
                             std::size_t axis, const std::vector<double>& half) {
     std::vector<float> out(in.size(), 0.0F);
     const std::size_t nx = size[0], rows = std::size_t{size[1]} * size[2];
     const auto n = static_cast<std::ptrdiff_t>(size[axis]);
-    const auto radius = std::min(static_cast<std::ptrdiff_t>(half.size()), n) - 1;  // beyond there is nothing
+    const auto radius =
+        std::min(static_cast<std::ptrdiff_t>(half.size()), n) - 1;  // larger distances are outside the box
     for (std::size_t row = 0; row < rows; ++row) {
         float* const to = out.data() + row * nx;
         const auto place = static_cast<std::ptrdiff_t>(axis == 1 ? row % size[1] : row / size[1]);
@@ -92,8 +92,8 @@ void add(std::vector<float>& to, const std::vector<float>& what) {
 
 DensityGrid laplacian_map(const DensityGrid& grid, double background, double resolution_m) {
     if (!(resolution_m > 0.0) || !std::isfinite(resolution_m)) {
-        throw StartupError("filtering the map for its contours", "the resolution of the map is not known",
-                           "state it with --resolution-a");
+        throw StartupError("filtering the map for its contours", "the resolution of the map is unknown",
+                           "set it with --resolution-a");
     }
     DensityGrid out = grid;
     for (float& v : out.values) v = static_cast<float>(static_cast<double>(v) - background);

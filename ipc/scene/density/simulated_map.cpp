@@ -1,7 +1,7 @@
-// A sum over atoms of products of three one-dimensional Gaussians, each cut 4 sigma away (a box that holds
-// all but 2e-4 of it), so an atom costs three short tables and one multiplication per voxel. A table needs
-// three exponentials whatever its length: neighbouring values of a Gaussian have a ratio that itself changes
-// by a constant factor. In double precision over some tens of voxels that is exact to 1e-12.
+// A sum over atoms of products of three one-dimensional Gaussians, each cut 4 sigma away (a box that
+// contains all but 2e-4 of it), so an atom costs three short tables and one multiplication per voxel. A
+// table needs three exponentials for any length: the ratio of consecutive values of a Gaussian changes by a
+// constant factor. In double precision over some tens of voxels this is accurate to 1e-12.
 #include "ipc/scene/density/simulated_map.hpp"
 
 #include <algorithm>
@@ -15,8 +15,8 @@ namespace {
 
 void check(double resolution_m) {
     if (!(resolution_m > 0.0) || !std::isfinite(resolution_m)) {
-        throw StartupError("simulating the map of a structure", "the resolution of the map is not known",
-                           "state it with --resolution-a");
+        throw StartupError("simulating the map of a structure", "the resolution of the map is unknown",
+                           "set it with --resolution-a");
     }
 }
 
@@ -44,7 +44,7 @@ struct Table {
         value.clear();
         const double reach = kSimulatedCutSigmas * sigma;
         const double at = place - static_cast<double>(low);
-        if (!(at >= -reach && at <= static_cast<double>(size) - 1.0 + reach)) return;  // also not a number
+        if (!(at >= -reach && at <= static_cast<double>(size) - 1.0 + reach)) return;  // also for NaN
         const double from = std::max(0.0, std::ceil(at - reach));
         const double to = std::min(static_cast<double>(size) - 1.0, std::floor(at + reach));
         if (to < from) return;
@@ -100,8 +100,9 @@ void add_simulated(const DensityGrid& grid, const PlacedStructure& placed, doubl
                    const VoxelBox& box, std::span<float> values) {
     check(resolution_m);
     if (values.size() != box.count())
-        throw StartupError("simulating the map of a structure", "there are not as many values as voxels",
-                           "this is a mistake in Tact; report it");
+        throw StartupError("simulating the map of a structure",
+                           "the number of values differs from the number of voxels",
+                           "this is an error in Tact; please report it");
     const Vec3 sigma = kSigmaPerResolution * resolution_m * grid.spacing_m.cwiseInverse();
     const ToVoxels voxel(grid, placed.T_model_body);
     const Structure& s = *placed.structure;

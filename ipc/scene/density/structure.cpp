@@ -11,8 +11,8 @@ constexpr SectionTag kBodyTag{'B', 'O', 'D', 'Y'};
 constexpr SectionTag kCodeTag{'C', 'O', 'D', 'E'};
 constexpr std::uint32_t kBodyVersion = 1;
 constexpr std::uint32_t kCodeVersion = 1;
-constexpr double kCoordinateMax_m = 1e-5;  // a structure is below ten micrometres wide
-constexpr double kSumTolerance = 1e-3;     // single precision weights of a million atoms sum to 1 within 1e-4
+constexpr double kCoordinateMax_m = 1e-5;  // a structure is smaller than ten micrometres
+constexpr double kSumTolerance = 1e-3;     // single-precision weights of a million atoms sum to 1 within 1e-4
 constexpr std::uint8_t kElementMax = 118;
 constexpr std::uint32_t kChainsMax = 65535;
 constexpr std::uint32_t kLevelsMax = 256;
@@ -73,7 +73,7 @@ Structure read_structure(const SceneFile& file, std::uint32_t index) {
     const auto header = in.get<BodyHeader>("header");
     if (header.atoms == 0) in.fail("it has no atoms");
     if (header.chains == 0 || header.chains > kChainsMax) {
-        in.fail("it has " + std::to_string(header.chains) + " chains, outside of 1 to 65535");
+        in.fail("it has " + std::to_string(header.chains) + " chains; 1 to 65535 are allowed");
     }
     Structure s;
     for (int a = 0; a < 3; ++a) {

@@ -1,9 +1,9 @@
-// Atomic structures, baked: one BODY section each, and its codebooks, one CODE section each.
+// Atomic structures: one BODY section each, and their codebooks, one CODE section each.
 //
-// Frame    body: origin in the mass-weighted centre of mass, axes as in the file. Metres.
-//          home_com_model_m is where that centre lies in the file, so the pose (home_com_model_m, identity)
-//          puts the body back exactly as the file had it.
-// Thread   built or read off the servo thread, then immutable.
+// Frame    body: origin at the centre of mass, axes as in the file, metres. home_com_model_m is the
+//          position of that centre in the file, so the pose (home_com_model_m, identity) reproduces the
+//          placement of the file
+// Thread   created or read off the servo thread, then immutable
 #pragma once
 
 #include <cstdint>
@@ -17,7 +17,7 @@
 namespace tact {
 
 struct Structure {
-    std::string name;  // of the file it came from
+    std::string name;  // of the source file
     Vec3 home_com_model_m = Vec3::Zero();
     double mass_u = 0.0;  // total
     // Per atom, in file order.
@@ -33,8 +33,8 @@ struct Structure {
     [[nodiscard]] Pose home() const { return {home_com_model_m, Quat::Identity()}; }
 };
 
-// Vector quantization of a structure: level l has points.size() vectors, sizes rise with l. The all-atom set
-// is not stored; it is the level above the last. Small structures have no level at all.
+// Vector quantization of a structure: level l has points.size() vectors; sizes rise with l. The all-atom
+// set is not stored; it is the level above the last. Small structures have no levels.
 struct Codebook {
     struct Level {
         std::vector<float> x_m, y_m, z_m, weight;         // body frame; weights sum to 1

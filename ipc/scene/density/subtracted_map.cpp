@@ -1,6 +1,6 @@
-// With d = map - background and s the simulated map, the scale is sum(d s) / sum(s s) over the region; what
-// it explains of d is sum(d s)^2 / (sum(s s) sum(d d)). A free offset would explain a neighbour's tails too
-// and was left out: the background is known.
+// With d = map - background and s the simulated map, the scale is sum(d s) / sum(s s) over the region; the
+// explained fraction of d is sum(d s)^2 / (sum(s s) sum(d d)). The fit has no free offset, which would also
+// explain the tails of adjacent structures: the background is known.
 #include "ipc/scene/density/subtracted_map.hpp"
 
 #include <algorithm>

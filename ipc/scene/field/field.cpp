@@ -18,7 +18,7 @@ FieldMeta read_field_meta(const SceneFile& file) {
     in.finish();
     const auto within = [&](const char* what, double value, double low, double high) {
         if (!(value >= low && value <= high))
-            in.fail(std::string(what) + " is " + std::to_string(value) + ", outside of what is possible");
+            in.fail(std::string(what) + " is " + std::to_string(value) + ", outside the possible range");
     };
     for (int a = 0; a < 3; ++a) {
         within("box_low_m", f.box_low_m[a], -1e6, 1e6);
@@ -37,7 +37,7 @@ FieldMeta read_field_meta(const SceneFile& file) {
     const char* const zero = std::find(f.unit, end, '\0');
     if (zero == end) in.fail("the unit does not end with a zero byte");
     if (std::any_of(f.unit, zero, [](char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7f; }))
-        in.fail("the unit holds a control character");
+        in.fail("the unit contains a control character");
     return f;
 }
 

@@ -1,9 +1,9 @@
-// Plain values in and out of the bytes of a section, with every count checked before it is believed.
+// Reads and writes plain values in the bytes of a section, with every count checked before use.
 //
-// Layout    little endian, no padding between items; text is a 32-bit length and its bytes.
-// Fails by  StartupError naming the file, the section and the item. A hostile count is refused by the bytes
-//           that are really there, so no reader allocates more than the file is long.
-// Thread    anywhere but the servo thread.
+// Layout    little endian, no padding between items; text is a 32-bit length and its bytes
+// Errors    StartupError with the file, the section and the item. A count larger than the available bytes
+//           is refused, so no reader allocates more than the length of the file
+// Thread    any but the servo thread
 #pragma once
 
 #include <bit>
@@ -56,7 +56,7 @@ private:
 
 class BytesIn {
 public:
-    // `where` names file and section in messages: "ring.tact, section BODY 0".
+    // `where` is the file and section for messages: "ring.tact, section BODY 0".
     BytesIn(std::span<const std::byte> bytes, std::string where) : bytes_(bytes), where_(std::move(where)) {}
 
     template <class T>
@@ -88,11 +88,11 @@ public:
         at_ += size;
         for (const char c : text) {
             if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f)
-                fail(std::string(what) + " holds a control character");
+                fail(std::string(what) + " contains a control character");
         }
         return text;
     }
-    // Every number finite and of a size below `largest`.
+    // Checks that every number is finite and at most `largest`.
     template <class T>
     void check_finite(const std::vector<T>& values, double largest, const char* what) const {
         for (std::size_t i = 0; i < values.size(); ++i) {
@@ -103,7 +103,7 @@ public:
     }
     void finish() const {
         if (at_ != bytes_.size()) {
-            fail(std::to_string(bytes_.size() - at_) + " bytes are left over behind its content");
+            fail(std::to_string(bytes_.size() - at_) + " bytes follow its content");
         }
     }
     [[noreturn]] void fail(const std::string& why) const {

@@ -1,8 +1,8 @@
-// Method. The layout is canonical: the sections follow each other in the order of the table, each at the next
-// multiple of 64, the bytes between them are zero and the file ends with the last one. So sections cannot
-// overlap, every byte of the file is covered by a check, and any changed bit is found at open().
+// Method. The layout is canonical: the sections follow each other in the order of the table, each at the
+// next multiple of 64; the bytes between them are zero, and the file ends with the last one. So sections
+// cannot overlap, every byte of the file is covered by a check, and open() detects any changed bit.
 //
-// The file is never changed in place (tact-prep renames a whole one over it), so the map stays valid.
+// The file is never changed in place (tact-prep renames a complete one over it), so the map stays valid.
 #include "ipc/scene/file/scene_file.hpp"
 
 #include <fcntl.h>
@@ -33,7 +33,7 @@ bool all_zero(const std::byte* first, std::size_t size) {
     return std::all_of(first, first + size, [](std::byte b) { return b == std::byte{0}; });
 }
 
-// Tags of hostile files may hold anything; messages stay printable.
+// Tags of untrusted files may contain any bytes; messages stay printable.
 std::string shown(SectionTag tag) {
     std::string text;
     for (const char c : tag) text += c >= 0x20 && c < 0x7f ? c : '?';
@@ -48,7 +48,7 @@ std::string hex(std::uint32_t value) {
 
 constexpr char kFixBake[] = "bake it again: tact-prep dock MAP MODEL -o SCENE.tact";
 
-// Closes the descriptor however the function is left.
+// Closes the descriptor on every return path.
 struct Descriptor {
     int fd;
     ~Descriptor() {
@@ -71,8 +71,7 @@ SceneFile SceneFile::open(const std::filesystem::path& path) {
     if (::fstat(file.fd, &info) != 0)
         throw StartupError(attempt, std::strerror(errno), "check the file system");
     if (!S_ISREG(info.st_mode)) {
-        throw StartupError(attempt, "it is not a regular file",
-                           "give the path of a scene that tact-prep wrote");
+        throw StartupError(attempt, "the file is not a regular file", "choose a scene written by tact-prep");
     }
     const auto size = static_cast<std::uint64_t>(info.st_size);
     if (size < sizeof(Header)) {
@@ -81,12 +80,13 @@ SceneFile SceneFile::open(const std::filesystem::path& path) {
                            kFixBake);
     }
     if (size > kBytesMax) {
-        throw StartupError(attempt, "it has " + std::to_string(size) + " bytes, more than a scene may have",
-                           "give the path of a scene that tact-prep wrote");
+        throw StartupError(attempt,
+                           "it has " + std::to_string(size) + " bytes, more than the limit of a scene",
+                           "choose a scene written by tact-prep");
     }
     void* const mapped = ::mmap(nullptr, size, PROT_READ, MAP_PRIVATE, file.fd, 0);
     if (mapped == MAP_FAILED) {
-        throw StartupError(attempt, std::string("it cannot be mapped: ") + std::strerror(errno),
+        throw StartupError(attempt, std::string("the file cannot be mapped: ") + std::strerror(errno),
                            "free memory");
     }
     SceneFile scene;
@@ -135,27 +135,27 @@ void SceneFile::check() {
     }
     std::memcpy(&header, bytes_.data(), sizeof header);
     if (std::memcmp(header.magic, kMagic, sizeof kMagic) != 0) {
-        fail("at byte 0: it does not begin with TACTSCN1, so it is not a scene of tact",
-             "give the path of a scene that tact-prep wrote");
+        fail("at byte 0: the file does not begin with TACTSCN1, so it is not a Tact scene",
+             "choose a scene written by tact-prep");
     }
     if (header.format_version != kFormatVersion) {
         fail("at byte 8: its format version is " + std::to_string(header.format_version) +
              ", this program reads " + std::to_string(kFormatVersion));
     }
     if (header.total_bytes != bytes_.size()) {
-        fail("at byte 16: it says it has " + std::to_string(header.total_bytes) + " bytes but has " +
-             std::to_string(bytes_.size()) +
+        fail("at byte 16: its header states " + std::to_string(header.total_bytes) +
+             " bytes, but its size is " + std::to_string(bytes_.size()) +
              (header.total_bytes > bytes_.size() ? " (truncated)" : " (too long)"));
     }
     if (header.section_count == 0 || header.section_count > kSectionsMax) {
-        fail("at byte 12: it says it has " + std::to_string(header.section_count) + " sections");
+        fail("at byte 12: its header states " + std::to_string(header.section_count) + " sections");
     }
     if (!all_zero(bytes_.data() + offsetof(Header, reserved), sizeof header.reserved)) {
         fail("at byte 28: reserved bytes of the header are not zero");
     }
     const std::size_t table_bytes = std::size_t{header.section_count} * sizeof(TableRow);
     if (table_bytes > bytes_.size() - sizeof header)
-        fail("at byte 64: the section table reaches past the end");
+        fail("at byte 64: the section table extends beyond the end of the file");
     const std::uint32_t table_crc = crc_of(bytes_.data() + sizeof header, table_bytes);
     if (table_crc != header.table_crc) {
         fail("at byte 64: the checksum of the section table is " + hex(table_crc) + ", recorded is " +
@@ -171,9 +171,9 @@ void SceneFile::check() {
         const std::uint64_t begin = align_up(end);
         if (row.offset != begin) fail(where + "it should begin at byte " + std::to_string(begin));
         if (begin > bytes_.size() || row.bytes > bytes_.size() - begin)
-            fail(where + "it reaches past the end of the file");
+            fail(where + "it extends beyond the end of the file");
         if (!all_zero(bytes_.data() + end, static_cast<std::size_t>(begin - end))) {
-            fail(where + "the bytes in front of it are not zero");
+            fail(where + "the bytes before it are not zero");
         }
         if (row.index != count(row.tag)) fail(where + "its index is out of order");
         const std::span<const std::byte> content = bytes_.subspan(begin, row.bytes);
@@ -183,7 +183,7 @@ void SceneFile::check() {
         end = begin + row.bytes;
     }
     if (end != bytes_.size()) fail("at byte " + std::to_string(end) + ": bytes follow the last section");
-    // FNV-1a over the table, which holds the checksum of every section.
+    // FNV-1a over the table, which contains the checksum of every section.
     checksum_ = 0xcbf29ce484222325ULL;
     for (const std::byte b : bytes_.subspan(sizeof header, table_bytes)) {
         checksum_ = (checksum_ ^ std::to_integer<std::uint64_t>(b)) * 0x100000001b3ULL;
@@ -248,14 +248,14 @@ void SceneWriter::write(const std::filesystem::path& path) const {
     const std::vector<std::byte> bytes = to_bytes();
     const auto fail = [&](const char* what) {
         throw StartupError(attempt, std::string(what) + ": " + std::strerror(errno),
-                           "check that the folder exists, may be written to and has room for " +
+                           "check that the folder exists, is writable and has space for " +
                                std::to_string(bytes.size()) + " bytes");
     };
     if (std::filesystem::is_directory(path)) {
-        throw StartupError(attempt, "it is a folder", "give the name of a file: -o FOLDER/scene.tact");
+        throw StartupError(attempt, "the path is a folder", "choose a file name: -o FOLDER/scene.tact");
     }
     std::string temporary = path.string() + ".XXXXXX";
-    // Removes what is half written however the function is left; after the rename there is nothing to remove.
+    // Removes a partial file on every return path; after the rename there is nothing to remove.
     struct Remover {
         std::string* name;
         ~Remover() {
@@ -263,7 +263,7 @@ void SceneWriter::write(const std::filesystem::path& path) const {
         }
     };
     const Descriptor file{::mkostemp(temporary.data(), O_CLOEXEC)};
-    if (file.fd < 0) fail("no file can be made beside it");
+    if (file.fd < 0) fail("creating a temporary file beside it failed");
     const Remover remover{&temporary};
     std::size_t done = 0;
     while (done < bytes.size()) {
@@ -272,15 +272,15 @@ void SceneWriter::write(const std::filesystem::path& path) const {
         if (n <= 0) fail("writing failed");
         done += static_cast<std::size_t>(n);
     }
-    // mkostemp makes the file private; a scene is an ordinary file.
+    // mkostemp creates a private file; a scene has ordinary permissions.
     const mode_t mask = ::umask(0);
     ::umask(mask);
     if (::fchmod(file.fd, static_cast<mode_t>(0666) & ~mask) != 0) fail("setting its permissions failed");
     if (::fsync(file.fd) != 0) fail("syncing failed");
     if (::rename(temporary.c_str(), path.c_str()) != 0) fail("renaming failed");
     temporary.clear();
-    // The new name is durable once the folder is synced; some file systems cannot, and then the file is still
-    // whole.
+    // The new name is durable after the folder is synced; some file systems cannot do that, but the file is
+    // still complete.
     const std::filesystem::path folder = path.has_parent_path() ? path.parent_path() : ".";
     const Descriptor parent{::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC)};
     if (parent.fd >= 0) static_cast<void>(::fsync(parent.fd));

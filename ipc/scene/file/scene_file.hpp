@@ -1,12 +1,14 @@
-// The baked scene: one file of checked sections that both processes map read-only.
+// The scene: one file of checked sections that both processes map read-only.
 //
 // Layout    header (magic "TACTSCN1", format version, section count, total bytes, CRC-32 of the section
-//           table), section table (tag, index, version, offset, bytes, CRC-32), then the sections, each at a
-//           multiple of 64 bytes. Little endian. A section holds plain data; its own header says the counts.
-// Written   by tact-prep, to a temporary file beside the target that is synced and renamed: whole or absent.
-// Fails by  StartupError naming the file, the section, what is wrong and the fix. Everything is checked at
-//           open(): magic, version, sizes, overlap, checksums. Contents are checked by their readers.
-// Thread    open() anywhere but the servo thread; views are immutable and may be read anywhere.
+//           table), section table (tag, index, version, offset, bytes, CRC-32), then the sections, each at
+//           a multiple of 64 bytes. Little endian. A section holds plain data; its own header contains the
+//           counts.
+// Written   by tact-prep, to a temporary file beside the target that is synced and renamed: complete or
+//           absent
+// Errors    StartupError with the file, the section, the fault and the fix. open() checks everything:
+//           magic, version, sizes, overlap, checksums. Readers check the contents
+// Thread    open() on any thread but the servo thread; views are immutable and readable on any thread
 #pragma once
 
 #include <array>
@@ -32,9 +34,11 @@ public:
     ~SceneFile();
 
     [[nodiscard]] const std::string& name() const { return name_; }
-    [[nodiscard]] std::uint64_t checksum() const { return checksum_; }  // of all sections; names the content
-    [[nodiscard]] std::uint32_t count(SectionTag tag) const;            // sections with this tag: 0, 1, …
-    // Throws when absent or of another version.
+    [[nodiscard]] std::uint64_t checksum() const {
+        return checksum_;
+    }                                                         // of all sections; identifies the content
+    [[nodiscard]] std::uint32_t count(SectionTag tag) const;  // sections with this tag: 0, 1, …
+    // Throws if absent or of another version.
     [[nodiscard]] std::span<const std::byte> section(SectionTag tag, std::uint32_t version,
                                                      std::uint32_t index = 0) const;
 

@@ -1,8 +1,9 @@
-// The kinds of scene, one row each. A new kind is a value of SceneKind and a row of the table in scene_kinds.cpp.
+// The kinds of scenes, one row each. A new kind is a value of SceneKind and a row of the table in
+// scene_kinds.cpp.
 //
-// The row holds what every program needs of a kind: its number and name in the file, the sections and values that such a
-// scene must have, the command that bakes it, and the raw files that the command reads. Programs keep tables of their own for
-// the rest (prep/cli/systems, deploy/tact/systems).
+// The row holds the data of a kind that every program needs: its number and name in the file, the sections
+// and values that such a scene must have, the command that bakes it, and the raw files that the command
+// reads. Programs keep their own tables for the rest (prep/cli/systems, deploy/tact/systems).
 #pragma once
 
 #include <cstdint>
@@ -14,16 +15,16 @@ namespace tact {
 
 enum class SceneKind : std::uint32_t { docking = 1, surface = 2, drilling = 3, field = 4 };
 
-inline constexpr std::uint32_t kSceneBodiesMax = 16;  // bodies that a force model holds
+inline constexpr std::uint32_t kSceneBodiesMax = 16;  // bodies in a force model
 
 // One type of raw file: maps, structures, meshes, ...
 struct RawFileType {
     const char* name;                      // "map"
-    const char* phrase;                    // in a list of what can be opened: "a map", "its structures"
+    const char* phrase;                    // in a list of supported files: "a map", "its structures"
     std::span<const char* const> endings;  // lower case, with the dot; each may be followed by .gz
-    const char* folder_of;    // contents of a folder that stands for one such file; null: no folder
-    std::uint32_t files_max;  // that one command takes
-    const char* missing;      // message where the other files come without this one; null: it is alone
+    const char* folder_of;    // contents of a folder that counts as one such file; null: no folder
+    std::uint32_t files_max;  // accepted by one command
+    const char* missing;      // message if the other files come without this one; null: none needed
 };
 
 // Limits of the values in section META.
@@ -43,9 +44,9 @@ struct SceneKindRow {
 };
 
 [[nodiscard]] std::span<const SceneKindRow> scene_kinds();
-// Null for a number that is no kind.
+// Null for a number without a kind.
 [[nodiscard]] const SceneKindRow* find_scene_kind(SceneKind kind);
-// "docking", ...; "unknown" for a number that is no kind.
+// "docking", ...; "unknown" for a number without a kind.
 [[nodiscard]] const char* scene_kind_text(SceneKind kind);
 
 }  // namespace tact

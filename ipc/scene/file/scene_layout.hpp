@@ -1,4 +1,4 @@
-// How the bytes of a scene file begin: for the reader of all of it and for the one that only looks what it is.
+// Header and section table of a scene file, shared by SceneFile and peek_scene().
 #pragma once
 
 #include <zlib.h>

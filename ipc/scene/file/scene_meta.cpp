@@ -36,7 +36,7 @@ SceneMeta read_meta(const SceneFile& file) {
         for (const SceneKindRow& k : scene_kinds())
             known += (known.empty() ? "" : ", ") + std::string(k.name) + " (" +
                      std::to_string(static_cast<std::uint32_t>(k.kind)) + ")";
-        in.fail("kind is " + std::to_string(static_cast<std::uint32_t>(meta.kind)) + ", which is none of " +
+        in.fail("kind is " + std::to_string(static_cast<std::uint32_t>(meta.kind)) + "; known kinds are " +
                 known);
     }
     const auto within = [&](const char* field, double value, double low, double high) {
@@ -44,8 +44,8 @@ SceneMeta read_meta(const SceneFile& file) {
             in.fail(std::string(field) + " is " + std::to_string(value) + ", outside of the possible range");
         }
     };
-    // Bounds are generous: a scene is between an atom and a landscape wide, and numbers stay far from
-    // overflow.
+    // Bounds are generous: a scene is between the size of an atom and that of a landscape, and numbers stay
+    // far from overflow.
     within("world_per_model", meta.world_per_model, 1e-9, 1e12);
     for (const double c : meta.centre_model_m) within("centre_model_m", c, -1e6, 1e6);
     const MetaLimits& limits = row->limits;
@@ -60,7 +60,7 @@ SceneMeta read_meta(const SceneFile& file) {
     within("map_background", meta.map_background, -1e30, 1e30);
     within("contour", meta.contour, -1e30, 1e30);
     if (meta.body_count != file.count({'B', 'O', 'D', 'Y'})) {
-        in.fail("body_count is " + std::to_string(meta.body_count) + " but there are " +
+        in.fail("body_count is " + std::to_string(meta.body_count) + " but the file has " +
                 std::to_string(file.count({'B', 'O', 'D', 'Y'})) + " BODY sections");
     }
     const char* const end = meta.title + sizeof meta.title;
@@ -68,11 +68,11 @@ SceneMeta read_meta(const SceneFile& file) {
     if (zero == end) in.fail("title does not end with a zero byte");
     if (std::any_of(meta.title, zero,
                     [](char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7f; })) {
-        in.fail("title holds a control character");
+        in.fail("title contains a control character");
     }
     for (const SectionTag& tag : row->sections) {
         if (file.count(tag) == 0)
-            in.fail(std::string("kind is ") + row->name + ", but there is no section " +
+            in.fail(std::string("kind is ") + row->name + ", but the file has no section " +
                     std::string(tag.data(), tag.size()));
     }
     return meta;
@@ -84,10 +84,10 @@ std::string read_note(const SceneFile& file) {
     if (bytes.size() > kNoteBytesMax)
         in.fail("it has " + std::to_string(bytes.size()) + " bytes, more than 1048576");
     std::string note(reinterpret_cast<const char*>(bytes.data()), bytes.size());
-    // It is printed on terminals: no escape sequences out of a file.
+    // The note is printed on terminals, so escape sequences are refused.
     for (const char c : note) {
         if ((static_cast<unsigned char>(c) < 0x20 && c != '\n' && c != '\t') || c == 0x7f) {
-            in.fail("the note holds a control character");
+            in.fail("the note contains a control character");
         }
     }
     return note;

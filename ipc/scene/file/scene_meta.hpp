@@ -1,4 +1,4 @@
-// What a scene is and how the hand's world maps onto it. Sections META (this struct) and NOTE (text).
+// Description of a scene and its mapping to the hand's world. Sections META (this struct) and NOTE (text).
 //
 // x_world = world_per_model * (x_model - centre_model_m): axes are parallel, the scale is uniform.
 #pragma once
@@ -23,11 +23,11 @@ struct SceneMeta {
     double world_per_model;
     double centre_model_m[3];
     double energy_j_per_sigma;  // docking: gain of the force, see rt/force/docking
-    double map_mean;            // docking: of the map as in its file, in the file's unit
+    double map_mean;            // docking: of the map from its file, in the file's unit
     double map_sigma;
-    double map_background;  // value that the map is continued with outside its box
+    double map_background;  // value of the map outside its box
     double contour;         // isosurface level, in the map's unit
-    double resolution_m;    // 0: not known
+    double resolution_m;    // 0: unknown
     char title[128];        // UTF-8, ends with 0
 
     [[nodiscard]] Vec3 to_world(const Vec3& model_m) const {
@@ -40,7 +40,7 @@ struct SceneMeta {
 static_assert(std::is_trivially_copyable_v<SceneMeta> && sizeof(SceneMeta) == 216);
 
 void write_meta(SceneWriter& out, const SceneMeta& meta, const std::string& note);
-// Checks every field: finite, positive where a scale, known kind, its sections present, terminated title.
+// Checks every field: finite, positive for a scale, known kind with its sections, terminated title.
 SceneMeta read_meta(const SceneFile& file);
 // Provenance as lines "key: value": source files, the origin rule applied, sizes, times.
 std::string read_note(const SceneFile& file);

@@ -26,39 +26,39 @@ struct PeekedFile {
 SceneMeta peek_scene(const std::filesystem::path& path) {
     using namespace scene_layout;
     const auto fail = [&](const std::string& why) {
-        throw StartupError("look at scene " + path.string(), why,
-                           "give a scene that tact-prep wrote, or bake it again");
+        throw StartupError("inspect scene " + path.string(), why,
+                           "choose a scene written by tact-prep, or bake it again");
     };
     const PeekedFile file{::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK)};
     struct stat info {};
     if (file.fd < 0 || ::fstat(file.fd, &info) != 0) fail(last_error());
-    if (!S_ISREG(info.st_mode)) fail("it is not a regular file");
+    if (!S_ISREG(info.st_mode)) fail("the file is not a regular file");
     const auto size = static_cast<std::uint64_t>(info.st_size);
     const auto read_at = [&](void* to, std::size_t bytes, std::uint64_t at) {
         if (at > size || bytes > size - at ||
             ::pread(file.fd, to, bytes, static_cast<off_t>(at)) != static_cast<ssize_t>(bytes))
-            fail("it ends before its content does");
+            fail("the file ends before its content");
     };
     Header header;
     read_at(&header, sizeof header, 0);
-    if (std::memcmp(header.magic, kMagic, sizeof kMagic) != 0) fail("it is not a scene of Tact");
+    if (std::memcmp(header.magic, kMagic, sizeof kMagic) != 0) fail("the file is not a Tact scene");
     if (header.format_version != kFormatVersion)
         fail("its format version is " + std::to_string(header.format_version) + ", this program reads " +
              std::to_string(kFormatVersion));
-    if (header.total_bytes != size) fail("it is not whole");
+    if (header.total_bytes != size) fail("the file is incomplete");
     if (header.section_count == 0 || header.section_count > kSectionsMax) fail("its section count is wrong");
     std::vector<TableRow> table(header.section_count);
     const std::size_t table_bytes = table.size() * sizeof(TableRow);
     read_at(table.data(), table_bytes, sizeof header);
     if (crc_of(reinterpret_cast<const std::byte*>(table.data()), table_bytes) != header.table_crc)
         fail("the checksum of its section table is wrong");
-    // A scene of this one section, so that there is one place to say what is right in it; of the others only their
-    // number counts.
+    // Builds a scene of this one section, so that the same code checks it; only the number of the other
+    // sections matters.
     SceneWriter alone;
     for (const TableRow& row : table) {
         std::vector<std::byte> bytes;
         if (row.tag == SceneMeta::kTag && row.index == 0) {
-            if (row.bytes != sizeof(SceneMeta)) fail("its section META has another size");
+            if (row.bytes != sizeof(SceneMeta)) fail("its section META has the wrong size");
             bytes.resize(sizeof(SceneMeta));
             read_at(bytes.data(), bytes.size(), row.offset);
             if (crc_of(bytes.data(), bytes.size()) != row.crc)

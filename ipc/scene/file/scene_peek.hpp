@@ -1,8 +1,8 @@
-// What a scene is, read from its header, its section table and section META alone: lists of files show it without reading
-// gigabytes. Whoever opens the scene checks all of it (SceneFile::open).
+// Describes a scene from its header, its section table and section META alone, so that file lists need not
+// read gigabytes. SceneFile::open checks the whole file later.
 //
-// Fails by StartupError, as SceneFile::open does.
-// Thread   any but the servo thread; reads some kilobytes of the file.
+// Errors   StartupError, like SceneFile::open
+// Thread   any but the servo thread; reads some kilobytes of the file
 #pragma once
 
 #include <filesystem>

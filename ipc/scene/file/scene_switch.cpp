@@ -16,8 +16,8 @@ namespace {
 constexpr const char* kAsked = "open";
 constexpr const char* kRefused = "refused";
 
-// The content of a small file, which is gone then, whatever it was; nothing: there is none. More than `most` bytes, and
-// what is no regular file, give an empty text.
+// Reads and removes a small file; nothing: it does not exist. A file of more than `most` bytes, or not a
+// regular file, gives an empty text.
 std::optional<std::string> take_small(const std::filesystem::path& path, std::size_t most) {
     const int fd = ::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK | O_NOFOLLOW);
     if (fd < 0 && errno == ENOENT) return std::nullopt;
@@ -47,13 +47,13 @@ std::optional<std::filesystem::path> take_asked_scene(const std::filesystem::pat
     const auto text = take_small(folder / kAsked, kAskedPathMost);
     if (!text) return std::nullopt;
     const auto refuse = [](const std::string& why) {
-        throw StartupError("opening another scene", why, "choose the scene again, or tact run FILE");
+        throw StartupError("opening another scene", why, "choose the scene again, or use tact run FILE");
     };
-    if (text->empty()) refuse("what was asked for is no path, or longer than a path may be");
+    if (text->empty()) refuse("the request contains no path, or a path that is too long");
     const std::string path = text->substr(0, text->size() - 1);
     if (text->back() != '\n' || std::any_of(path.begin(), path.end(), control))
-        refuse("the path that was asked for is no single line of text");
-    if (path.empty() || path.front() != '/') refuse("the path that was asked for is not absolute");
+        refuse("the requested path is not a single line of text");
+    if (path.empty() || path.front() != '/') refuse("the requested path is not absolute");
     return path;
 }
 

@@ -1,6 +1,7 @@
-// Each structure's atoms are put into cells, in its own frame; a cell is as wide as the farthest two atoms
-// that can clash, so 27 cells hold all partners of an atom. Cells are sorted numbers, not a table over the
-// box: memory follows the atoms. Of two structures the smaller one's atoms look into the other's cells.
+// Each structure's atoms are sorted into cells, in its own frame; a cell is as wide as the largest clash
+// distance, so 27 cells contain all partners of an atom. Cells are sorted numbers, not a table over the
+// box: memory is proportional to the atoms. For two structures, the smaller one's atoms search the other's
+// cells.
 #include "ipc/scene/fit/clashes.hpp"
 
 #include <algorithm>
@@ -24,7 +25,7 @@ constexpr std::array kRadii{Radius{1, 1.20},  Radius{2, 1.40},  Radius{3, 1.82},
                             Radius{35, 1.85}, Radius{53, 1.98}};
 constexpr double kOtherA = 1.70, kLargestA = 2.75;
 constexpr double kCellM = (2.0 * kLargestA) * 1e-10 - kClashOverlapM;
-constexpr double kFarthestM = 1e-3;  // beyond, cell numbers could run over; no structure is there
+constexpr double kFarthestM = 1e-3;  // beyond, cell numbers could overflow; no structure is that far away
 
 bool shares_hydrogen(std::uint8_t element) { return element == 7 || element == 8 || element == 16; }
 
@@ -54,7 +55,7 @@ struct Cells {
         std::uint64_t cell;
         std::uint32_t atom;
     };
-    std::vector<Entry> entries;  // by cell
+    std::vector<Entry> entries;  // sorted by cell
     double radius_m = 0.0;       // of the structure about its origin
 
     explicit Cells(const Structure& s) {
@@ -76,7 +77,7 @@ struct Cells {
         const auto c = cell_of(p_m);
         for (std::int64_t x = c[0] - 1; x <= c[0] + 1; ++x) {
             for (std::int64_t y = c[1] - 1; y <= c[1] + 1; ++y) {
-                // Three cells along z are neighbours in the order.
+                // Three cells along z are adjacent in the order.
                 const std::uint64_t first = cell_number(x, y, c[2] - 1), last = cell_number(x, y, c[2] + 1);
                 auto at = std::lower_bound(entries.begin(), entries.end(), first,
                                            [](const Entry& e, std::uint64_t cell) { return e.cell < cell; });
@@ -109,7 +110,7 @@ ClashCounts count_clashes(std::span<const PlacedStructure> placed) {
         for (std::size_t two = one + 1; two < placed.size(); ++two) {
             const bool swapped = placed[one].structure->size() > placed[two].structure->size();
             const std::size_t a = swapped ? two : one,
-                              b = swapped ? one : two;  // a's atoms look into b's cells
+                              b = swapped ? one : two;  // a's atoms search b's cells
             const Structure &sa = *placed[a].structure, &sb = *placed[b].structure;
             const Pose T_b_a = placed[b].T_model_body.inverse() * placed[a].T_model_body;
             if (!T_b_a.finite() || T_b_a.p_m.norm() > cells[a].radius_m + cells[b].radius_m + kCellM)

@@ -1,14 +1,15 @@
-// How many atoms of placed structures lie in one another: the clash count of a fit panel.
+// Number of overlapping atom pairs of placed structures: the clash count of a fit panel.
 //
-// Clash     a pair of atoms of two different structures whose van der Waals spheres overlap by 0.6 A or more,
+// Clash     a pair of atoms of two different structures whose van der Waals spheres overlap by 0.6 A or
+//           more,
 //               r_i + r_j - |x_i - x_j| - h >= 0.6 A,
-//           h = 0.4 A where both are N, O or S (they may share a hydrogen), as map-fitting and model-building
-//           programs count them by default. Radii of Bondi (1964); 1.7 A where the element is unknown or not
-//           in his list. Atoms as imported, that is without hydrogens. Pairs within one structure are not
-//           looked at. Where a chain is cut in two structures, atoms that were bonded count too.
-// Reference the sum over all pairs, in tests/unit/scene_clashes_test.cpp, gives the same numbers.
-// Thread    slow (tens of milliseconds for tens of thousands of atoms); never on the servo thread.
-// Fails by  never: atoms whose place is not a number clash with nothing.
+//           h = 0.4 A if both are N, O or S (they may share a hydrogen), as in map-fitting and model-building
+//           programs by default. Radii of Bondi (1964); 1.7 A for elements that are unknown or not in his
+//           list. Atoms as imported, that is without hydrogens. Pairs within one structure do not count.
+//           Where a chain is cut into two structures, formerly bonded atoms count too.
+// Reference the sum over all pairs, in tests/unit/scene_clashes_test.cpp, gives the same numbers
+// Thread    slow (tens of milliseconds for tens of thousands of atoms); never on the servo thread
+// Errors    none: atoms at NaN positions clash with nothing
 #pragma once
 
 #include <cstdint>
@@ -26,9 +27,8 @@ inline constexpr char kClashDefinition[] =
 
 struct ClashCounts {
     std::uint64_t pairs = 0;
-    std::vector<std::uint64_t>
-        pairs_of;  // by structure, in the order given; each pair counts for both of its two
-    std::vector<std::uint32_t> atoms_of;  // that are in a clash
+    std::vector<std::uint64_t> pairs_of;  // by structure, in the given order; each pair counts for both
+    std::vector<std::uint32_t> atoms_of;  // with a clash
 };
 
 [[nodiscard]] ClashCounts count_clashes(std::span<const PlacedStructure> placed);

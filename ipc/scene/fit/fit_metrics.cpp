@@ -19,7 +19,7 @@ Vec3 in_voxels(const DensityGrid& grid, const PlacedStructure& placed, std::size
     return (placed.T_model_body * body - grid.origin_m).cwiseQuotient(grid.spacing_m);
 }
 
-// Map value between eight voxels; outside the box the background.
+// Trilinear interpolation of the map; outside the box the background.
 double trilinear(const DensityGrid& grid, const Vec3& at, double background) {
     double value = 0.0;
     const Vec3 low = at.array().floor();
@@ -84,7 +84,7 @@ void correlate(const DensityGrid& grid, const VoxelBox& box, std::span<const flo
     fit.cc_mean = varied > 0.0 ? (sum.uv - sum.u * sum.v / n) / varied : 0.0;
 }
 
-// Adds a box of values to those of the whole grid.
+// Adds a box of values to the values of the whole grid.
 void add_box(const DensityGrid& grid, const VoxelBox& box, std::span<const float> part,
              std::span<float> whole) {
     for (std::uint32_t z = 0; z < box.size[2]; ++z) {
@@ -98,7 +98,7 @@ void add_box(const DensityGrid& grid, const VoxelBox& box, std::span<const float
     }
 }
 
-// Sums over atoms, not yet divided.
+// Sums over atoms, before division.
 void look_at_atoms(const DensityGrid& grid, const PlacedStructure& placed, double background, double contour,
                    FitMetrics& fit) {
     for (std::size_t i = 0; i < placed.structure->size(); ++i) {
@@ -122,8 +122,8 @@ void divide_by_atoms(FitMetrics& fit, double background, double sigma) {
 FitOfBodies fit_of_bodies(const DensityGrid& grid, std::span<const PlacedStructure> placed,
                           const FitSettings& settings) {
     if (!(settings.resolution_m > 0.0) || !std::isfinite(settings.resolution_m)) {
-        throw StartupError("computing the fit", "the resolution of the map is not known",
-                           "state it with --resolution-a");
+        throw StartupError("computing the fit", "the resolution of the map is unknown",
+                           "set it with --resolution-a");
     }
     FitOfBodies fit;
     fit.body.resize(placed.size());
@@ -136,9 +136,9 @@ FitOfBodies fit_of_bodies(const DensityGrid& grid, std::span<const PlacedStructu
         for (const float v : grid.values) squares += std::pow(static_cast<double>(v) - background, 2.0);
         sigma = std::sqrt(squares / static_cast<double>(grid.values.size()));
     }
-    // All together: in the box that holds all of them, which is the whole grid only when it has to be.
+    // All together: in the smallest box that contains all of them.
     const VoxelBox together = reached_box(grid, placed, settings.resolution_m);
-    DensityGrid frame;  // of that box, without values
+    DensityGrid frame;  // geometry of that box, without values
     frame.size = together.size;
     std::vector<float> sum(placed.size() > 1 ? together.count() : 0, 0.0F), own;
     for (std::size_t b = 0; b < placed.size(); ++b) {

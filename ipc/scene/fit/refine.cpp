@@ -1,15 +1,16 @@
-// Coordinates. A step x = (shift s, turn t) takes the pose (c, q) to (c + s, exp(D^-1 t) q) where D is the
-// square root of the inertia tensor per mass, about c in model axes, kept at its value of the start. Then the
-// mean square of how far the atoms move is |s|^2 + |t|^2 to first order, for structures of any shape, and
-// steepest ascent is steepest per ångström of the atoms. The gradient of the score in these coordinates is
-// (F, D^-1 Q), with F and Q as in the force model: F = d score / d c, Q = d score / d rotation.
+// Coordinates. A step x = (shift s, turn t) maps the pose (c, q) to (c + s, exp(D^-1 t) q), where D is the
+// square root of the inertia tensor per mass, about c in model axes, kept at its initial value. Then the
+// mean square displacement of the atoms is |s|^2 + |t|^2 to first order, for structures of any shape, and
+// the ascent is steepest per ångström of atom displacement. The gradient of the score in these coordinates
+// is (F, D^-1 Q), with F and Q as in the force model: F = d score / d c, Q = d score / d rotation.
 //
-// Search. Direction H g, H starting as identity: plain steepest ascent. The first length is a quarter of the
-// largest step; then 1, as Newton's method has it, at most the largest. A step is taken when the score rises
-// by 1e-4 of what the slope promises, or, within rounding (sums are in single precision), when it does not
-// fall and the slope does; else it is made shorter, to the top of the parabola through what is known, within
-// [1/10, 1/2]. After a step H is updated (BFGS, Nocedal & Wright 6.17) where the curvature is that of a hill.
-// Where H g leads nowhere, H is made the identity again; where that leads nowhere either, this is the top.
+// Search. Direction H g, with H initially the identity: plain steepest ascent. The first length is a
+// quarter of the largest step; then 1, as in Newton's method, limited to the largest step. A step is
+// accepted when the score rises by 1e-4 of the linear prediction, or, within rounding errors (sums are in
+// single precision), when it does not fall and the slope does; otherwise the step is shortened, to the
+// maximum of the parabola through the known values, within [1/10, 1/2]. After a step H is updated (BFGS,
+// Nocedal & Wright 6.17) where the curvature is that of a maximum. If H g yields no step, H is reset to the
+// identity; if that yields none either, this is the maximum.
 #include "ipc/scene/fit/refine.hpp"
 
 #include <Eigen/Eigenvalues>
@@ -26,19 +27,19 @@ namespace {
 using Vec6 = Eigen::Matrix<double, 6, 1>;
 using Mat6 = Eigen::Matrix<double, 6, 6>;
 
-constexpr double kRise = 1e-4;      // of what the slope promises
-constexpr double kRounding = 2e-6;  // of the score
+constexpr double kRise = 1e-4;      // fraction of the linear prediction
+constexpr double kRounding = 2e-6;  // relative to the score
 constexpr int kShorteningsMax = 20;
-constexpr double kShareShown = 0.05;  // of the simulated maximum: the region of the correlations
+constexpr double kShareShown = 0.05;  // fraction of the simulated maximum: region of the correlations
 constexpr double kPointsPerResolution = 3.0;
-constexpr std::size_t kPointsMax = 400'000;  // in the box around it
+constexpr std::size_t kPointsMax = 400'000;  // in the box around the structure
 
 struct Slope {
     double score = 0.0;
     Vec3 force = Vec3::Zero(), torque = Vec3::Zero();
 };
 
-// Points of a body with the simulated density there.
+// Points of a body with their simulated density.
 struct Cloud {
     std::vector<Vec3> at;
     std::vector<double> u;
@@ -94,9 +95,9 @@ public:
     }
 
 private:
-    // With u fixed and v the map at the points: C = sum u' v' / (|u'| |v'|), u' = u - mean or u, v' alike.
-    // dC = sum (u' / (|u'| |v'|) - C v' / |v'|^2) dv; for deviations from the mean the factor sums to zero,
-    // so that the mean of dv drops out.
+    // With u fixed and v the map at the points: C = sum u' v' / (|u'| |v'|), u' = u - mean or u, v'
+    // likewise. dC = sum (u' / (|u'| |v'|) - C v' / |v'|^2) dv; for deviations from the mean, the factor
+    // sums to zero, so that the mean of dv cancels.
     [[nodiscard]] Slope correlation(const Pose& pose) const {
         const std::size_t n = cloud_.at.size();
         std::vector<double> v(n);
@@ -135,8 +136,8 @@ private:
     Cloud cloud_;
 };
 
-// Inverse of the square root of the inertia tensor per mass, model axes. Directions in which turning moves
-// hardly any atom (a rod about itself) count as one hundredth of the largest.
+// Inverse of the square root of the inertia tensor per mass, model axes. Directions in which a rotation
+// moves hardly any atom (a rod about its axis) count as one hundredth of the largest.
 Eigen::Matrix3d turn_per_length(const Structure& s, const Quat& q) {
     Eigen::Matrix3d inertia = Eigen::Matrix3d::Zero();
     for (std::size_t i = 0; i < s.size(); ++i) {
@@ -163,7 +164,7 @@ public:
     [[nodiscard]] double score() const { return now_; }
     [[nodiscard]] const Pose& pose() const { return pose_; }
 
-    // One step uphill; false at the top.
+    // One uphill step; false at the maximum.
     bool step() {
         for (const bool plain : {false, true}) {
             if (plain || !(gradient_.dot(metric_ * gradient_) > 0.0)) reset();
@@ -191,7 +192,7 @@ private:
         return {pose_.p_m + x.head<3>(),
                 (quat_from_rotation_vector(turn_ * x.tail<3>()) * pose_.q).normalized()};
     }
-    // Whether a step of these coordinates could be seen.
+    // True if a step in these coordinates is above the stop limits.
     [[nodiscard]] bool seen(const Vec6& x) const {
         return x.head<3>().norm() >= settings_.stop_m || (turn_ * x.tail<3>()).norm() >= settings_.stop_rad;
     }
@@ -216,7 +217,7 @@ private:
                 gradient_ = gradient;
                 return true;
             }
-            // Top of the parabola with this slope here and that score there.
+            // Maximum of the parabola with this slope here and that score there.
             const double bend = length * rise - gain;
             const double top = bend > 0.0 ? 0.5 * length * length * rise / bend : 0.5 * length;
             length = std::isfinite(top) ? std::clamp(top, 0.1 * length, 0.5 * length) : 0.1 * length;
@@ -225,9 +226,9 @@ private:
     }
 
     void learn(const Vec6& x, const Vec6& gradient) {
-        const Vec6 fall = gradient_ - gradient;  // of the gradient: positive along x on a hilltop
+        const Vec6 fall = gradient_ - gradient;  // decrease of the gradient: positive along x near a maximum
         const double bend = x.dot(fall);
-        if (!(bend > 1e-10 * x.norm() * fall.norm())) return;  // a valley's curvature teaches nothing here
+        if (!(bend > 1e-10 * x.norm() * fall.norm())) return;  // the curvature of a minimum is not usable
         if (fresh_) metric_ = Mat6::Identity() * (bend / fall.squaredNorm());
         const Mat6 left = Mat6::Identity() - x * fall.transpose() / bend;
         metric_ = left * metric_ * left.transpose() + x * x.transpose() / bend;
@@ -241,20 +242,20 @@ private:
     double now_ = 0.0;
     Vec6 gradient_ = Vec6::Zero();
     Mat6 metric_ = Mat6::Identity();
-    bool fresh_ = true;  // metric_ has learned nothing yet
+    bool fresh_ = true;  // metric_ has no update yet
 };
 
 }  // namespace
 
 RefineResult refine(const DensityMap& map, const Structure& structure, const Pose& start,
                     const RefineSettings& wanted, const RefineProgress& progress) {
-    const std::string attempt = "refining the place of " + structure.name;
+    const std::string attempt = "refining the pose of " + structure.name;
     RefineSettings settings = wanted;
     if (!start.finite() || !(std::abs(start.q.norm() - 1.0) < 1e-3) || structure.size() == 0)
-        throw StartupError(attempt, "where it is now is not a pose", "put it somewhere first");
+        throw StartupError(attempt, "its present pose is invalid", "place the structure first");
     if (settings.goal != RefineGoal::mean_density &&
         (!(settings.resolution_m > 0.0) || !std::isfinite(settings.resolution_m)))
-        throw StartupError(attempt, "the resolution of the map is not known", "state it with --resolution-a");
+        throw StartupError(attempt, "the resolution of the map is unknown", "set it with --resolution-a");
     if (!(settings.step_m_max > 0.0)) settings.step_m_max = 0.5 * map.spacing_m().minCoeff();
     const Score score(map, structure, settings);
     Ascent ascent(score, structure, {start.p_m, start.q.normalized()}, settings);

@@ -1,14 +1,13 @@
-// Moves one structure from where it is to the nearest place where it fits the map best.
+// Moves one structure to the nearest local optimum of its fit to the map.
 //
-// Method   Steepest ascent over translation and rotation together. Its steps are measured by how far they
-//          move the atoms (root mean square), so turning and shifting count alike. The uphill direction is
-//          corrected by the curvature seen on the way (BFGS), else long narrow ridges would take hundreds
-//          of steps.
-// Local    No step moves the atoms by more than half a voxel, so it climbs the hill it stands on.
-// Stops    when the next step would be below stop_m and stop_rad, after iterations_max, or when asked.
-// Never    returns a pose with a lower score than that of the start.
-// Repeats  exactly, for the same input on the same processor.
-// Thread   slow (milliseconds to a second); never on the servo thread.
+// Method   steepest ascent over translation and rotation together. The step length is the root mean square
+//          displacement of the atoms, so rotation and translation count alike. The curvature along the way
+//          corrects the uphill direction (BFGS); otherwise long narrow ridges would take hundreds of steps
+// Local    no step moves the atoms by more than half a voxel, so the search climbs the nearest maximum
+// Stops    when the next step would be below stop_m and stop_rad, after iterations_max, or on cancellation
+// Result   never has a lower score than the start
+// Repeats  exactly, for the same input on the same processor
+// Thread   slow (milliseconds to a second); never on the servo thread
 #pragma once
 
 #include <cstdint>
@@ -21,8 +20,8 @@
 namespace tact {
 
 enum class RefineGoal : std::uint8_t {
-    mean_density,      // over atoms, weighted by mass: the energy that the hand feels
-    correlation_zero,  // of the simulated map, as in ipc/scene/fit/fit_metrics.hpp, on points that move along
+    mean_density,      // mass-weighted over atoms: the energy of the docking force
+    correlation_zero,  // of the simulated map (fit_metrics.hpp), on points that move with the structure
     correlation_mean,
 };
 
@@ -38,9 +37,9 @@ struct RefineSettings {
 
 enum class RefineEnd : std::uint8_t {
     converged,
-    iterations,  // went uphill to the last one allowed
+    iterations,  // iterations_max was reached
     cancelled,
-    no_density,  // the map is flat where the structure is; nothing was moved
+    no_density,  // the map is flat at the structure; the structure was not moved
 };
 
 struct RefineResult {
@@ -50,10 +49,10 @@ struct RefineResult {
     RefineEnd end = RefineEnd::no_density;
 };
 
-// Called before every iteration; false cancels, and the best pose so far is returned.
+// Called before every iteration; false cancels, and refine() returns the best pose so far.
 using RefineProgress = std::function<bool(std::uint32_t iteration, double score)>;
 
-// Throws StartupError where a correlation is asked for without a resolution, or the start is no pose.
+// Throws StartupError for a correlation without a resolution, or an invalid start pose.
 RefineResult refine(const DensityMap& map, const Structure& structure, const Pose& start,
                     const RefineSettings& settings = {}, const RefineProgress& progress = {});
 

@@ -1,10 +1,11 @@
-// Which blocks of a buffer were written since somebody last asked, as ranges to upload.
+// Tracks the written blocks of a buffer, as ranges to upload.
 //
-// A range is whole blocks. Ranges with few untouched blocks between them are joined, where sending those
-// costs less than one more call. Marks are bits, so that those of a large mesh stay in the nearest cache.
+// A range consists of whole blocks. Ranges separated by few untouched blocks are joined, where sending
+// these costs less than another call. Marks are bits, so that the marks of a large mesh stay in the L1
+// cache.
 //
-// Memory   a bit a block, and the runs of the worst case; nothing is allocated after construction.
-// Thread   belongs to one.
+// Memory   one bit per block, and the runs of the worst case; no allocation after construction
+// Thread   belongs to one
 #pragma once
 
 #include <algorithm>
@@ -22,11 +23,11 @@ struct MeshRange {
 
 class ChangedBlocks {
 public:
-    // Blocks of 2^shift elements; up to `join` untouched blocks are sent along. Nothing is marked.
+    // Blocks of 2^shift elements; up to `join` untouched blocks are sent too. Starts without marks.
     ChangedBlocks(std::size_t elements, std::uint32_t shift, std::uint32_t join)
         : elements_(elements), shift_(shift), join_(join) {
         const std::size_t blocks = (elements >> shift) + 1;
-        mark_.assign(blocks / 64 + 2, 0);  // the last one stays empty, so that every run ends
+        mark_.assign(blocks / 64 + 2, 0);  // the last word stays empty, so that every run ends
         const std::size_t runs = blocks / 2 + 1;
         start_.resize(runs + kSlack);
         end_.resize(runs + kSlack);
@@ -37,7 +38,7 @@ public:
         const std::size_t block = element >> shift_;
         mark_[block / 64] |= std::uint64_t{1} << block % 64;
     }
-    // Three elements from `first` on, which seldom lie in two blocks.
+    // Three elements from `first` on, rarely in two blocks.
     void mark_triangle(std::size_t first) noexcept {
         mark(first);
         if (((first ^ (first + 2)) >> shift_) != 0) mark(first + 2);
@@ -55,7 +56,7 @@ public:
         mark_[b / 64] |= to;
     }
 
-    // Rising, apart. Holds until the next call; forgets the marks.
+    // Increasing and disjoint. Valid until the next call; clears the marks.
     std::span<const MeshRange> take() noexcept {
         const std::size_t runs = take_runs();
         if (runs == 0) return {};
@@ -64,7 +65,7 @@ public:
                               b = std::min(elements_, std::size_t{end} << shift_);
             return MeshRange{static_cast<std::uint32_t>(a), static_cast<std::uint32_t>(b - a)};
         };
-        // Whether a run begins a range depends on the gap before it alone, so nothing here need branch.
+        // The gap before a run alone decides whether the run starts a range, so no branch is needed.
         std::size_t count = 0;
         std::uint32_t first = start_[0];
         for (std::size_t i = 1; i < runs; ++i) {
@@ -81,8 +82,9 @@ public:
 private:
     static constexpr std::size_t kSlack = 2;
 
-    // Where runs of marked blocks start and end, into start_ and end_; clears the marks. Few words hold more
-    // than two starts when marks are sparse, and none when they are dense: the first two go without a branch.
+    // Lists the starts and ends of runs of marked blocks in start_ and end_, and clears the marks. Few
+    // words have more than two starts when marks are sparse, and none when they are dense: the first two
+    // are handled without a branch.
     std::size_t take_runs() noexcept {
         std::size_t starts = 0, ends = 0;
         const auto list = [](std::uint64_t bits, std::uint32_t at, std::uint32_t* to, std::size_t& count) {
@@ -94,7 +96,7 @@ private:
             for (; bits != 0; bits &= bits - 1)
                 to[count++] = at + static_cast<std::uint32_t>(std::countr_zero(bits));
         };
-        std::uint64_t before = 0;  // the highest bit of the word before, as the lowest
+        std::uint64_t before = 0;  // highest bit of the previous word, as the lowest bit
         for (std::size_t i = 0; i < mark_.size(); ++i) {
             const std::uint64_t now = mark_[i], shifted = now << 1 | before;
             const auto at = static_cast<std::uint32_t>(64 * i);

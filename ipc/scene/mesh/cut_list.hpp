@@ -1,7 +1,9 @@
-// Nodes of a cut with what decides about them; four at a time are compared with a box.
+// Nodes of a cut with the data that decides about their splits and merges; four at a time are compared with
+// a box.
 //
-// Order     any; what is removed is replaced by the last one. Who removes tells the other's new place.
-// Memory    all taken by the constructor.  Thread  that of the refinement.
+// Order     any; the last node replaces a removed one. remove() returns the moved node
+// Memory    allocated by the constructor
+// Thread    that of the refinement
 #pragma once
 
 #include <array>
@@ -12,7 +14,7 @@
 
 namespace tact {
 
-// Of the probe's path; Chebyshev distances, below zero inside.
+// Box around the probe's path; Chebyshev distances, below zero inside.
 struct RefineBox {
     std::array<float, 3> centre_m, half_m;
     [[nodiscard]] float distance_m(const std::array<float, 3>& p) const noexcept {
@@ -35,25 +37,25 @@ public:
     [[nodiscard]] bool within(std::uint32_t place, const RefineBox& box) const noexcept {
         return box.distance_m(entry_[place].position_m) < entry_[place].limit_m;
     }
-    // Whether the box with a margin touches what hangs on the node.
+    // True if the box plus a margin touches the triangles at the node.
     [[nodiscard]] bool reached(std::uint32_t place, const RefineBox& box, float margin_m) const noexcept {
         return box.distance_m(entry_[place].position_m) < entry_[place].reach_m + margin_m;
     }
-    // The new one's place.
+    // Returns the new node's place.
     std::uint32_t add(std::uint32_t node, const std::array<float, 3>& position_m, float limit_m,
                       float reach_m) noexcept {
         entry_[size_] = {position_m, limit_m, reach_m, node, {}};
         return size_++;
     }
-    // The node that is at this place now, or `none`.
+    // Returns the node that moved to this place, or `none`.
     std::uint32_t remove(std::uint32_t place, std::uint32_t none) noexcept {
         --size_;
         if (place == size_) return none;
         entry_[place] = entry_[size_];
         return entry_[place].node;
     }
-    // visit(place) for those that are nearer to the box than their limit, or the others; nothing may be added or
-    // removed meanwhile.
+    // Calls visit(place) for the nodes that are nearer to the box than their limit, or for the others;
+    // visit must not add or remove nodes.
     template <class Visit>
     void each(const RefineBox& box, bool nearer, Visit&& visit) const {
         using Four [[gnu::vector_size(16)]] = float;
@@ -64,7 +66,7 @@ public:
             return (d > 0.0F ? d : -d) - box.half_m[axis];
         };
         for (std::uint32_t i = 0; i < size_; i += 4) {
-            std::array<Four, 4> row;  // of each entry x, y, z, limit; then of each of these four entries
+            std::array<Four, 4> row;  // x, y, z, limit of each entry; below transposed
             for (std::uint32_t k = 0; k < 4; ++k) std::memcpy(&row[k], &entry_[i + k], sizeof row[k]);
             const Four xy01 = __builtin_shufflevector(row[0], row[1], 0, 4, 1, 5),
                        xy23 = __builtin_shufflevector(row[2], row[3], 0, 4, 1, 5),
@@ -87,7 +89,7 @@ public:
 private:
     struct alignas(32) Entry {
         std::array<float, 3> position_m;
-        float limit_m;  // to be split where the box is nearer, else merged
+        float limit_m;  // split if the box is nearer, otherwise merge
         float reach_m;  // of the node
         std::uint32_t node;
         std::array<std::uint32_t, 2> unused;

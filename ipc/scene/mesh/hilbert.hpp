@@ -1,5 +1,5 @@
-// Place of a cell on Hilbert's curve through a cube of 2^kBits cells a side: neighbours along it are neighbours
-// in space (J. Skilling, "Programming the Hilbert curve", 2004).
+// Index of a cell on Hilbert's curve through a cube of 2^kBits cells per side: consecutive cells are
+// adjacent in space (J. Skilling, "Programming the Hilbert curve", 2004).
 #pragma once
 
 #include <array>

@@ -1,24 +1,24 @@
-// Two ways to move. Steps: contraction k writes its parent and about three corners; a split writes the same
-// ones back and two triangles at their birth. Rebuild: the version of each vertex that the level shows is
-// copied, the collapse map of the level is one pass over the vertices contracted since the lists were made
-// (parents come first), and every patch looks the vertices of its list up in it.
+// Two ways to change the level. Steps: contraction k writes its parent and about three corners; a split
+// writes the same ones back and two triangles at their birth. Rebuild: copies the version of each vertex
+// that the level shows, computes the level's collapse map in one pass over the vertices contracted since
+// the lists were made (parents come first), and every patch looks up the vertices of its list in it.
 //
-// Measured 2026-11-22, a million vertices, medians of processor time in a quiet moment of a shared machine;
-// while other programs keep its caches busy all of it takes 1.3 to 2 times as long.
-//   100 % -> 28 %           3.7 ms, where a plain copy of the result takes 1.4
+// Measured 2026-11-22, a million vertices, medians of processor time in a quiet period of a shared machine;
+// with other programs using its caches everything takes 1.3 to 2 times as long.
+//   100 % -> 28 %           3.7 ms; a plain copy of the result takes 1.4 ms
 //   28 % -> 100 %           8.3 ms
-//   1000 steps              0.022 ms down, 0.027 up, and 0.013 to find what they changed
-//   memory of the mesh      170 bytes a vertex
-// A step meets a dozen lines of memory at random, so it costs what those do. Where each corner lies is known
-// when the mesh is made, as a level always shows the same lists: 31 -> 23 ns a step, 39 -> 30 up. Marks are
-// bits and their runs are listed without branches: 30 -> 12 us after 1000 steps.
+//   1000 steps              0.022 ms down, 0.027 ms up, and 0.013 ms to find the changes
+//   memory of the mesh      170 bytes per vertex
+// A step accesses a dozen cache lines at random, which dominates its cost. The place of each corner is
+// computed when the mesh is built, as a level always shows the same lists: 31 -> 23 ns per step down, 39 ->
+// 30 ns up. Marks are bits and their runs are listed without branches: 30 -> 12 us after 1000 steps.
 //
-// Nothing is far from what the memory gives: 15 MB are written and 18 MB read for the 28 %. Vertices drawn
-// are transformed 1.3 to 1.5 times; below 100 %, 44 % of degenerate triangles come on top. The lists of the
-// next patch are fetched ahead; what that saves is within the noise here. Tried: the same for coming steps or
-// vertices changed nothing, and so did writing vertices past the caches; versions listed per contraction
-// instead of per vertex wrote to memory at random, 14 ms instead of 3 for the vertices alone; a branch for
-// dead triangles when looking up 2.7 ms instead of 2.1.
+// All parts are close to the memory bandwidth: for the 28 %, 15 MB are written and 18 MB read. Drawn
+// vertices are transformed 1.3 to 1.5 times; below 100 %, 44 % of degenerate triangles are added. The lists
+// of the next patch are prefetched; the gain is within the noise here. Also tested: prefetching for coming
+// steps or vertices had no effect, nor had non-temporal stores of vertices; versions listed per contraction
+// instead of per vertex wrote to memory at random, 14 ms instead of 3 ms for the vertices alone; a branch
+// for dead triangles in the lookup took 2.7 ms instead of 2.1 ms.
 #include "ipc/scene/mesh/mesh_cut.hpp"
 
 #include <algorithm>
@@ -38,16 +38,16 @@ constexpr std::uint32_t kListed = 1024;  // versions at a time
 // ProgressiveMesh::Birth: corner of the child, of the parent, of the other vertex.
 constexpr std::uint8_t kTurn[8][3] = {{0, 1, 2}, {0, 2, 1}, {1, 2, 0}, {1, 0, 2}, {2, 0, 1}, {2, 1, 0}};
 
-// Nanoseconds, with nothing else on the core.
-constexpr double kStepNs = 70.0;     // over a stretch not visited lately; 20 over a warm one
-constexpr double kScanNs = 1.0;      // a version of the vertices of the level
-constexpr double kCopyNs = 3.5;      // a vertex of the level
-constexpr double kTriangleNs = 3.0;  // a triangle of the level, with its share of dead ones
-// To send what changed: a step is two or three short ranges until they join; at most all of it goes.
+// Nanoseconds, on an otherwise idle core.
+constexpr double kStepNs = 70.0;     // over vertices that are not cached; 20 over cached ones
+constexpr double kScanNs = 1.0;      // per version of the vertices of the level
+constexpr double kCopyNs = 3.5;      // per vertex of the level
+constexpr double kTriangleNs = 3.0;  // per triangle of the level, with its fraction of dead ones
+// Cost of sending changes: a step is two or three short ranges until they join; at most the whole buffer is sent.
 constexpr double kSendStepNs = 350.0;
 constexpr double kSendByteNs = 0.1;
 
-// Returns whether that was a change, as any bit: bit for bit, as it is uploaded; there is no padding in it.
+// Returns a non-zero value for a change: compares bit for bit, as uploaded; the struct has no padding.
 std::uint64_t replace(PackedVertex& old, const PackedVertex& now) {
     std::array<std::uint64_t, 2> a, b;
     std::memcpy(a.data(), &old, sizeof(a));
@@ -56,7 +56,7 @@ std::uint64_t replace(PackedVertex& old, const PackedVertex& now) {
     return (a[0] ^ b[0]) | (a[1] ^ b[1]);
 }
 
-// The lists of a level lie apart from each other, so each begins with a wait unless somebody looks ahead.
+// The lists of a level are scattered, so each would start with a cache miss without prefetching.
 void fetch_list(const MeshPatches& p, const MeshPatches::List& list) {
     const auto fetch = [](const auto* from, std::size_t count) {
         constexpr std::size_t kLine = 64 / sizeof(*from);
@@ -110,7 +110,7 @@ std::uint32_t MeshCut::approach(std::uint32_t wanted, double budget_ns) noexcept
     wanted = std::clamp(wanted, mesh_->vertices_min(), mesh_->vertices());
     const std::uint32_t way = distance(wanted);
     if (whole_ns(wanted) <= budget_ns) return set_vertices(wanted);
-    // More steps than these may fit where their ranges join, but not surely.
+    // More steps than these may fit where their ranges join, but that is not certain.
     const double fit = budget_ns > 0.0 ? budget_ns / (kStepNs + kSendStepNs) : 0.0;
     const std::uint32_t steps =
         fit < way ? std::min(std::max(static_cast<std::uint32_t>(fit), kStepsMin), way) : way;
@@ -195,8 +195,8 @@ void MeshCut::rebuild(std::uint32_t wanted) noexcept {
     level_ = wanted;
 }
 
-// The versions that the level shows are one per vertex, in the order of the vertices. They are listed a few
-// at a time, then copied; blocks are marked where they differ.
+// The versions shown by a level are one per vertex, in the order of the vertices. They are listed in
+// portions, then copied; differing blocks are marked.
 void MeshCut::rebuild_vertices(std::uint32_t wanted) noexcept {
     const ProgressiveMesh& m = *mesh_;
     const std::uint32_t end = m.coarsest_version(wanted - 1) + 1;
@@ -231,7 +231,7 @@ void MeshCut::rebuild_indices(std::uint32_t wanted) noexcept {
         const MeshPatches::List& list = place_list(patch, shown_[patch]);
         if (patch + 1 < shown_.size()) fetch_list(p, p.list[shown_[patch + 1]]);
         map_list(list, wanted);
-        // Triangles that the level does not have get two equal corners.
+        // Triangles that do not exist at the level get two equal corners.
         kernels_->look_up(p.corner.data() + std::size_t{3} * list.first, list.triangles, local_.data(),
                           index_.data() + draw_[patch].first, true);
     }
@@ -241,8 +241,8 @@ void MeshCut::rebuild_indices(std::uint32_t wanted) noexcept {
         p.change.begin());
 }
 
-// Leaves the vertices of a list as the level has them in local_. Most parents are in the list too; only the
-// others are looked for in the map of all, at random.
+// Writes the vertices of a list at the given level to local_. Most parents are in the list too; only the
+// others need random access to the map of all vertices.
 void MeshCut::map_list(const MeshPatches::List& list, std::uint32_t wanted) noexcept {
     const MeshPatches& p = mesh_->patches_;
     const std::uint32_t* const vertex = p.vertex.data() + list.vertex_first;
@@ -255,7 +255,7 @@ void MeshCut::map_list(const MeshPatches::List& list, std::uint32_t wanted) noex
         to[i] = parent[i] == MeshPatches::kElsewhere ? map_[vertex[i] - wanted] : to[parent[i]];
 }
 
-// Down to the next list, at its own level, where it has its vertices as they are and nothing is dead.
+// Down to the next list, at its own level, where its vertices are unchanged and no triangle is dead.
 void MeshCut::show_next(std::uint32_t patch) noexcept {
     const MeshPatches& p = mesh_->patches_;
     const MeshPatches::List& list = place_list(patch, shown_[patch] + 1);
@@ -263,7 +263,7 @@ void MeshCut::show_next(std::uint32_t patch) noexcept {
                       p.vertex.data() + list.vertex_first, index_.data() + draw_[patch].first, false);
 }
 
-// Up to the list before, at the level where this one ends: what lives is in this one, as it is.
+// Up to the previous list, at the level where this one ends: this one contains all live triangles unchanged.
 void MeshCut::show_previous(std::uint32_t patch) noexcept {
     const MeshPatches& p = mesh_->patches_;
     const MeshPatches::List& now = p.list[shown_[patch]];
@@ -280,7 +280,7 @@ void MeshCut::show_previous(std::uint32_t patch) noexcept {
     }
 }
 
-// Everything about showing a list but its corners.
+// Shows a list, except for its corners.
 const MeshPatches::List& MeshCut::place_list(std::uint32_t patch, std::uint32_t list) noexcept {
     const MeshPatches& p = mesh_->patches_;
     const MeshPatches::List& l = p.list[list];

@@ -1,12 +1,12 @@
-// The cut through a progressive mesh that is drawn: walks to any vertex count and tells what to upload.
+// The drawn cut through a progressive mesh: changes to any vertex count and reports the changes to upload.
 //
-// Buffers   vertex() and index() are whole blocks that never move; make GPU buffers of their sizes once, then
-//           upload the changes and draw the ranges of draws(). Some of the triangles in those are degenerate
-//           (0, 0, 0). Vertices from vertices() on are not used.
-// Repeats   all that is drawn depends on the vertex count alone, bit for bit, however it was reached.
-// Time      single steps, or a rebuild by the collapse map, whichever its cost model says is cheaper: 20 to
-//           60 ns a step, at most about 10 ns per vertex of the mesh. Nothing is ever allocated.
-// Thread    a MeshCut belongs to one thread; the mesh may be shared and must outlive it.
+// Buffers   vertex() and index() are whole blocks that never move; create GPU buffers of their sizes once,
+//           then upload the changes and draw the ranges of draws(). Some of the triangles in these are
+//           degenerate (0, 0, 0). Vertices from vertices() on are not used
+// Repeats   the drawn mesh depends on the vertex count alone, bit for bit, independently of the path to it
+// Time      single steps, or a rebuild by the collapse map, whichever is cheaper in its cost model: 20 to
+//           60 ns per step, at most about 10 ns per vertex of the mesh. Never allocates
+// Thread    a MeshCut belongs to one thread; the mesh may be shared and must outlive it
 #pragma once
 
 #include <cstdint>
@@ -21,22 +21,22 @@
 namespace tact {
 
 struct MeshChanges {
-    std::span<const MeshRange> vertex, index;  // rising, apart; in vertices, in indices
+    std::span<const MeshRange> vertex, index;  // increasing and disjoint; in vertices, in indices
 };
 
 class MeshCut {
 public:
     explicit MeshCut(const ProgressiveMesh& mesh);  // starts at the base, everything changed
 
-    // Moves to `wanted` vertices, clamped to [vertices_min, vertices] of the mesh. Returns what it has now.
+    // Changes to `wanted` vertices, clamped to [vertices_min, vertices] of the mesh. Returns the new count.
     std::uint32_t set_vertices(std::uint32_t wanted) noexcept;
-    // The same within a budget: at once where steps or a rebuild, and the sending of what they change, fit by
-    // the cost model; otherwise as many steps towards it as fit, at least kStepsMin. Repeat until there.
+    // The same within a budget: at once if steps or a rebuild, including the upload, fit in the cost model;
+    // otherwise as many steps as fit, at least kStepsMin. Repeat until `wanted` is reached.
     std::uint32_t approach(std::uint32_t wanted, double budget_ns) noexcept;
     static constexpr std::uint32_t kStepsMin = 256;
-    // What set_vertices() would cost by the model, sending included.
+    // Cost of set_vertices() in the model, including the upload.
     [[nodiscard]] double whole_ns(std::uint32_t wanted) const noexcept;
-    // What the last of these calls costs by the model, sending included.
+    // Cost of the last of these calls in the model, including the upload.
     [[nodiscard]] double cost_ns() const { return cost_ns_; }
 
     [[nodiscard]] std::uint32_t vertices() const { return level_; }
@@ -44,11 +44,11 @@ public:
     [[nodiscard]] float error_m() const { return mesh_->error_m(level_); }
     [[nodiscard]] std::span<const PackedVertex> vertex() const { return vertex_; }
     [[nodiscard]] std::span<const std::uint32_t> index() const { return index_; }
-    // Parts of index() to draw, rising; some may be empty.
+    // Parts of index() to draw, increasing; some may be empty.
     [[nodiscard]] std::span<const MeshRange> draws() const { return draw_; }
 
-    // What differs from the last call of changes(); the spans hold until the next one. Ranges are whole
-    // blocks of 16 vertices or 64 indices (256 bytes), joined over gaps of up to 512 bytes.
+    // Differences since the last call of changes(); the spans are valid until the next one. Ranges are
+    // whole blocks of 16 vertices or 64 indices (256 bytes), joined over gaps of up to 512 bytes.
     MeshChanges changes() noexcept;
 
 private:
@@ -70,13 +70,13 @@ private:
     const MeshKernels* kernels_;
     std::uint32_t level_;
     double cost_ns_ = 0.0;
-    std::size_t next_change_;           // of the patches: those before it have levels below level_
+    std::size_t next_change_;           // of the patches: earlier changes have levels below level_
     std::vector<std::uint32_t> shown_;  // list of each patch
     std::vector<MeshRange> draw_;
     HugeVector<PackedVertex> vertex_;
     HugeVector<std::uint32_t> index_;
-    HugeVector<std::uint32_t> map_;     // of rebuild: where the vertices from the level on have gone
-    std::vector<std::uint32_t> local_;  // the vertices of one list at a level
+    HugeVector<std::uint32_t> map_;     // for a rebuild: targets of the vertices from the level on
+    std::vector<std::uint32_t> local_;  // vertices of one list at a level
     ChangedBlocks vertex_changed_, index_changed_;
 };
 

@@ -1,8 +1,8 @@
-// The inner loops of MeshCut's rebuild, one function per instruction set. Private to ipc/assets and its
+// The inner loops of MeshCut's rebuild, one function per instruction set. Private to ipc/scene/mesh and its
 // tests.
 //
-// Layout   as ProgressiveMesh and MeshPatches have it.
-// Thread   any; no allocation, linear in the count.
+// Layout   as in ProgressiveMesh and MeshPatches
+// Thread   any; no allocation, linear in the count
 #pragma once
 
 #include <cstddef>
@@ -13,16 +13,16 @@ namespace tact {
 struct MeshKernels {
     const char* name;
     bool (*runs_here)();
-    // Lists the versions, out of [0, end), that level `wanted` shows: those with level[i] >= wanted that are
-    // the last of their vertex or are followed by a coarser one. level has end + 1 entries. Returns their
-    // number; the list needs room for kListSlack more than that.
+    // Lists the versions in [0, end) that level `wanted` shows: those with level[i] >= wanted that are the
+    // last of their vertex or are followed by a coarser one. level has end + 1 entries. Returns their
+    // number; the list needs room for kListSlack more entries.
     std::uint32_t (*list_versions)(const std::uint32_t* level, std::uint32_t end, std::uint32_t wanted,
                                    std::uint32_t* list);
-    // The collapse map of a level for the `count` vertices from it on, parent[] being theirs: map[i] is the
-    // vertex below `level` that vertex level + i has gone into.
+    // The collapse map of a level for the `count` vertices from it on, with their parents in parent[]:
+    // map[i] is the vertex below `level` into which vertex level + i was contracted.
     void (*follow)(const std::uint32_t* parent, std::uint32_t level, std::uint32_t count, std::uint32_t* map);
-    // vertex[corner] for 3 corners a triangle; (0, 0, 0) for triangles with two equal ones. With `past` they
-    // go past the caches where `to` is a multiple of 64 bytes, as nothing reads them soon.
+    // vertex[corner] for 3 corners per triangle; (0, 0, 0) for triangles with two equal ones. With `past`,
+    // uses non-temporal stores if `to` is a multiple of 64 bytes, as nothing reads the result soon.
     void (*look_up)(const std::uint16_t* corner, std::uint32_t triangles, const std::uint32_t* vertex,
                     std::uint32_t* to, bool past);
 };

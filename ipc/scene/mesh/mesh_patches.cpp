@@ -1,5 +1,5 @@
-// Patches are runs along a Hilbert curve through the centroids: compact, and made in one sort. Within a list
-// the order is made for that level, on the connectivity it has there.
+// Patches are runs along a Hilbert curve through the centroids: compact, and built by one sort. Within a
+// list, the order is optimized for its level and the connectivity there.
 #include "ipc/scene/mesh/mesh_patches.hpp"
 
 #include <algorithm>
@@ -46,7 +46,7 @@ std::vector<Keyed> along_curve(const ProgressiveMeshData& data) {
     return order;
 }
 
-// Makes the lists of one patch after the other.
+// Builds the lists of all patches.
 class Maker {
 public:
     Maker(const ProgressiveMeshData& data, std::uint64_t lifts_max)
@@ -91,7 +91,7 @@ private:
         std::uint16_t number;    // within the patch
     };
 
-    // The data has the longest lived first.
+    // The data is ordered by lifetime, longest first.
     void number_members() {
         by_life_.resize(member_.size());
         std::iota(by_life_.begin(), by_life_.end(), std::uint16_t{0});
@@ -110,9 +110,9 @@ private:
         const std::uint32_t patch = m.patches();
         std::uint32_t level = static_cast<std::uint32_t>(data_.vertex.size());
         add_list(level);
-        // Where the patch changes lists: spread evenly over the octave by the golden ratio.
+        // Levels at which the patch changes lists: spread evenly over the octave by the golden ratio.
         const double phase = std::fmod((patch + 0.5) * 0.6180339887498949, 1.0);
-        // NOLINTNEXTLINE(cert-flp30-c): it is halved, not counted
+        // the loop halves `next`; it is not a counter
         for (double next = level * std::exp2(-phase); !member_.empty(); next *= 0.5) {
             const auto to = static_cast<std::uint32_t>(next);
             if (to <= data_.base_vertices) break;
@@ -124,13 +124,13 @@ private:
         }
     }
 
-    // Drops the triangles that the level does not have and lifts the vertices of the others to it.
+    // Removes the triangles that do not exist at the level and lifts the vertices of the others to it.
     void lift(std::uint32_t level) {
         const std::uint32_t alive = data_.triangle_count[level - data_.base_vertices];
         for (std::uint32_t& v : vertex_) {
             while (v >= level) {
                 if (lifts_left_-- == 0)
-                    throw StartupError("read a progressive mesh", "its chains of contractions are too long",
+                    throw StartupError("read a progressive mesh", "its contraction chains are too long",
                                        "bake the scene again with this version of tact-prep");
                 v = data_.parent[v - data_.base_vertices];
             }
@@ -146,7 +146,7 @@ private:
         corner.resize(3 * kept);
     }
 
-    // From member_ and corner_, which it brings into the order of the list; leaves list_corner_ and vertex_.
+    // Input: member_ and corner_, which it sorts into the order of the list; output: list_corner_ and vertex_.
     void add_list(std::uint32_t level) {
         MeshPatches& m = made_.patches;
         number_vertices();
@@ -168,7 +168,7 @@ private:
         m.vertex.insert(m.vertex.end(), vertex_.begin(), vertex_.end());
     }
 
-    // Those of corner_ into vertex_, rising, with their parents; list_corner_ from that.
+    // Collects the vertices of corner_ in vertex_, increasing, with their parents; fills list_corner_.
     void number_vertices() {
         vertex_.clear();
         for (const std::uint32_t v : corner_) {
@@ -191,11 +191,11 @@ private:
     const ProgressiveMeshData& data_;
     std::uint64_t lifts_left_;
     PatchedMesh made_;
-    std::vector<std::uint32_t> local_;  // of a vertex of the mesh
+    std::vector<std::uint32_t> local_;  // local number of a vertex of the mesh
     std::vector<Member> member_, moved_;
     std::vector<std::uint16_t> by_life_;
-    std::vector<std::uint32_t> corner_;       // of the members, numbers of the mesh
-    std::vector<std::uint16_t> list_corner_;  // of the members, numbers within vertex_
+    std::vector<std::uint32_t> corner_;       // of the members, numbers in the mesh
+    std::vector<std::uint16_t> list_corner_;  // of the members, numbers in vertex_
     std::vector<std::uint32_t> vertex_;
     CacheOrder cache_order_;
 };

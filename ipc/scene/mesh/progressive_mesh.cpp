@@ -1,8 +1,8 @@
 // Derivation of the step tables. A corner of a triangle starts at its original vertex and is lifted to the
-// parent each time its vertex is contracted. Lifting the largest corner first visits the contractions in the
-// order in which they happen, so one loop per triangle finds every change and proves that no level has a
-// triangle with two equal corners. The work is the number of changes, about four per contraction; a crafted
-// file with long chains could make it quadratic, so the number is bounded.
+// parent each time its vertex is contracted. Lifting the largest corner first visits the contractions in
+// their order, so one loop per triangle finds every change and proves that no level has a triangle with two
+// equal corners. The work is the number of changes, about four per contraction; a crafted file with long
+// chains could make it quadratic, so the number is limited.
 #include "ipc/scene/mesh/progressive_mesh.hpp"
 
 #include <algorithm>
@@ -16,7 +16,7 @@ namespace {
 
 constexpr SectionTag kMeshTag{'M', 'E', 'S', 'H'};
 constexpr std::uint32_t kMeshVersion = 1;
-constexpr std::uint32_t kCountMax = 1U << 29;  // of vertices or triangles; 3 T fits 32 bits with room
+constexpr std::uint32_t kCountMax = 1U << 29;  // of vertices or triangles; 3 T fits 32 bits
 constexpr std::uint64_t kChangesPerItem = 24;  // measured 2.5 to 4 per contraction
 constexpr double kPositionMax = 1e6;           // metres
 
@@ -47,8 +47,8 @@ void check_counts(const ProgressiveMeshData& data) {
     if (data.triangle.size() % 3 != 0 || data.parent.size() != contractions ||
         data.merged.size() != contractions || data.error_m.size() != contractions + 1 ||
         data.triangle_count.size() != contractions + 1)
-        refuse("its tables do not have the lengths that its counts ask for");
-    if (data.triangle_count.back() != t) refuse("its finest level does not have all triangles");
+        refuse("the lengths of its tables do not match its counts");
+    if (data.triangle_count.back() != t) refuse("its finest level does not contain all triangles");
 }
 
 void check_content(const ProgressiveMeshData& data) {
@@ -56,7 +56,7 @@ void check_content(const ProgressiveMeshData& data) {
     for (std::size_t k = 0; k < data.parent.size(); ++k) {
         const std::size_t vertex = data.base_vertices + k;
         if (data.parent[k] >= vertex)
-            refuse("vertex " + std::to_string(vertex) + " goes into vertex " +
+            refuse("vertex " + std::to_string(vertex) + " is contracted into vertex " +
                    std::to_string(data.parent[k]));
         if (data.triangle_count[k] > data.triangle_count[k + 1])
             refuse("level " + std::to_string(vertex) + " has more triangles than the next finer one");
@@ -72,7 +72,7 @@ void check_content(const ProgressiveMeshData& data) {
     }
     if (!std::all_of(data.vertex.begin(), data.vertex.end(), sane) ||
         !std::all_of(data.merged.begin(), data.merged.end(), sane))
-        refuse("a vertex is not finite, is further out than 1e6 m or has a damaged normal");
+        refuse("a vertex is not finite, is farther than 1e6 m or has a damaged normal");
 }
 
 std::uint32_t ten_bits(std::int16_t part) {
@@ -88,7 +88,7 @@ PackedVertex pack(const MeshVertex& vertex) {
 }
 
 std::array<float, 3> unit_normal(const PackedVertex& vertex) {
-    const auto part = [&](unsigned shift) {  // the sign comes down from the highest bit
+    const auto part = [&](unsigned shift) {  // the left shift moves the sign to the highest bit
         return static_cast<float>(static_cast<std::int32_t>(vertex.normal << (22 - shift)) >> 22) / 511.0F;
     };
     return {part(0), part(10), part(20)};
@@ -105,8 +105,8 @@ ProgressiveMesh::ProgressiveMesh(ProgressiveMeshData data) {
     triangle_count_ = std::move(data.triangle_count);
 }
 
-// Each span starts with the vertices as its top shows them. So a level is found among about three halves as
-// many versions as the top has vertices, however far below the original it is.
+// Each span starts with the vertices shown by its top level. So a level is found among about 1.5 times as
+// many versions as the top has vertices, at any distance below the original.
 void ProgressiveMesh::order_versions(const ProgressiveMeshData& data) {
     const auto n = static_cast<std::uint32_t>(data.vertex.size());
     std::size_t versions = data.parent.size();
@@ -147,7 +147,7 @@ void ProgressiveMesh::derive_corners(const ProgressiveMeshData& data) {
     const std::uint64_t changes_max = kChangesPerItem * (contractions + data.triangle.size() / 3) + 1024;
     change_first_.assign(contractions + 1, 0);
 
-    // visit(contraction, triangle, corner) for every corner that a contraction moves.
+    // Calls visit(contraction, triangle, corner) for every corner that a contraction moves.
     const auto lift = [&](std::size_t t, std::uint32_t born, auto&& visit) {
         std::array<std::uint32_t, 3> v{data.triangle[3 * t], data.triangle[3 * t + 1],
                                        data.triangle[3 * t + 2]};
@@ -172,8 +172,7 @@ void ProgressiveMesh::derive_corners(const ProgressiveMeshData& data) {
     std::uint64_t changes = 0;
     all(
         [&](std::uint32_t k, std::size_t, std::size_t) {
-            if (++changes > changes_max)
-                refuse("its contractions move far more corners than those of a surface");
+            if (++changes > changes_max) refuse("its contractions move more corners than any surface has");
             ++change_first_[k + 1];
         },
         [&](std::size_t t, std::size_t k, const std::array<std::uint32_t, 3>& v) {
@@ -183,7 +182,7 @@ void ProgressiveMesh::derive_corners(const ProgressiveMeshData& data) {
                 std::find(v.begin(), v.end(), data.parent[k - 1]) == v.end())
                 refuse("triangle " + std::to_string(t) + " disappears before two of its corners meet");
         });
-    if (changes > std::uint64_t{UINT32_MAX}) refuse("it has more corner changes than 32 bits count");
+    if (changes > std::uint64_t{UINT32_MAX}) refuse("it has more than 2^32 corner changes");
     for (std::size_t k = 0; k < contractions; ++k) change_first_[k + 1] += change_first_[k];
 
     PatchedMesh patched = make_patches(data, changes_max);
@@ -261,7 +260,7 @@ ProgressiveMesh read_mesh(const SceneFile& file, std::uint32_t index) {
     try {
         return ProgressiveMesh(std::move(data));
     } catch (const StartupError& error) {
-        // Name the file too; the first line of the cause says what is wrong.
+        // Adds the file name; the first line of the cause is the fault.
         const std::string why = error.what();
         throw StartupError("read scene " + file.name() + ", section MESH " + std::to_string(index),
                            why.substr(0, why.find('\n')),

@@ -1,9 +1,11 @@
-// How much error is allowed at a distance from the probe: what decides where the surface is refined.
+// Permitted error at a distance from the probe, which controls the refinement of the surface.
 //
-// Distance  Chebyshev, max(|dx|,|dy|,|dz|), in model metres. Up to radius_m nothing is allowed: full detail.
-// Form      from there on piecewise linear and never falling, flat beyond its last point: the seed's frustums, one
-//           in another. A bell is the same with points on 1 - exp(-x²).
-// Thread    any; a value.  Fails by  made_right(), which puts any numbers in order.
+// Distance  Chebyshev, max(|dx|,|dy|,|dz|), in model metres. Up to radius_m no error is permitted: full
+//           detail
+// Form      beyond it piecewise linear and never decreasing, constant beyond its last point (nested
+//           frustums). A bell has its points on 1 - exp(-x²)
+// Thread    any; a value
+// Errors    none: frustums() corrects any input
 #pragma once
 
 #include <algorithm>
@@ -24,7 +26,7 @@ public:
     };
 
     RefineFilter() = default;  // full detail everywhere
-    // Points in any order are sorted; what is not finite or negative is dropped, what falls is raised.
+    // Sorts the points; drops non-finite and negative ones, and raises decreasing errors.
     static RefineFilter frustums(float radius_m, std::span<const Point> points) {
         RefineFilter made;
         made.point_[0] = {std::isfinite(radius_m) && radius_m > 0.0F ? radius_m : 0.0F, 0.0F};
@@ -49,7 +51,7 @@ public:
         }
         return made;
     }
-    // error_far_m far away; 1 - 1/e of it at radius_m + width_m.
+    // error_far_m at large distance; 1 - 1/e of it at radius_m + width_m.
     static RefineFilter bell(float radius_m, float width_m, float error_far_m) {
         std::array<Point, kPointsMax - 1> point{};
         for (std::size_t i = 0; i < point.size(); ++i) {
@@ -59,7 +61,7 @@ public:
         return frustums(radius_m, point);
     }
 
-    // The seed's approximation of a bell: three frustums, one in another.
+    // Approximation of a bell by three nested frustums.
     static RefineFilter multiple_frustum(float radius_m, float width_m, float error_far_m) {
         const std::array<Point, 4> corner{{{radius_m, 0.1F * error_far_m},
                                            {radius_m + 0.5F * width_m, 0.4F * error_far_m},
@@ -81,10 +83,10 @@ public:
         }
         return point_[count_ - 1].error_m;
     }
-    // Within this distance an error is not allowed: allowed_m(d) < error_m just where d is below it.
+    // Distance below which an error is not permitted: allowed_m(d) < error_m exactly if d is below it.
     [[nodiscard]] float distance_m(float error_m) const noexcept {
         if (count_ == 0) return kEverywhere;
-        std::size_t i = 1;  // the first point that allows it; asked for at every split and merge: no branch
+        std::size_t i = 1;  // the first point that permits it; used at every split and merge, so branch-free
         for (std::size_t k = 1; k < kPointsMax; ++k) i += error_m > allows_[k] ? 1 : 0;
         if (i >= count_) return kEverywhere;
         const Point& a = point_[i - 1];
@@ -95,18 +97,18 @@ private:
     static constexpr float kEverywhere = std::numeric_limits<float>::max();
     std::array<Point, kPointsMax> point_{};
     std::size_t count_ = 0;
-    std::array<float, kPointsMax> allows_{};     // errors of the points; beyond the last, nothing is more
-    std::array<float, kPointsMax> per_error_{};  // distance gained by allowing more, up to each point
+    std::array<float, kPointsMax> allows_{};     // errors of the points; infinite beyond the last
+    std::array<float, kPointsMax> per_error_{};  // distance per additional error, up to each point
 };
 
-// What a person chooses of a filter: the rest is a matter of the radius of full detail, the knob's.
+// The user's choice of a filter; the knob sets the radius of full detail.
 struct FilterForm {
     enum class Shape : std::uint8_t { bell, multiple_frustum };
-    static constexpr float kLeast = 0.05F, kMost = 20.0F;  // of both numbers
+    static constexpr float kLeast = 0.05F, kMost = 20.0F;  // limits of both numbers
 
     Shape shape = Shape::bell;
-    float width = 1.0F;      // over which detail falls off beyond the radius, in radii
-    float error_far = 0.5F;  // allowed far away, in radii
+    float width = 1.0F;      // width of the falloff beyond the radius, in radii
+    float error_far = 0.5F;  // permitted at large distance, in radii
 
     [[nodiscard]] bool possible() const noexcept {
         return shape <= Shape::multiple_frustum && width >= kLeast && width <= kMost && error_far >= kLeast &&

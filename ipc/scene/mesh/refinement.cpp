@@ -9,7 +9,7 @@
 namespace tact {
 namespace {
 
-constexpr std::uint32_t kCascadeMax = 1U << 16;  // of nodes in a row; longer ones end in the middle
+constexpr std::uint32_t kCascadeMax = 1U << 16;  // nodes in a row; longer cascades are interrupted
 
 }  // namespace
 
@@ -22,7 +22,7 @@ Refinement::Refinement(const VertexForest& forest, const RefinementSettings& set
     if (settings_.nodes_max < forest.roots())
         throw StartupError("refine a surface",
                            "its coarsest mesh has " + std::to_string(forest.roots()) +
-                               " vertices, and no more than " + std::to_string(settings.nodes_max) +
+                               " vertices, but at most " + std::to_string(settings.nodes_max) +
                                " may be active",
                            "allow more active vertices");
     state_.resize(forest.nodes(), {0, kNone});
@@ -78,7 +78,7 @@ RefineStep Refinement::step(const Vec3& probe_m, const Vec3& velocity_m_s) noexc
             box.centre_m[i] = static_cast<float>(std::clamp(probe_m[axis] + 0.5 * way, -1e7, 1e7));
             box.half_m[i] = static_cast<float>(std::min(0.5 * std::abs(way), 1e7));
         }
-        // What is merged may be needed by what is split, so that comes last; unless room is short.
+        // A merged node may be needed by a split, so merges come last, unless vertices are scarce.
         const bool merge_first = vertices_ + settings_.splits_max > settings_.nodes_max;
         if (merge_first) out.merges = merge_all(box);
         ask_full_.count = ask_rest_.count = 0;

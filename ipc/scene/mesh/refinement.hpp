@@ -1,19 +1,20 @@
-// Keeps the surface fine around the probe and coarse elsewhere: the cut through the forest, changed a little in
-// every step (El-Sana, Varshney 1999; ipc/scene/mesh/vertex_forest.hpp).
+// Keeps the surface fine around the probe and coarse elsewhere: the cut through the forest, changed a
+// little in every step (El-Sana, Varshney 1999; ipc/scene/mesh/vertex_forest.hpp).
 //
-// A step    takes the box that the probe is about to pass through, splits what is coarser than the filter asks
-//           for there and merges what is finer, what is within the filter's radius first. Splits and merges
-//           have a budget each; splits that others force count. Where the budget holds all of them they are
-//           made at once, else one after the other, and a cascade stops in the middle when the budget is out.
-//           Every step ends with a whole surface; what is left is done in the next.
-// Same      where the filter and the box are the same and the budget is not out, the cut is the same, wherever
-//           the probe came from: what is asked for, and what that needs.
-// Cost      follows the number of changes, and a look at the nodes at the cut; no triangle is looked at.
-// Memory    8 bytes for each node of the forest, 64 for each vertex that may be active. All is taken by the
-//           constructor.
-// Frame     model, metres.  Thread  one thread, never the servo's.
-// Fails by  StartupError where nodes_max cannot hold the coarsest mesh. Full lists leave the surface as fine as
-//           they can, and say so.
+// Step      takes the box that the probe will pass through, splits the parts that are coarser than the
+//           filter requires and merges finer ones, first within the filter's radius. Splits and merges have
+//           a budget each; forced splits count. If the budget covers all splits they are made at once,
+//           otherwise one after the other, and a cascade stops when the budget is used up. Every step ends
+//           with a complete surface; the rest follows in the next step
+// Unique    for the same filter and box and a sufficient budget the cut is the same, for any earlier path
+//           of the probe: the required nodes, and the nodes that these need
+// Cost      proportional to the number of changes, plus a test of the nodes at the cut; triangles are not
+//           tested
+// Memory    8 bytes per node of the forest, 64 per vertex that may be active. Allocated by the constructor
+// Frame     model, metres
+// Thread    one thread, never the servo's
+// Errors    StartupError if nodes_max cannot hold the coarsest mesh. Full lists leave the surface as fine
+//           as possible, and the result reports it
 #pragma once
 
 #include <algorithm>
@@ -32,61 +33,60 @@ namespace tact {
 
 struct RefinementSettings {
     RefineFilter filter;
-    double look_ahead_s = 0.015;         // how far ahead of the probe its path is refined
-    std::uint32_t splits_max = 4000;     // a step, forced ones too
-    std::uint32_t merges_max = 4000;     // a step
-    std::uint32_t nodes_max = 1U << 18;  // vertices active at the same time
+    double look_ahead_s = 0.015;         // time over which the probe's path is extrapolated and refined
+    std::uint32_t splits_max = 4000;     // per step, including forced ones
+    std::uint32_t merges_max = 4000;     // per step
+    std::uint32_t nodes_max = 1U << 18;  // limit of active vertices
 };
 
 struct RefineStep {
     std::uint32_t splits = 0, merges = 0;
-    bool settled = false;      // nothing was left to do
-    bool full_detail = false;  // all within the filter's radius of the box is as in the full mesh
-    bool no_room = false;      // as many vertices as may be are active
+    bool settled = false;      // no pending work
+    bool full_detail = false;  // everything within the filter's radius of the box equals the full mesh
+    bool no_room = false;      // the limit of active vertices is reached
     std::uint32_t vertices = 0, triangles = 0;  // active
-    RefineBox path{};                           // what the probe is about to pass through
+    RefineBox path{};                           // box that the probe will pass through
 };
 
 class Refinement {
 public:
     Refinement(const VertexForest& forest, const RefinementSettings& settings);
 
-    // A probe that is not finite changes nothing.
+    // A non-finite probe changes nothing.
     RefineStep step(const Vec3& probe_m, const Vec3& velocity_m_s) noexcept;
     void set_filter(const RefineFilter& filter) noexcept;
     [[nodiscard]] const RefineFilter& filter() const noexcept { return settings_.filter; }
 
-    // The rest looks at the whole cut, and may allocate.
-    // visit(number of the triangle, {three places}) for every active triangle; a place names an active vertex
-    // as long as the cut stays.
+    // The following functions visit the whole cut, and may allocate.
+    // Calls visit(number of the triangle, {three places}) for every active triangle; a place identifies an
+    // active vertex until the cut changes.
     template <class Visit>
     void each_triangle(Visit&& visit) const;
     [[nodiscard]] std::array<float, 3> position_m(std::uint32_t place) const {
         return place < forest_.leaves() ? forest_.leaf_position_m(place)
                                         : forest_.node(place - forest_.leaves()).position_m;
     }
-    // The full mesh's vertex, or kNoForestNode.
+    // The vertex of the full mesh, or kNoForestNode.
     [[nodiscard]] std::uint32_t leaf(std::uint32_t place) const {
         return place < forest_.leaves() ? place : kNoForestNode;
     }
-    // The active vertex that stands for a vertex of the full mesh.
+    // The active vertex that represents a vertex of the full mesh.
     [[nodiscard]] std::uint32_t place_of(std::uint32_t leaf) const noexcept;
-    // From the full surface, and of the full surface from the active one, at the most. See the forest.
+    // Largest distance between the active and the full surface, in both directions. See the forest.
     [[nodiscard]] float deviation_m() const noexcept;
     [[nodiscard]] std::size_t memory_bytes() const;
 
 private:
     static constexpr std::uint32_t kNone = UINT32_MAX;
     static constexpr std::uint32_t kSplit = 1U << 31;
-    static constexpr std::uint32_t kWanted = 1U << 30;  // within gather() alone
+    static constexpr std::uint32_t kWanted = 1U << 30;  // used within gather() only
 
-    struct State {           // of each node
-        std::uint32_t word;  // kSplit, and how many split nodes are its children or need it
-        std::uint32_t
-            place;  // in mergeable_ where it is split and nobody needs it, in frontier_ where it is active
+    struct State {            // per node
+        std::uint32_t word;   // kSplit, and the number of split nodes that are its children or need it
+        std::uint32_t place;  // in mergeable_ if split and not needed, in frontier_ if active
     };
     enum class Done : std::uint8_t { yes, out_of_budget, no_room };
-    struct Queue {  // of nodes; what does not fit is found again in the next step
+    struct Queue {  // of nodes; nodes that do not fit are found again in the next step
         HugeVector<std::uint32_t> node;
         std::uint32_t count = 0;
         bool full = false;
@@ -134,12 +134,12 @@ private:
     const VertexForest& forest_;
     RefinementSettings settings_;
     HugeVector<State> state_;
-    HugeVector<std::uint64_t> active_leaf_;  // a bit each: the full mesh's vertex is there
+    HugeVector<std::uint64_t> active_leaf_;  // one bit per vertex of the full mesh: active
     CutList frontier_;                       // active nodes
-    CutList mergeable_;                      // split nodes that nobody needs
+    CutList mergeable_;                      // split nodes that no split node needs
     std::uint32_t vertices_ = 0, triangles_ = 0;
-    Queue ask_full_, ask_rest_, ask_merge_;  // within the radius; elsewhere
-    Queue batch_;                            // what is split at once
+    Queue ask_full_, ask_rest_, ask_merge_;  // within the radius; elsewhere; to merge
+    Queue batch_;                            // nodes that are split at once
     HugeVector<std::uint32_t> stack_;
 };
 
@@ -148,7 +148,7 @@ void Refinement::each_triangle(Visit&& visit) const {
     std::vector<Level> path;
     const auto place = [&](std::uint32_t leaf) {
         if (is_active(leaf)) return leaf;
-        for (std::size_t i = path.size(); i-- > 0;)  // the third corner is likely to be a near relation
+        for (std::size_t i = path.size(); i-- > 0;)  // the third corner is likely to be in a nearby branch
             if (leaf >= path[i].branch.first && leaf < path[i].branch.end)
                 return descend(path[i].branch, leaf);
         return place_of(leaf);

@@ -1,17 +1,17 @@
-// Splits at once all that is asked for with all that it needs, wherever the budget holds the whole of it.
+// Splits all requested nodes with all their needs at once, if the budget covers them.
 #include "ipc/base/prefetch.hpp"
 #include "ipc/scene/mesh/refinement.hpp"
 
 namespace tact {
 namespace {
 
-// Turns ahead for which memory is called: what a node names; what it needs.
+// Prefetch distance in iterations: for the data that a node names; for its needs.
 constexpr std::uint32_t kNamed = 8, kNeeded = 4;
 
 }  // namespace
 
 bool Refinement::want(std::uint32_t n, std::uint32_t most) noexcept {
-    if (state_[n].word != 0) return true;  // split, or here already
+    if (state_[n].word != 0) return true;  // split, or already in the batch
     if (batch_.count == most) return false;
     state_[n].word = kWanted;
     batch_.node[batch_.count++] = n;
@@ -24,7 +24,7 @@ void Refinement::fetch_batch(std::uint32_t i) const noexcept {
         const std::uint32_t n = batch_.node[i + kNamed];
         const ForestNode& node = forest_.node(n);
         prefetch(forest_.first_need_of(n));
-        prefetch(&node + 1);  // its first child, and where the lists of this one end
+        prefetch(&node + 1);  // its first child, and the end of this node's lists
         if (!node.first_is_leaf()) prefetch_to_write(&state_[n + 1]);
         if (!node.second_is_leaf()) {
             prefetch(&forest_.node(node.second_of(n)));
@@ -37,8 +37,8 @@ void Refinement::fetch_batch(std::uint32_t i) const noexcept {
             prefetch_to_write(&state_[need]);
 }
 
-// All that has to be split for the queue, found breadth first, so that each node is looked at once and the memory
-// of the next ones can be called for meanwhile. False: it is more than `most`, and nothing has changed.
+// Collects all nodes that must be split for the queue, breadth first, so that each node is visited once and
+// the memory of the next ones can be prefetched. False: they are more than `most`, and nothing has changed.
 bool Refinement::gather(const Queue& asked, const RefineBox& box, std::uint32_t most) noexcept {
     const bool rest = &asked == &ask_rest_;
     const std::uint32_t rest_before = ask_rest_.count;
@@ -86,7 +86,7 @@ bool Refinement::split_at_once(const Queue& asked, const RefineBox& box, std::ui
         for (const std::uint32_t need : forest_.needs_of(n)) hold(need);
         triangles_ += static_cast<std::uint32_t>(forest_.triangles_of(n).size());
     }
-    // Only now is it known which of them stay at the cut.
+    // Only now is it known which nodes stay at the cut.
     for (const std::uint32_t n : batch) {
         const ForestNode& node = forest_.node(n);
         if (state_[n].word == kSplit) list(mergeable_, n);

@@ -1,16 +1,16 @@
-// Splits and merges: what changes in the cut, and what must be so before.
+// Splits and merges: the changes of the cut, and their preconditions.
 #include "ipc/base/prefetch.hpp"
 #include "ipc/scene/mesh/refinement.hpp"
 
 namespace tact {
 namespace {
 
-// Turns ahead for which memory is called: a node and its state; what it names; what it needs.
+// Prefetch distances in iterations: a node and its state; the data that it names; its needs.
 constexpr std::uint32_t kFirst = 12, kSecond = 8, kThird = 4;
 
 }  // namespace
 
-// Each call is for what the one before has brought meanwhile.
+// Each prefetch uses data loaded by the previous one.
 void Refinement::fetch_ahead(const Queue& queue, std::uint32_t i) const noexcept {
     if (i + kFirst < queue.count) {
         const std::uint32_t n = queue.node[i + kFirst];
@@ -41,7 +41,7 @@ void Refinement::fetch_ahead(const Queue& queue, std::uint32_t i) const noexcept
         }
 }
 
-// To be split, where it is wanted: puts what is at a place of the frontier into one of the queues.
+// Puts the node at a place of the frontier into one of the split queues.
 void Refinement::ask(std::uint32_t place, const RefineBox& box) noexcept {
     const bool full = frontier_.reached(place, box, settings_.filter.radius_m());
     (full ? ask_full_ : ask_rest_).put(frontier_.node(place));
@@ -82,7 +82,7 @@ void Refinement::split(std::uint32_t n, const RefineBox& box) noexcept {
     triangles_ += static_cast<std::uint32_t>(forest_.triangles_of(n).size());
 }
 
-// A node that has to be split before n is, or kNone.
+// A node that must be split before n, or kNone.
 std::uint32_t Refinement::unmet_need(std::uint32_t n) const noexcept {
     const std::uint32_t parent = forest_.node(n).parent;
     if (parent != kNoForestNode && !is_split(parent)) return parent;
@@ -91,7 +91,7 @@ std::uint32_t Refinement::unmet_need(std::uint32_t n) const noexcept {
     return kNone;
 }
 
-// What is needed goes first, what that needs before it; numbers rise, so there is an end.
+// Needs are split first, and their own needs before them; numbers increase, so the recursion ends.
 Refinement::Done Refinement::split_with_forced(std::uint32_t n, const RefineBox& box,
                                                std::uint32_t& budget) noexcept {
     std::uint32_t top = 0;
@@ -113,14 +113,14 @@ Refinement::Done Refinement::split_with_forced(std::uint32_t n, const RefineBox&
     return Done::yes;
 }
 
-// Children that are wanted too come to its end meanwhile.
+// Children that must be split too are appended to the queue during the loop.
 Refinement::Done Refinement::split_queue(Queue& queue, const RefineBox& box, std::uint32_t& budget) noexcept {
     if (split_at_once(queue, box, budget)) return Done::yes;
     Done all = Done::yes;
     for (std::uint32_t i = 0; i < queue.count; ++i) {
         fetch_ahead(queue, i);
         const std::uint32_t n = queue.node[i];
-        if (is_split(n)) continue;  // forced by another one meanwhile
+        if (is_split(n)) continue;  // already forced by another node
         const Done done = split_with_forced(n, box, budget);
         if (done == Done::out_of_budget) return done;
         if (done == Done::no_room) all = done;
@@ -128,7 +128,7 @@ Refinement::Done Refinement::split_queue(Queue& queue, const RefineBox& box, std
     return queue.full ? Done::out_of_budget : all;
 }
 
-// Where it is in the lists afterwards is left to merge_all().
+// merge_all() updates the lists afterwards.
 void Refinement::merge(std::uint32_t n, const RefineBox& box) noexcept {
     const ForestNode& node = forest_.node(n);
     const auto take_away = [&](std::uint32_t child) {
@@ -150,7 +150,7 @@ void Refinement::merge(std::uint32_t n, const RefineBox& box) noexcept {
     triangles_ -= static_cast<std::uint32_t>(forest_.triangles_of(n).size());
 }
 
-// What nobody needs and the filter does not ask for; then what only that needed.
+// Merges nodes that are not needed and not required by the filter; then the nodes that only those needed.
 std::uint32_t Refinement::merge_all(const RefineBox& box) noexcept {
     ask_merge_.count = 0;
     ask_merge_.full = false;
@@ -159,7 +159,7 @@ std::uint32_t Refinement::merge_all(const RefineBox& box) noexcept {
         fetch_ahead(ask_merge_, i);
         merge(ask_merge_.node[i], box);
     }
-    // Most of them went with their parents meanwhile.
+    // Most of them were merged together with their parents.
     for (std::uint32_t i = 0; i < ask_merge_.count; ++i) {
         const std::uint32_t n = ask_merge_.node[i], parent = forest_.node(n).parent;
         if (parent == kNoForestNode || is_split(parent)) list(frontier_, n);

@@ -32,17 +32,17 @@ void put_array(BytesOut& out, const std::vector<T>& values) {
     out.put_all(std::vector<std::byte>(rounded_up(bytes) - bytes));
 }
 
-// A view of the next array; the bytes behind it up to the next multiple are zero.
+// A view of the next array; the padding up to the next multiple must be zero.
 template <class T>
 std::span<const T> take_array(const BytesIn& in, std::span<const std::byte>& left, std::uint64_t count,
                               const char* what) {
-    if (count > left.size() / sizeof(T)) in.fail(std::string(what) + ": there are fewer than it says");
+    if (count > left.size() / sizeof(T)) in.fail(std::string(what) + ": fewer are present than declared");
     const std::size_t bytes = static_cast<std::size_t>(count) * sizeof(T), all = rounded_up(bytes);
     if (all > left.size()) in.fail(std::string(what) + ": the section ends inside it");
     if (reinterpret_cast<std::uintptr_t>(left.data()) % alignof(T) != 0)
-        in.fail(std::string(what) + ": it lies at an odd address");
+        in.fail(std::string(what) + ": its address is not aligned");
     for (std::size_t i = bytes; i < all; ++i) {
-        if (left[i] != std::byte{0}) in.fail(std::string(what) + ": the bytes behind it are not zero");
+        if (left[i] != std::byte{0}) in.fail(std::string(what) + ": the bytes after it are not zero");
     }
     const std::span<const T> view(reinterpret_cast<const T*>(left.data()), static_cast<std::size_t>(count));
     left = left.subspan(all);
@@ -70,13 +70,13 @@ struct TreeChecks {
             for (std::size_t axis = 0; axis < 3; ++axis) {
                 const float x = position_m[std::size_t{3} * corner[i] + axis];
                 if (x < node[at].low_m[axis][k] || x > node[at].high_m[axis][k])
-                    fail(at, "a triangle sticks out of its box");
+                    fail(at, "a triangle extends beyond its box");
             }
         }
     }
     // Depth first, in the order of the file, so that no node has two parents.
     void walk(std::uint32_t at, std::uint32_t depth) {
-        if (depth > SurfaceMesh::kDepthMax) fail(at, "it lies too deep");
+        if (depth > SurfaceMesh::kDepthMax) fail(at, "it is too deep in the tree");
         ++seen;
         for (const std::uint32_t zero : node[at].reserved) {
             if (zero != 0) fail(at, "reserved bytes are not zero");
@@ -100,7 +100,7 @@ struct TreeChecks {
                     if (node[code].child[c] == SurfaceNode::kNone) continue;
                     if (node[code].low_m[axis][c] < node[at].low_m[axis][k] ||
                         node[code].high_m[axis][c] > node[at].high_m[axis][k])
-                        fail(code, "it sticks out of its parent's box");
+                        fail(code, "it extends beyond its parent's box");
                 }
             }
             walk(code, depth + 1);
@@ -110,7 +110,7 @@ struct TreeChecks {
 
 }  // namespace
 
-// Octahedral: the sphere is projected on an octahedron, its lower half folded over (Meyer et al. 2010).
+// Octahedral mapping: the sphere is projected onto an octahedron, its lower half folded over (Meyer et al. 2010).
 OctNormal oct_normal(const Vec3& unit) noexcept {
     const double sum = unit.cwiseAbs().sum();
     if (!(sum > 0.0)) return {0, 0};  // up
@@ -132,7 +132,7 @@ Vec3 unit_normal(OctNormal normal) noexcept {
         y = (1.0 - std::abs(x)) * std::copysign(1.0, y);
         x = fx;
     }
-    return Vec3(x, y, z).normalized();  // |x| + |y| + |z| is 1 or a little more: never zero
+    return Vec3(x, y, z).normalized();  // |x| + |y| + |z| is 1 or slightly more: never zero
 }
 
 void write_surface(SceneWriter& out, const SurfaceData& data) {
@@ -156,7 +156,7 @@ SurfaceMesh read_surface(const SceneFile& file) {
     const auto header = in.get<SurfaceHeader>("header");
     if (header.vertices == 0 || header.triangles == 0 || header.nodes == 0) in.fail("it is empty");
     if (header.triangles >= kTrianglesMost) in.fail("it has more than 2^28 triangles");
-    if (header.closed > 1) in.fail("it is neither open nor closed");
+    if (header.closed > 1) in.fail("its field closed is neither 0 nor 1");
     for (const std::uint32_t zero : header.reserved) {
         if (zero != 0) in.fail("reserved bytes of its header are not zero");
     }
@@ -168,7 +168,7 @@ SurfaceMesh read_surface(const SceneFile& file) {
     mesh.normal_ = take_array<OctNormal>(in, left, header.vertices, "normals");
     mesh.corner_ = take_array<std::uint32_t>(in, left, std::uint64_t{3} * header.triangles, "corners");
     mesh.node_ = take_array<SurfaceNode>(in, left, header.nodes, "nodes");
-    if (!left.empty()) in.fail(std::to_string(left.size()) + " bytes are left over behind its content");
+    if (!left.empty()) in.fail(std::to_string(left.size()) + " bytes follow its content");
 
     mesh.low_m_ = Vec3::Constant(std::numeric_limits<double>::infinity());
     mesh.high_m_ = -mesh.low_m_;
@@ -182,12 +182,12 @@ SurfaceMesh read_surface(const SceneFile& file) {
     mesh.largest_m_ = std::max(mesh.low_m_.cwiseAbs().maxCoeff(), mesh.high_m_.cwiseAbs().maxCoeff());
     for (std::size_t i = 0; i < mesh.corner_.size(); ++i) {
         if (mesh.corner_[i] >= header.vertices)
-            in.fail("corner " + std::to_string(i) + " names vertex " + std::to_string(mesh.corner_[i]) +
+            in.fail("corner " + std::to_string(i) + " refers to vertex " + std::to_string(mesh.corner_[i]) +
                     " of " + std::to_string(header.vertices));
     }
     TreeChecks checks{in, mesh.node_, mesh.position_m_, mesh.corner_};
     checks.walk(0, 0);
-    if (checks.next_triangle != header.triangles) in.fail("its leaves do not hold every triangle");
+    if (checks.next_triangle != header.triangles) in.fail("its leaves do not contain every triangle");
     if (checks.seen != header.nodes) in.fail("some nodes have no parent");
     return mesh;
 }

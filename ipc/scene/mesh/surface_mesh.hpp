@@ -1,16 +1,16 @@
-// A triangle surface that is touched at full resolution, and the tree in which its triangles are found.
+// A triangle surface for touch at full resolution, with the search tree of its triangles.
 //
-// Layout    section SURF: header, positions (3 float a vertex), normals (2 int16, octahedral), corners (3 u32 a
-//           triangle), nodes; each array at a multiple of 64 bytes. About 31 bytes a triangle where a mesh has
-//           half as many vertices as triangles. Little endian.
-// Tree      four children a node; a child is another node, further on in the file, or up to four triangles in
-//           a row. Triangles lie in the order of the leaves, vertices in the order in which they use them.
+// Layout    section SURF: header, positions (3 float per vertex), normals (2 int16, octahedral), corners (3
+//           u32 per triangle), nodes; each array at a multiple of 64 bytes. About 31 bytes per triangle for
+//           a mesh with half as many vertices as triangles. Little endian
+// Tree      four children per node; a child is another node, later in the file, or up to four consecutive
+//           triangles. Triangles are in the order of the leaves, vertices in the order of their use
 // Frame     model, metres
-// Views     a SurfaceMesh points into the bytes of the scene, which must outlive it.
-// Thread    made anywhere but the servo thread; the queries are TACT_RT: no allocation, and work that is
-//           bounded by what they are given.
-// Fails by  StartupError: every count, index, range and box is checked in read_surface(), so that a query on
-//           a hostile file is right or refused. A query that runs out of room says so.
+// Views     a SurfaceMesh points into the bytes of the scene, which must outlive it
+// Thread    created anywhere but on the servo thread; the queries are TACT_RT: no allocation, and work
+//           bounded by their arguments
+// Errors    StartupError: read_surface() checks every count, index, range and box, so that a query on an
+//           untrusted file is correct or refused. A query whose limit is reached reports it
 #pragma once
 
 #include <array>
@@ -26,9 +26,10 @@
 namespace tact {
 
 struct SurfaceNode {
-    static constexpr std::uint32_t kNone = 0xFFFFFFFFU;  // no child here: its box is from +inf to -inf
-    static constexpr std::uint32_t kLeaf = 1U << 31;     // a leaf: bits 28, 29 its triangles less one, then
-    static constexpr std::uint32_t kFirst = (1U << 28) - 1;  // the first of them
+    static constexpr std::uint32_t kNone = 0xFFFFFFFFU;  // no child: its box is from +inf to -inf
+    static constexpr std::uint32_t kLeaf =
+        1U << 31;  // a leaf: bits 28, 29 are its number of triangles minus one
+    static constexpr std::uint32_t kFirst = (1U << 28) - 1;  // number of its first triangle
     std::array<std::array<float, 4>, 3> low_m, high_m;       // [axis][child]
     std::array<std::uint32_t, 4> child;
     std::array<std::uint32_t, 4> reserved;  // zero
@@ -45,22 +46,22 @@ using OctNormal = std::array<std::int16_t, 2>;
 [[nodiscard]] OctNormal oct_normal(const Vec3& unit) noexcept;
 [[nodiscard]] Vec3 unit_normal(OctNormal normal) noexcept TACT_RT;
 
-// What prep/surface makes and the section holds.
+// Output of prep/surface, and content of the section.
 struct SurfaceData {
     bool closed = false;                  // oriented and without a border: it has an inside
-    std::vector<float> position_m;        // 3 a vertex
-    std::vector<OctNormal> normal;        // 1 a vertex, outward
-    std::vector<std::uint32_t> triangle;  // 3 corners, counter-clockwise seen from outside
+    std::vector<float> position_m;        // 3 per vertex
+    std::vector<OctNormal> normal;        // 1 per vertex, outward
+    std::vector<std::uint32_t> triangle;  // 3 corners, counter-clockwise as viewed from outside
     std::vector<SurfaceNode> node;        // the first is the root
 };
 
 struct SurfacePoint {
     static constexpr std::uint32_t kNone = 0xFFFFFFFFU;
-    std::uint32_t triangle = kNone;  // kNone: nothing is nearer than asked
+    std::uint32_t triangle = kNone;  // kNone: nothing within the given distance
     double distance_m = 0.0;
     Vec3 point_m = Vec3::Zero();
     Vec3 part = Vec3::Zero();  // barycentric
-    bool exhausted = false;    // the visits were used up: there may be a nearer one
+    bool exhausted = false;    // the visits were used up: a nearer point may exist
 };
 
 class SurfaceMesh {
@@ -82,7 +83,7 @@ public:
         const std::uint32_t* const c = corner_.data() + std::size_t{3} * triangle;
         return {c[0], c[1], c[2]};
     }
-    // Of this mesh and a point; the triangles and the limit are left open.
+    // For this mesh and a point; the caller sets the triangles and the limit.
     [[nodiscard]] QueryJob query_job(const Vec3& point_m) const noexcept TACT_RT;
     [[nodiscard]] Vec3 position_m(std::uint32_t vertex) const noexcept TACT_RT {
         const float* const p = position_m_.data() + std::size_t{3} * vertex;
@@ -92,35 +93,34 @@ public:
         return unit_normal(normal_[vertex]);
     }
 
-    // The same triangles, found in another tree, of some of them.
+    // The same triangles with another tree over some of them.
     [[nodiscard]] SurfaceMesh with_tree(std::span<const SurfaceNode> node) const noexcept TACT_RT {
         SurfaceMesh mesh = *this;
         mesh.node_ = node;
         return mesh;
     }
     [[nodiscard]] std::span<const SurfaceNode> tree() const noexcept { return node_; }
-    // All of them, 3 a vertex and 3 a triangle: for the forest over the same surface.
+    // 3 per vertex and 3 per triangle: for the forest over the same surface.
     [[nodiscard]] std::span<const float> all_positions_m() const noexcept { return position_m_; }
     [[nodiscard]] std::span<const std::uint32_t> all_corners() const noexcept { return corner_; }
 
-    // Leaves whose boxes reach into the ball, as codes of SurfaceNode, in the order of their triangles. False: `out`
-    // is full and some are left out. count is how many there are in `out`.
+    // Leaves whose boxes intersect the sphere, as codes of SurfaceNode, in the order of their triangles.
+    // False: `out` is full and some are missing. count: number of leaves in `out`.
     bool leaves_near(const Vec3& centre_m, double radius_m, std::span<std::uint32_t> out,
                      std::size_t& count) const noexcept TACT_RT;
     // The nearest point of one triangle, in double precision.
     [[nodiscard]] SurfacePoint point_of(std::uint32_t triangle, const Vec3& point_m) const noexcept TACT_RT;
-    // The nearest point of the surface that is nearer than radius_m. hint: a triangle that is likely near, or
-    // kNone.
+    // The nearest point of the surface within radius_m. hint: a triangle that is probably near, or kNone.
     [[nodiscard]] SurfacePoint nearest(const Vec3& point_m, double radius_m,
                                        std::uint32_t hint = SurfacePoint::kNone,
                                        std::uint32_t visits_max = kVisitsMax) const noexcept TACT_RT;
-    // Nothing of the surface is nearer than this, which is at the most at_most_m: the distance of the leaves'
-    // boxes, without a look at triangles. 0 where the visits were used up.
+    // Lower bound of the distance to the surface, at most at_most_m: the distance of the leaves' boxes,
+    // without triangle tests. 0 if the visits were used up.
     [[nodiscard]] double clearance_m(const Vec3& point_m, double at_most_m,
                                      std::uint32_t visits_max = kVisitsMax) const noexcept TACT_RT;
-    // Interpolated from the corners; never zero length.
+    // Interpolated from the corners; never zero.
     [[nodiscard]] Vec3 normal_at(const SurfacePoint& at) const noexcept TACT_RT;
-    // Counter-clockwise; zero where it has no area.
+    // Counter-clockwise orientation; zero for a triangle without area.
     [[nodiscard]] Vec3 facet_normal(std::uint32_t triangle) const noexcept TACT_RT;
 
 private:
@@ -132,7 +132,7 @@ private:
     std::span<const std::uint32_t> corner_;
     std::span<const SurfaceNode> node_;
     Vec3 low_m_ = Vec3::Zero(), high_m_ = Vec3::Zero();
-    double largest_m_ = 0.0;  // coordinate
+    double largest_m_ = 0.0;  // largest coordinate
 };
 
 void write_surface(SceneWriter& out, const SurfaceData& data);

@@ -1,4 +1,4 @@
-// A node's four boxes are looked at together; GCC's vector extension.
+// Tests a node's four boxes together with GCC's vector extension.
 #include <algorithm>
 #include <cmath>
 #include <cstring>
@@ -18,7 +18,7 @@ F4 load(const std::array<float, 4>& values) {
     return v;
 }
 F4 most(const F4& a, const F4& b) { return a > b ? a : b; }
-// Squares of the distances of the four boxes.
+// Squared distances of the four boxes.
 F4 box_squares(const SurfaceNode& node, const F4& x, const F4& y, const F4& z) {
     const F4 none = all(0.0F);
     const F4 dx = most(most(load(node.low_m[0]) - x, x - load(node.high_m[0])), none);
@@ -34,12 +34,12 @@ constexpr std::size_t kStack = std::size_t{3} * (SurfaceMesh::kDepthMax + 1) + 4
 bool SurfaceMesh::leaves_near(const Vec3& centre_m, double radius_m, std::span<std::uint32_t> out,
                               std::size_t& count) const noexcept {
     count = 0;
-    // The centre in single precision may lie off by this.
+    // Rounding error of the centre in single precision.
     const double radius = radius_m * (1.0 + 1e-6) + 2e-7 * (largest_m_ + centre_m.cwiseAbs().maxCoeff());
     const auto square = static_cast<float>(radius * radius * (1.0 + 1e-6));
     const F4 x = all(static_cast<float>(centre_m.x())), y = all(static_cast<float>(centre_m.y())),
              z = all(static_cast<float>(centre_m.z()));
-    std::array<std::uint32_t, kStack> stack;  // filled before it is read
+    std::array<std::uint32_t, kStack> stack;  // written before read
     std::size_t depth = 0;
     stack[depth++] = 0;
     while (depth > 0) {
@@ -121,7 +121,7 @@ SurfacePoint SurfaceMesh::nearest(const Vec3& point_m, double radius_m, std::uin
     if (hint < triangles()) take(hint);
     const F4 x = all(static_cast<float>(point_m.x())), y = all(static_cast<float>(point_m.y())),
              z = all(static_cast<float>(point_m.z()));
-    // Boxes are compared in single precision, so a little beyond the best is still looked at.
+    // Boxes are compared in single precision, so boxes slightly beyond the best are visited too.
     const double margin = 2e-7 * (largest_m_ + point_m.cwiseAbs().maxCoeff());
     const auto limit = [&] {
         const double reach = std::min(best.distance_m * (1.0 + 1e-6) + margin, 1e18);
@@ -131,7 +131,7 @@ SurfacePoint SurfaceMesh::nearest(const Vec3& point_m, double radius_m, std::uin
         float square;
         std::uint32_t code;
     };
-    std::array<Entry, kStack> stack;  // filled before it is read
+    std::array<Entry, kStack> stack;  // written before read
     std::size_t depth = 0;
     stack[depth++] = {0.0F, 0};
     float square = limit();
@@ -162,7 +162,7 @@ SurfacePoint SurfaceMesh::nearest(const Vec3& point_m, double radius_m, std::uin
         const std::size_t begin = depth;
         for (std::size_t k = 0; k < 4; ++k) {
             if (!(squares[k] <= square) || node.child[k] == SurfaceNode::kNone) continue;
-            // The nearest one on top.
+            // The nearest on top.
             std::size_t i = depth++;
             for (; i > begin && stack[i - 1].square < squares[k]; --i) stack[i] = stack[i - 1];
             stack[i] = {squares[k], node.child[k]};
@@ -180,7 +180,7 @@ double SurfaceMesh::clearance_m(const Vec3& point_m, double at_most_m,
         float square;
         std::uint32_t node;
     };
-    std::array<Entry, kStack> stack;  // filled before it is read
+    std::array<Entry, kStack> stack;  // written before read
     std::size_t depth = 0;
     stack[depth++] = {0.0F, 0};
     auto least = static_cast<float>(std::min(at_most_m * at_most_m, 1e36));
@@ -197,13 +197,13 @@ double SurfaceMesh::clearance_m(const Vec3& point_m, double at_most_m,
                 least = squares[k];
                 continue;
             }
-            // The nearest one on top.
+            // The nearest on top.
             std::size_t i = depth++;
             for (; i > begin && stack[i - 1].square < squares[k]; --i) stack[i] = stack[i - 1];
             stack[i] = {squares[k], node.child[k]};
         }
     }
-    // The point and the boxes in single precision.
+    // Rounding error of the point and the boxes in single precision.
     const double rounding = 2e-7 * (largest_m_ + point_m.cwiseAbs().maxCoeff());
     return std::max(std::sqrt(static_cast<double>(least)) * (1.0 - 1e-6) - rounding, 0.0);
 }

@@ -39,12 +39,13 @@ TouchTool read_touch_tool(const SceneFile& file) {
     BytesIn in(file.section(TouchTool::kTag, TouchTool::kVersion), file.name() + ", section TOOL");
     const auto header = in.get<ToolHeader>("header");
     if (header.points == 0 || header.points > TouchTool::kPointsMax)
-        in.fail("it has " + std::to_string(header.points) + " points, not 1 to " +
+        in.fail("it has " + std::to_string(header.points) + " points; allowed are 1 to " +
                 std::to_string(TouchTool::kPointsMax));
     if (header.vertices > TouchTool::kDrawnMax || header.triangles > TouchTool::kDrawnMax)
-        in.fail("its picture is larger than " + std::to_string(TouchTool::kDrawnMax) + " triangles");
+        in.fail("its displayed mesh is larger than " + std::to_string(TouchTool::kDrawnMax) + " triangles");
     if (header.reserved != 0) in.fail("reserved bytes of its header are not zero");
-    if (!(header.ball_m > 0.0 && header.ball_m <= kToolLargestM)) in.fail("its balls have no good radius");
+    if (!(header.ball_m > 0.0 && header.ball_m <= kToolLargestM))
+        in.fail("the radius of its spheres is out of range");
     TouchTool tool;
     tool.ball_m = header.ball_m;
     tool.point_m = in.get_all<float>(std::uint64_t{3} * header.points, "points");
@@ -59,13 +60,13 @@ TouchTool read_touch_tool(const SceneFile& file) {
     in.check_finite(tool.cover_m, 4.0 * kToolLargestM, "cover");
     for (std::uint32_t i = 0; i < header.points; ++i) {
         if (i == 0 ? tool.parent[0] != 0 : tool.parent[i] >= i)
-            in.fail("point " + std::to_string(i) + " has a parent behind it");
+            in.fail("point " + std::to_string(i) + " has a parent that comes after it");
         if (tool.cover_m[i] < 0.0F || (i > 0 && tool.cover_m[i] > tool.cover_m[i - 1]))
-            in.fail("cover " + std::to_string(i) + " is not one");
+            in.fail("cover " + std::to_string(i) + " is negative or larger than the one before it");
     }
     for (const std::uint32_t v : tool.drawn) {
         if (v >= header.vertices)
-            in.fail("a drawn corner names vertex " + std::to_string(v) + " of " +
+            in.fail("a drawn corner refers to vertex " + std::to_string(v) + " of " +
                     std::to_string(header.vertices));
     }
     return tool;

@@ -1,14 +1,15 @@
-// A tool to touch with: a rigid body that is felt at sampled points.
+// A tool for touch: a rigid body with contact at sampled points.
 //
-// Section   TOOL, at most one a scene: header, points (3 float), normals (2 int16, octahedral), parents (u32),
-//           covers (float), then the triangles that are drawn: positions (3 float a vertex), corners (3 u32).
-// Points    centres of balls of radius ball_m that touch the tool's surface from inside, in such an order that
+// Section   TOOL, at most one per scene: header, points (3 float), normals (2 int16, octahedral), parents
+//           (u32), covers (float), then the triangles for drawing: positions (3 float per vertex), corners
+//           (3 u32)
+// Points    centres of spheres of radius ball_m that touch the tool's surface from inside, ordered so that
 //           the first n are an even sampling for every n
-// Parent    the nearest of the points before it; the first point is its own
-// Cover     of the first i + 1 points: no place of the tool's surface is farther from the nearest of them
-// Frame     tool: the origin is the hand's point, the axes are the hand's; metres of the scene's model
-// Fails by  StartupError: every count, index and number is checked in read_touch_tool().
-// Thread    any but the servo's.
+// Parent    the nearest of the earlier points; the first point is its own parent
+// Cover     of the first i + 1 points: no point of the tool's surface is farther from the nearest of them
+// Frame     tool: origin at the hand's point, axes of the hand; metres of the scene's model
+// Errors    StartupError: read_touch_tool() checks every count, index and number
+// Thread    any but the servo's
 #pragma once
 
 #include <cstdint>
@@ -26,12 +27,12 @@ struct TouchTool {
     static constexpr std::uint32_t kDrawnMax = 100'000;  // triangles, and vertices
 
     double ball_m = 0.0;                // > 0
-    std::vector<float> point_m;         // 3 a point
-    std::vector<OctNormal> normal;      // 1 a point, outward
-    std::vector<std::uint32_t> parent;  // 1 a point
-    std::vector<float> cover_m;         // 1 a point, never rising
-    std::vector<float> drawn_m;         // 3 a vertex
-    std::vector<std::uint32_t> drawn;   // 3 corners a triangle, counter-clockwise seen from outside
+    std::vector<float> point_m;         // 3 per point
+    std::vector<OctNormal> normal;      // 1 per point, outward
+    std::vector<std::uint32_t> parent;  // 1 per point
+    std::vector<float> cover_m;         // 1 per point, never increasing
+    std::vector<float> drawn_m;         // 3 per vertex
+    std::vector<std::uint32_t> drawn;   // 3 corners per triangle, counter-clockwise as viewed from outside
 
     [[nodiscard]] std::size_t points() const { return parent.size(); }
     [[nodiscard]] Vec3 at_m(std::size_t i) const {

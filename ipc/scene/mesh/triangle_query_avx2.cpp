@@ -15,10 +15,10 @@ using F [[gnu::vector_size(32)]] = float;
 using I [[gnu::vector_size(32)]] = std::int32_t;
 
 TACT_LANE F root(const F& v) { return _mm256_sqrt_ps(v); }
-// Single vertices, then turned round: the processor's own gather of as many lanes takes five to ten times as long.
+// Loads single vertices and transposes them: a gather of as many lanes takes five to ten times as long.
 using F4 [[gnu::vector_size(16)]] = float;
 TACT_LANE F4 point(const float* position, const std::uint32_t* corner, std::uint32_t triangle) {
-    // Three floats: the fourth may lie beyond the end.
+    // Three floats: the fourth may be beyond the end of the array.
     return _mm_maskload_ps(position + std::size_t{3} * corner[std::size_t{3} * triangle],
                            _mm_set_epi32(0, -1, -1, -1));
 }

@@ -15,10 +15,10 @@ using F [[gnu::vector_size(64)]] = float;
 using I [[gnu::vector_size(64)]] = std::int32_t;
 
 TACT_LANE F root(const F& v) { return _mm512_maskz_sqrt_ps(0xFFFF, v); }
-// Single vertices, then turned round: the processor's own gather of as many lanes takes five to ten times as long.
+// Loads single vertices and transposes them: a gather of as many lanes takes five to ten times as long.
 using F4 [[gnu::vector_size(16)]] = float;
 TACT_LANE F4 point(const float* position, const std::uint32_t* corner, std::uint32_t triangle) {
-    // Three floats: the fourth may lie beyond the end.
+    // Three floats: the fourth may be beyond the end of the array.
     return _mm_maskload_ps(position + std::size_t{3} * corner[std::size_t{3} * triangle],
                            _mm_set_epi32(0, -1, -1, -1));
 }
@@ -31,7 +31,7 @@ TACT_LANE F four(const float* position, const std::uint32_t* corner, const std::
     return __builtin_shufflevector(pair(position, corner, triangle), pair(position, corner, triangle + 8), 0,
                                    1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15);
 }
-// In each quarter of a and b: the first two of both by turns; the last two; a's first half and b's; the second ones.
+// In each quarter of a and b: interleaves the first two; the last two; joins the first halves; the second halves.
 TACT_LANE F first_by_turns(const F& a, const F& b) {
     return __builtin_shufflevector(a, b, 0, 16, 1, 17, 4, 20, 5, 21, 8, 24, 9, 25, 12, 28, 13, 29);
 }

@@ -1,4 +1,4 @@
-// Four triangles at a time: two instructions' worth on every x86-64, plain arithmetic elsewhere.
+// Four triangles at a time: SSE on every x86-64, plain arithmetic elsewhere.
 #if defined(__SSE__)
 #include <xmmintrin.h>
 #endif
@@ -18,7 +18,7 @@ using I [[gnu::vector_size(16)]] = std::int32_t;
 
 F root(const F& v) {
 #if defined(__SSE__)
-    return _mm_sqrt_ps(v);  // g++ makes four calls of the other, for the sake of errno
+    return _mm_sqrt_ps(v);  // for the other form, g++ emits four calls because of errno
 #else
     return F{std::sqrt(v[0]), std::sqrt(v[1]), std::sqrt(v[2]), std::sqrt(v[3])};
 #endif

@@ -1,10 +1,10 @@
-// The arithmetic of triangle_query.hpp for TACT_LANES triangles at once. Included by triangle_query_*.cpp, inside
-// their anonymous namespaces, behind F and I (that many floats and int32), root(F), bits(I), TACT_LANE, which
-// declares a function, and points(position, corner, triangle, x, y, z): of that many triangles the vertex that
-// corner[3 * triangle] names.
+// The arithmetic of triangle_query.hpp for TACT_LANES triangles at once. Each triangle_query_*.cpp includes
+// it inside its anonymous namespace, after F and I (that many floats and int32), root(F), bits(I),
+// TACT_LANE, which declares a function, and points(position, corner, triangle, x, y, z), which loads the
+// vertices corner[3 * triangle] of that many triangles.
 //
-// GCC's vector extension: clang has it too.
-// No #pragma once: each includes it for other types.
+// Uses GCC's vector extension, which clang supports too.
+// No #pragma once: each file includes it with different types.
 
 struct Lanes3 {
     F x, y, z;
@@ -23,11 +23,11 @@ TACT_LANE Lanes3 choose(const I& mask, const Lanes3& a, const Lanes3& b) {
     return {mask ? a.x : b.x, mask ? a.y : b.y, mask ? a.z : b.z};
 }
 
-inline constexpr float kTiny = 1e-36F;  // of a square: below it a length is none
-// Below it a square of a sine is none: of so thin a triangle the normal is mostly rounding, and its edges do.
+inline constexpr float kTiny = 1e-36F;  // squared; smaller lengths count as zero
+// Bound of a squared sine: the normal of a thinner triangle is mostly rounding error, so only its edges count.
 inline constexpr float kNeedle = 1e-8F;
 
-// Of the segment from a to a + ab, the point nearest to the origin.
+// The point of the segment from a to a + ab nearest to the origin.
 TACT_LANE Lanes3 nearest_of_edge(const Lanes3& a, const Lanes3& ab) {
     const F t = least(most(-dot(a, ab) / most(dot(ab, ab), all(kTiny)), all(0.0F)), all(1.0F));
     return {a.x + t * ab.x, a.y + t * ab.y, a.z + t * ab.z};
@@ -59,11 +59,11 @@ TACT_LANE void look_at(const QueryJob& job, std::size_t first, TriangleQueries& 
     q = choose(d_ca < square, on_ca, q);
     square = least(d_ca, square);
 
-    // The foot on the plane is inside where it is to the left of every edge.
+    // The foot on the plane is inside if it is to the left of every edge.
     const Lanes3 n = cross(ab, bc);
     const F nn = dot(n, n);
     const F inverse = 1.0F / root(most(nn, all(kTiny)));
-    const F height = dot(n, a) * inverse;  // of the plane over the origin, along n
+    const F height = dot(n, a) * inverse;  // signed distance of the plane from the origin, along n
     const I flat = nn > most(kNeedle * dot(ab, ab) * dot(bc, bc), all(kTiny));
     const I inside = flat & (dot(n, cross(a, ab)) >= 0.0F) & (dot(n, cross(b, bc)) >= 0.0F) &
                      (dot(n, cross(c, ca)) >= 0.0F);

@@ -1,6 +1,7 @@
 // "Tipsify": P. Sander, D. Nehab, J. Barczak, "Fast triangle reordering for vertex locality and reduced
-// overdraw", 2007. Fans around one vertex after the other; the next is the one in the last fan that has been
-// in the cache longest and would still be there when its fan is done. Linear in the triangles.
+// overdraw", 2007. Draws the fan of one vertex after the other; the next one is the vertex of the last fan
+// that has been in the cache longest and will still be there when its fan is complete. Linear in the
+// triangles.
 #include "ipc/scene/mesh/vertex_cache.hpp"
 
 #include <algorithm>
@@ -8,7 +9,7 @@
 namespace tact {
 namespace {
 
-constexpr std::uint32_t kCache = 20;  // vertices; smaller than most, so that it fits all
+constexpr std::uint32_t kCache = 20;  // vertices; smaller than most caches, so that it suits all
 constexpr std::uint32_t kNone = UINT32_MAX;
 
 }  // namespace
@@ -23,7 +24,7 @@ std::span<const std::uint16_t> CacheOrder::run(std::span<const std::uint16_t> co
         first_[v + 1] += first_[v];
     }
     triangle_.resize(corner.size());
-    stamp_.assign(first_.begin(), first_.end() - 1);  // first the places to fill
+    stamp_.assign(first_.begin(), first_.end() - 1);  // first used as fill positions
     for (std::size_t c = 0; c < corner.size(); ++c)
         triangle_[stamp_[corner[c]]++] = static_cast<std::uint16_t>(c / 3);
     stamp_.assign(vertices, 0);

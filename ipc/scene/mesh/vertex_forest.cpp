@@ -17,7 +17,7 @@ struct ForestHeader {
 };
 static_assert(sizeof(ForestHeader) == 64);
 
-// Walks the whole forest once and compares it with what it must be.
+// Visits the whole forest once and checks its invariants.
 class ForestChecker {
 public:
     ForestChecker(const VertexForest& forest, std::uint32_t always, std::span<const std::uint32_t> corner,
@@ -31,7 +31,7 @@ public:
 
     void run() {
         for (std::uint32_t r = 0; r < forest_.roots(); ++r) walk(forest_.root(r));
-        // That these have their corners in three trees is how they were told apart.
+        // These were selected by having their corners in three trees.
         for (const ForestTriangle& t : forest_.triangles_always()) take(t);
     }
     [[noreturn]] void fail(const std::string& why) const {
@@ -57,7 +57,7 @@ private:
     void check_node(const VertexForest::Branch& b, std::uint32_t parent) {
         const ForestNode& node = forest_.node(b.node);
         const auto bad = [&](const char* what) {
-            fail("node " + std::to_string(b.node) + ": its " + what + " cannot be");
+            fail("node " + std::to_string(b.node) + ": its " + what + " is out of range");
         };
         for (const float x : node.position_m)
             if (!(std::abs(x) <= 1e7F)) bad("position");
@@ -96,7 +96,7 @@ private:
     void check_needs(std::uint32_t node) const {
         for (const std::uint32_t need : forest_.needs_of(node))
             if (need >= forest_.nodes() || forest_.node(need).number <= forest_.node(node).number)
-                fail("node " + std::to_string(node) + " needs another that was merged before it");
+                fail("node " + std::to_string(node) + " needs a node that was merged before it");
     }
     void take(const ForestTriangle& t) {
         if (t.number >= forest_.triangles() || triangle_seen_[t.number])
@@ -143,12 +143,12 @@ void VertexForest::check(std::span<const std::uint32_t> corner, const std::strin
     if (corner.size() != 3 * triangle_.size())
         fail("it has " + std::to_string(triangle_.size()) + " triangles, but the mesh has " +
              std::to_string(corner.size() / 3));
-    if (node_.size() != leaves() - roots()) fail("the number of its nodes is not leaves less trees");
+    if (node_.size() != leaves() - roots()) fail("the number of its nodes is not leaves minus trees");
     for (const ForestTriangle& t : triangle_)
         for (const std::uint32_t v : t.leaf)
-            if (v >= leaves()) fail("a corner of triangle " + std::to_string(t.number) + " is no leaf");
-    // The lists of nodes fill triangle_ from 0 on without gaps; where they end follows from the last triangle
-    // that some tree holds two corners of.
+            if (v >= leaves()) fail("a corner of triangle " + std::to_string(t.number) + " is not a leaf");
+    // The lists of nodes fill triangle_ from 0 on without gaps; they end after the last triangle with two
+    // corners in one tree.
     std::size_t always = triangle_.size();
     while (always > 0) {
         const std::array<std::uint32_t, 3>& v = triangle_[always - 1].leaf;
@@ -162,7 +162,7 @@ void VertexForest::check(std::span<const std::uint32_t> corner, const std::strin
         if (node_[i].first_need > next || next > need_.size() || (i == 0 && node_[0].first_need != 0))
             fail("its lists of needs are out of order");
     }
-    if (!node_.empty() && node_[0].first_triangle != 0) fail("its lists of triangles do not begin at 0");
+    if (!node_.empty() && node_[0].first_triangle != 0) fail("its lists of triangles do not start at 0");
     if (node_.empty() && always != 0) fail("a triangle has two corners in one leaf");
     ForestChecker(*this, always_, corner, where).run();
 }
@@ -204,17 +204,17 @@ VertexForest read_forest(const SceneFile& file, std::span<const float> position_
     for (const std::uint32_t word : header.reserved)
         if (word != 0) in.fail("a reserved field is not zero");
     if (reinterpret_cast<std::uintptr_t>(bytes.data()) % alignof(ForestNode) != 0)
-        in.fail("it does not lie at a multiple of four bytes");
+        in.fail("it is not aligned to four bytes");
     const std::uint64_t trees = std::uint64_t{header.trees} + 1;
     if (bytes.size() != 4 * trees + sizeof(ForestNode) * std::uint64_t{header.nodes} +
                             sizeof(ForestTriangle) * std::uint64_t{header.triangles} +
                             4 * std::uint64_t{header.needs})
-        in.fail("its length is not that of the nodes and triangles that it declares");
+        in.fail("its length does not match the declared nodes and triangles");
     const auto node = forest_view_of<ForestNode>(bytes, header.nodes);
     const auto triangle = forest_view_of<ForestTriangle>(bytes, header.triangles);
     const auto need = forest_view_of<std::uint32_t>(bytes, header.needs);
     const auto root_first = forest_view_of<std::uint32_t>(bytes, trees);
-    if (root_first.back() != header.leaves) in.fail("its trees do not hold its leaves");
+    if (root_first.back() != header.leaves) in.fail("its trees do not cover its leaves");
     return {root_first, node, need, triangle, position_m, corner, where};
 }
 

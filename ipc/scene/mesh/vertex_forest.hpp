@@ -1,35 +1,37 @@
-// The view-dependence forest of a surface: who merged with whom when the mesh was made coarse, so that any
-// part of it can be as fine as is wanted and the rest as coarse (El-Sana, Varshney 1999).
+// The view-dependence forest of a surface: the merges of the mesh's simplification, so that any part of it
+// can be fine and the rest coarse (El-Sana, Varshney 1999).
 //
 // Leaves    are the vertices of the full mesh, numbered so that those below any node are a range. A node of
-//           the forest replaces its two children; trees and nodes lie in the order of a walk that takes the
-//           node, its first child and then its second. So children need no index: with L = middle - first
-//           leaves below the first child, that is leaf `first` (L = 1) or the next node, and the second is leaf
-//           `middle` or the node L places on.
-// A cut     is any set of nodes and leaves that covers every leaf once. A triangle is there where its three
-//           corners lie below three different ones. It appears with one known split: that of the node
-//           below whose two children two of its corners meet (the seed's PAT).
-// Number    1, 2, … in the order of the merges; 0 for leaves. A node may be split where no neighbour has a
-//           higher number, two may merge where no neighbour's parent has a lower number than theirs. With
-//           that every merge finds the neighbours that it was built with, and what the builder kept from
-//           folding over stays unfolded.
-// Needs     the same in writing: the nodes that have to be split before a node is, besides its parent and what
-//           those bring with them. Each has a higher number, so there is an end. A node may merge where no
-//           split one needs it. So nobody has to look at triangles to know what may change.
-// Reach     of a node: Chebyshev distance max(|dx|,|dy|,|dz|) from it within which all triangles at its leaves
-//           lie, as they are in the full mesh.
-// Span      the same for the corners of all triangles that appear with the node or below, in whatever cut they
-//           are active; own span: of those that appear with the node.
-// Deviation of a node; 0 of a leaf; never less than a child's. No point of an active triangle is farther from
-//           the full surface than the largest deviation of its three corners, and no point of a full triangle
-//           farther from the active surface than the largest of those that its corners lie below.
-// Section FRST; read as views on the mapped file, nothing is copied: 64 bytes a node, one line of the cache, some
-// 4 for each need, and 16 a triangle: about 52 bytes a triangle of a closed mesh. Corners lie here once more,
-// in the order in which splits ask for them.
+//           the forest replaces its two children; trees and nodes are in preorder: the node, its first
+//           child, then its second. So children need no index: with L = middle - first leaves below the
+//           first child, that is leaf `first` (L = 1) or the next node, and the second is leaf `middle` or
+//           the node L places later
+// Cut       any set of nodes and leaves that covers every leaf once. A triangle is active if its three
+//           corners are below three different ones. It appears with one known split: that of the lowest
+//           node whose two children separate two of its corners (the PAT of El-Sana, Varshney)
+// Number    1, 2, … in the order of the merges; 0 for leaves. A node may be split if no adjacent vertex has
+//           a higher number; two may merge if no adjacent vertex's parent has a lower number than theirs.
+//           With these rules every merge finds the adjacent vertices of its construction, and the fold-over
+//           prevention of the builder remains valid
+// Needs     the same rule as explicit lists: the nodes that must be split before a node is, in addition to
+//           its parent and to the needs of these. Each has a higher number, so there are no cycles. A node
+//           may merge if no split node needs it. So the permitted changes are known without visiting
+//           triangles
+// Reach     of a node: Chebyshev distance max(|dx|,|dy|,|dz|) from it that contains all triangles at its
+//           leaves, as in the full mesh
+// Span      the same for the corners of all triangles that appear with the node or below, in any cut in
+//           which they are active; own span: of those that appear with the node
+// Deviation of a node; 0 for a leaf; never less than a child's. No point of an active triangle is farther
+// from the full surface than the largest deviation of its three corners, and no point of a full triangle is
+// farther from the active surface than the largest deviation of the nodes above its corners
+// Section   FRST; read as views of the mapped file, without a copy: 64 bytes per node, one cache line, a
+//           few times 4 bytes for needs, and 16 per triangle: about 52 bytes per triangle of a closed mesh.
+//           Corners are stored again here, in the order in which splits need them
 //
-// Frame     model, metres.  Thread  immutable. The mesh and the section outlive it.
-// Fails by  StartupError: order, ranges, numbers, needs and every triangle's place are checked here, so that
-//           walking needs no check.
+// Frame     model, metres
+// Thread    immutable. The mesh and the section outlive it
+// Errors    StartupError: order, ranges, numbers, needs and the place of every triangle are checked here,
+//           so that later access needs no check
 #pragma once
 
 #include <array>
@@ -43,42 +45,42 @@ namespace tact {
 
 struct ForestNode {
     std::array<float, 3> position_m;
-    float error_m;  // switch value: root mean square distance to the planes merged here, rising to the root
+    float error_m;  // switch value: rms distance to the planes merged here, increasing to the root
     float deviation_m, reach_m, span_m, own_span_m;
-    std::uint32_t first, middle, end;  // leaves: below its first child from first, its second from middle on
+    std::uint32_t first, middle, end;  // leaves: first child from first, second from middle
     std::uint32_t parent;              // a node, or kNoForestNode
     std::uint32_t number;              // of its merge, from 1
-    std::uint32_t first_triangle;      // of those that its split brings; up to the next node's first
-    std::uint32_t first_need;          // likewise
+    std::uint32_t first_triangle;      // first of the triangles of its split; up to the next node's first
+    std::uint32_t first_need;          // same scheme
     std::uint32_t reserved;            // zero
 
     [[nodiscard]] bool first_is_leaf() const { return middle - first == 1; }
     [[nodiscard]] bool second_is_leaf() const { return end - middle == 1; }
-    // Its second child, where that is a node; the first one is the next node.
+    // Its second child, if that is a node; the first one is the next node.
     [[nodiscard]] std::uint32_t second_of(std::uint32_t self) const { return self + (middle - first); }
 };
 static_assert(sizeof(ForestNode) == 64);
 
 struct ForestTriangle {
     std::uint32_t number;               // in the full mesh
-    std::array<std::uint32_t, 3> leaf;  // its corners there
+    std::array<std::uint32_t, 3> leaf;  // its corners in the full mesh
 };
 static_assert(sizeof(ForestTriangle) == 16);
 
 inline constexpr std::uint32_t kNoForestNode = UINT32_MAX;
 
-// What prep hands over and the section holds.
+// Output of tact-prep, and content of the section.
 struct VertexForestData {
     std::uint32_t leaves = 0;
-    std::vector<std::uint32_t> root_first;  // a tree each: its first leaf; the last entry is `leaves`
+    std::vector<std::uint32_t> root_first;  // one per tree: its first leaf; the last entry is `leaves`
     std::vector<ForestNode> node;
-    std::vector<std::uint32_t> need;       // nodes, by the one that needs them
-    std::vector<ForestTriangle> triangle;  // by node, then those that are always there
+    std::vector<std::uint32_t> need;       // needed nodes, grouped by the node that needs them
+    std::vector<ForestTriangle> triangle;  // by node, then those that always exist
 };
 
 class VertexForest {
 public:
-    // position_m: 3 a leaf; corner: 3 a triangle, only compared with. `where` names file and section.
+    // position_m: 3 per leaf; corner: 3 per triangle, used for comparison only. `where` is file and section.
     VertexForest(std::span<const std::uint32_t> root_first, std::span<const ForestNode> node,
                  std::span<const std::uint32_t> need, std::span<const ForestTriangle> triangle,
                  std::span<const float> position_m, std::span<const std::uint32_t> corner,
@@ -94,7 +96,7 @@ public:
                 position_m_[3 * std::size_t{v} + 2]};
     }
 
-    // A place in the forest: the leaves below it, and its node where there is more than one.
+    // A place in the forest: the leaves below it, and its node if there is more than one leaf.
     struct Branch {
         std::uint32_t first, end, node;  // node: kNoForestNode for a leaf, which is `first`
         [[nodiscard]] bool is_leaf() const { return node == kNoForestNode; }
@@ -102,7 +104,7 @@ public:
     [[nodiscard]] Branch root(std::uint32_t r) const {
         return branch(root_first_[r], root_first_[r + 1], root_first_[r] - r);
     }
-    // 0 or 1; of a branch that is no leaf.
+    // which: 0 or 1; b must not be a leaf.
     [[nodiscard]] Branch child(const Branch& b, unsigned which) const {
         const std::uint32_t middle = node_[b.node].middle;
         return which == 0 ? branch(b.first, middle, b.node + 1)
@@ -118,7 +120,7 @@ public:
         const std::uint32_t first = node_[node].first_need;
         return need_.subspan(first, (node + 1 < nodes() ? node_[node + 1].first_need : need_.size()) - first);
     }
-    // For fetching memory ahead of a split.
+    // For prefetching before a split.
     [[nodiscard]] const std::uint32_t* first_need_of(std::uint32_t node) const {
         return need_.data() + node_[node].first_need;
     }
@@ -136,10 +138,10 @@ private:
     std::span<const std::uint32_t> need_;
     std::span<const ForestTriangle> triangle_;
     std::span<const float> position_m_;
-    std::uint32_t always_ = 0;  // where the triangles that are always there begin in triangle_
+    std::uint32_t always_ = 0;  // start of the permanent triangles in triangle_
 };
 
-// On data in memory, which outlives it.
+// On data in memory, which must outlive it.
 VertexForest view_forest(const VertexForestData& data, std::span<const float> position_m,
                          std::span<const std::uint32_t> corner);
 

@@ -1,11 +1,11 @@
-// On a grid of 2 A: the distance g to the nearest atom; voxels with g >= 2.8 A that can be reached from
-// outside are free. A ball of radius e = g - 2.8 A around a free voxel is free too, so the depth of a voxel
-// inside is the least of |x - y| - e(y) over the free voxels y: exact to a fraction of a voxel. Which y that
-// is spreads from neighbour to neighbour in sweeps (Danielsson 1980).
+// Let g be the distance to the nearest atom on a grid of 2 A. Voxels with g >= 2.8 A that are connected to the
+// outside are free. A ball of radius e = g - 2.8 A around a free voxel is free too, so the depth of an inner
+// voxel x is the minimum of |x - y| - e(y) over the free voxels y, exact to a fraction of a voxel. Sweeps over
+// the grid propagate the minimizing y between adjacent voxels (Danielsson 1980).
 //
-// The values become the coefficients of the spline, not its interpolation points: a smoothing that keeps
-// the field from going below zero where it ends. The map's prefilter is undone beforehand by the B-spline
-// itself (1/6, 4/6, 1/6 along each axis).
+// The values serve as the spline's coefficients, not as its interpolation points. This smooths the field and
+// keeps it from going below zero at its edge. Applying the B-spline (1/6, 4/6, 1/6 along each axis) beforehand
+// cancels the prefilter of DensityMap.
 #include "rt/force/docking/clash_field.hpp"
 
 #include <algorithm>
@@ -19,13 +19,13 @@ namespace tact {
 namespace {
 
 constexpr double kVoxelM = 2e-10;
-constexpr double kVoxelsMax = 1 << 24;  // 256^3: 510 A at 2 A; what is wider gets wider voxels
+constexpr double kVoxelsMax = 1 << 24;  // 256^3: 510 A at 2 A; larger bodies get larger voxels
 constexpr double kSideMax = 8192;
 constexpr double kSpacingM = 5e-10;
 constexpr std::size_t kPointsMax = 1024;
 constexpr std::size_t kRun = 32;
 constexpr double kWidestM = 1e-3;
-constexpr double kSurfaceM = 1.5e-10;  // an atom so much deeper than one that stands alone is inside
+constexpr double kSurfaceM = 1.5e-10;  // an atom deeper than an isolated one by this much is inside
 
 Vec3 atom(const Structure& s, std::size_t i) {
     return {static_cast<double>(s.x_m[i]), static_cast<double>(s.y_m[i]), static_cast<double>(s.z_m[i])};
@@ -61,7 +61,7 @@ Grid empty_grid(const Structure& s) {
     }
     if (!finite || !((high - low).maxCoeff() < kWidestM)) {
         throw StartupError("preparing the clash force of '" + s.name + "'",
-                           "its atoms are not finite, or farther apart than a millimetre",
+                           "its atom positions are not finite, or more than a millimetre apart",
                            "bake the scene again");
     }
     Grid g;
@@ -81,7 +81,7 @@ Grid empty_grid(const Structure& s) {
     return g;
 }
 
-// Distance to the nearest atom, up to the width of the border.
+// Distance to the nearest atom, limited to the width of the border.
 std::vector<float> nearest_atom(const Structure& s, const Grid& g) {
     const double reach = g.border_m / g.voxel_m;
     std::vector<float> distance(g.grid.count(), static_cast<float>(g.border_m));
@@ -107,7 +107,7 @@ std::vector<float> nearest_atom(const Structure& s, const Grid& g) {
     return distance;
 }
 
-// True where free and reached from outside: a hole in a core is not free, nothing can get there.
+// True where free and connected to the outside; enclosed cavities are not free.
 std::vector<bool> open_space(const Grid& g, const std::vector<float>& nearest) {
     const auto contact = static_cast<float>(ClashField::kContactM);
     std::vector<bool> open(nearest.size(), false);
@@ -173,7 +173,7 @@ std::vector<float> depth_of(const Grid& g, const std::vector<float>& nearest) {
     return depth;
 }
 
-// 1/6, 4/6, 1/6 along one axis; beyond the grid there is nothing.
+// Convolves with (1/6, 4/6, 1/6) along one axis; values outside the grid are zero.
 void spread(Grid& g, std::size_t axis) {
     const std::vector<float> in = g.grid.values;
     for (std::size_t i = 0; i < in.size(); ++i) {
@@ -197,8 +197,8 @@ struct Spread {
     double weight = 1.0;
 };
 
-// Atoms at the surface, each time the one farthest from all taken so far, until none is farther than the
-// spacing or there are enough. Then each stands for a larger piece of the surface.
+// Selects surface atoms by farthest-point sampling, until none is farther than the spacing from a selected one or the
+// limit is reached. In the second case each point represents a larger piece of the surface (weight).
 Spread spread_atoms(const Structure& s, const Grid& g, const std::vector<float>& depth) {
     std::vector<std::size_t> surface;
     for (std::size_t i = 0; i < s.size(); ++i) {

@@ -1,14 +1,13 @@
-// The space that a body fills, as a field that pushes others out, and the points with which it is
-// pushed itself.
+// Clash model of a body: a field that repels other bodies, and surface points on which their fields act.
 //
 // Field     (depth / 4 A)^4 at a point, dimensionless, body frame. Depth is the distance to the nearest
-//           place where an atom's centre of another body may be: 2.8 A or more from all atoms (two carbons
+//           position permitted for an atom centre of another body: 2.8 A or more from all atoms (two carbons
 //           that overlap by 0.6 A, see ipc/scene/fit/clashes.hpp). Zero outside, C2 throughout, never below 0.
-// Points    atoms at the surface, some 5 A apart, at most 1024; in runs that lie close together, so that
-//           most of them are passed over where only corners of two bodies meet. point_weight: how many
-//           points of 5 A spacing one of them stands for.
+// Points    surface atoms about 5 A apart, at most 1024, in spatially compact runs, so that most runs are skipped
+//           where two bodies meet at their edges. point_weight: number of points of 5 A spacing that one point
+//           represents.
 // Thread    built off the servo thread (0.1 s for 4 000 atoms, 0.6 s for 27 000); then immutable, any thread.
-// Fails by  StartupError where the structure has no atoms, or atoms that are nowhere.
+// Fails by  StartupError if the structure has no atoms, or atoms without a finite position.
 #pragma once
 
 #include <vector>
@@ -23,7 +22,7 @@ class ClashField {
 public:
     explicit ClashField(const Structure& structure);
 
-    // Of a run of points, body frame.
+    // A run of consecutive points, with its bounding sphere in the body frame.
     struct Run {
         std::size_t begin, count;
         Vec3 middle_m;
@@ -34,7 +33,7 @@ public:
     [[nodiscard]] const PointSet& points() const noexcept { return points_; }
     [[nodiscard]] const std::vector<Run>& runs() const noexcept { return runs_; }
     [[nodiscard]] double point_weight() const noexcept { return point_weight_; }
-    // Outside of this box, and of this sphere about the body's origin, the field is zero.
+    // The field is zero outside this box and outside this sphere about the body's origin.
     [[nodiscard]] const Vec3& low_m() const noexcept { return low_m_; }
     [[nodiscard]] const Vec3& high_m() const noexcept { return high_m_; }
     [[nodiscard]] double radius_m() const noexcept { return radius_m_; }

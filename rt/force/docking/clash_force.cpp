@@ -1,24 +1,25 @@
 // Derivation. Let v_B(x) = (depth of x in B / u)^4, u = 4 A, and
-//     s = sum over neighbours B of [ a_A sum_{i in A} v_B(x_i) + a_B sum_{j in B} v_A(x_j) ],
-// a: point_weight. Then u s^(1/4) is the 4-norm of all depths: a soft maximum. To start without a kink,
-//     D_model^2 = u^2 (sqrt(s + s_0) - sqrt(s_0)),   s_0 = (1/4)^4: less than the full stiffness below 1 A,
+//     s = sum over the other bodies B of [ a_A sum_{i in A} v_B(x_i) + a_B sum_{j in B} v_A(x_j) ],
+// with a = point_weight. Then u s^(1/4) is the 4-norm of all depths, a soft maximum. For a smooth start,
+//     D_model^2 = u^2 (sqrt(s + s_0) - sqrt(s_0)),   s_0 = (1/4)^4: reduced stiffness below 1 A,
 // and with S = world_per_model, D = S D_model. So
 //     dU/ds = F S^2 u^2 / (4 sqrt(L^2 + D^2) sqrt(s + s_0)),
-// smooth and bounded for all s >= 0, and the wrench is -dU/ds times the slope of s over the active body's
-// place (divided by S for world metres) and rotation. Points of A in the field of B give gradient g and
-// moment m about A's centre, in B's axes. Points of B in the field of A give g and m about B's centre in A's
-// axes, for moving B: moving A instead, about A's centre, is -g and -(m + (c_B - c_A) x g).
+// smooth and bounded for all s >= 0. The wrench is -dU/ds times the derivative of s with respect to position
+// (divided by S for world metres) and rotation of the active body. Points of A in the field of B give gradient
+// g and moment m about A's centre, in B's axes. Points of B in the field of A give g and m about B's centre, in
+// A's axes, for a motion of B; a motion of A about A's centre gives -g and -(m + (c_B - c_A) x g).
 //
-// Why the 4-norm: with a plain sum of squares a flush contact of a hundred points is a hundred times as stiff
-// as that of one, and a gain that is safe for the first cannot be felt in the second. Here it is ten times.
+// Why the 4-norm: with a plain sum of squares, a flush contact of a hundred points is a hundred times as stiff
+// as one point, and a gain that is safe for the first cannot be felt in the second. The 4-norm reduces the
+// ratio to ten.
 //
-// Gains. F is 2 N as for the density; K is chosen for each scene (choose_clash_gains). Measured 2026-11-21 on
+// Gains. F is 2 N as for the density; choose_clash_gains() sets K per scene. Measured 2026-11-21 on
 // 200 seeded encounters of the domains of 1GTE, 1KP8 chain A and the ring 1OEL, 6e6 hand metres per model
 // metre, K = 88 N/m: largest eigenvalue of the stiffness 187 N/m (99th percentile 148, median 50); force
 // along the push, median, 1, 3, 5, 8 A beyond the first two atoms at 2.8 A: 0.04, 0.06, 0.08, 0.13 N, at most
-// 0.65 N. Also tried: a grid of 1.5 A (stiffer at the same force), points 4 A apart (40 % dearer, no firmer),
-// s_0 = (1/2)^4 (a third less force at 2 A). At home, where bonds were cut, the domains of 1GTE push each
-// other with 0.1 N.
+// 0.65 N. Also tried: a grid of 1.5 A (stiffer at the same force), points 4 A apart (40 % more cost, no stiffer),
+// s_0 = (1/2)^4 (a third less force at 2 A). At their home poses, where
+// bonds were cut, the domains of 1GTE repel each other with 0.1 N.
 #include "rt/force/docking/clash_force.hpp"
 
 #include <Eigen/Eigenvalues>
@@ -43,8 +44,7 @@ struct Slope {
     std::uint32_t points = 0;
 };
 
-// Sum of the field over the points of another body, run by run; runs that the field cannot reach are passed
-// over.
+// Sums the field over the points of another body; skips runs out of the field's reach.
 Slope sum_in(const ClashField& field, const ClashField& pushed, const Pose& T_field_points) noexcept {
     Slope out;
     const double share = pushed.point_weight() * static_cast<double>(pushed.points().size());
@@ -72,7 +72,7 @@ ClashResult clash_force(const ClashBody& active, std::span<const ClashBody> othe
     const Pose T_active_model = here.inverse();
     double s = 0.0;
     Vec3 gradient = Vec3::Zero(),
-         moment = Vec3::Zero();  // of s by the active body's place and turn, model axes
+         moment = Vec3::Zero();  // of s by the active body's position and rotation, model axes
     for (const ClashBody& other : others) {
         const Pose& there = other.T_model_body;
         const Vec3 apart = there.p_m - here.p_m;
@@ -102,10 +102,10 @@ ClashResult clash_force(const ClashBody& active, std::span<const ClashBody> othe
     return result;
 }
 
-// Bodies at random rotations, come together from a random side to a random depth; which pair of structures
-// goes round, each with its own copy among them. The stiffness is the largest eigenvalue, by size, of the
-// slope of the force, over half an angstrom as in ipc/scene/density/docking_gain.cpp. K goes up or down by what is
-// left to the limit.
+// Cycles through all pairs of structures, including a structure with its own copy. Each encounter has random rotations,
+// a random direction and a random depth. Its stiffness is the largest eigenvalue, by magnitude, of the force gradient
+// over half an angstrom, as in ipc/scene/density/docking_gain.cpp.
+// K is scaled so that kMargin times the largest meets the limit.
 ClashGains choose_clash_gains(std::span<const ClashField> fields, double world_per_model) {
     ClashGains gains;
     if (fields.empty()) return gains;

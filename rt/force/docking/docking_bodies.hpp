@@ -1,7 +1,7 @@
 // The bodies of a docking scene and the orders that change them.
 //
 // Runs on   servo thread, between steps; constant time, no allocation
-// Owns      ids: from 1, rising, never used again
+// Owns      ids: ascending from 1, never reused
 #pragma once
 
 #include <cstdint>
@@ -12,28 +12,28 @@
 
 namespace tact {
 
-// Where a body starts.
+// Start state of a body.
 struct StartBody {
     std::uint32_t structure = 0;
     Pose T_model_body;
     bool fixed = false;
-    bool in_hand = false;  // the first that is; the first of all where none is
+    bool in_hand = false;  // the first marked body starts in the hand; without one, the first of all
 };
 
 class DockingBodies {
 public:
     enum class Change : std::uint8_t {
         refused,
-        none,    // applied, and the force does not care
-        others,  // bodies besides the one in the hand
-        moved,   // the one in the hand is elsewhere
-        taken,   // another one is in the hand, or none
+        none,    // applied without effect on the force
+        others,  // bodies other than the one in the hand changed
+        moved,   // the body in the hand was placed elsewhere
+        taken,   // another body, or none, is in the hand
     };
 
-    // At most ModelBodies::kMax; poses and structures are the caller's care.
+    // At most ModelBodies::kMax bodies; the caller checks poses and structures.
     DockingBodies(const std::vector<StartBody>& start, std::uint32_t structures) noexcept;
 
-    // All kinds but option. The pose of place and add has to be checked by the caller.
+    // Applies every kind except setting. The caller checks the poses of place and add.
     Change order(const ModelOrder& order) noexcept TACT_RT;
 
     [[nodiscard]] const ModelBodies& list() const noexcept { return list_; }
@@ -43,13 +43,13 @@ public:
     [[nodiscard]] bool active_fixed() const noexcept {
         return in_hand() && (list_.flags[list_.active] & ModelBodies::kFixed) != 0;
     }
-    // Of the body in the hand; where there is none, the first of all.
+    // Structure of the body in the hand; 0 if the hand is empty.
     [[nodiscard]] std::size_t structure() const noexcept {
         return in_hand() ? list_.structure[list_.active] : 0;
     }
 
 private:
-    [[nodiscard]] std::uint32_t index_of(std::uint32_t id) const noexcept;  // list().count: not there
+    [[nodiscard]] std::uint32_t index_of(std::uint32_t id) const noexcept;  // list().count: unknown id
     bool add(std::uint32_t structure, const Pose& T_model_body, bool fixed) noexcept;
     Change remove(std::uint32_t index) noexcept;
 

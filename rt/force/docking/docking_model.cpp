@@ -1,11 +1,12 @@
-// The grip keeps the vector from tool to centre of mass fixed in world axes and the rotation from tool to
-// body fixed in tool axes. Then dc_world = dp_tool and dphi = the tool's rotation, so the wrench of
-// level_blend.cpp, about the centre of mass, is exactly the wrench at the tool's origin; a grip with a lever
+// The grip keeps the vector from tool to centre of mass constant in world axes and the rotation from tool to
+// body constant in tool axes. Then dc_world = dp_tool and dphi is the tool's rotation, so the wrench of
+// level_blend.cpp about the centre of mass equals the wrench at the tool's origin. A grip with a lever arm
 // would have to transfer the torque.
 #include "rt/force/docking/docking_model.hpp"
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <typeinfo>
 #include <utility>
 
@@ -16,6 +17,8 @@
 
 namespace tact {
 namespace {
+
+constexpr float kLevelJump = 0.01F;  // change of the knob in one step; its slew rate is below
 
 // 0: a command for another system.
 std::uint32_t option_of(std::uint8_t command) noexcept {
@@ -81,7 +84,12 @@ KnobSpec DockingModel::knob() const noexcept {
     spec.start = blend().start_fidelity();
     spec.slew_per_s = 4.0F;
     spec.haptic = true;
+    spec.steps = static_cast<std::uint32_t>(parts_->levels[bodies_.structure()].size() - 1);
     return spec;
+}
+
+PathLoad DockingModel::predict(float fidelity) const noexcept {
+    return bodies_.in_hand() ? blend().predict(fidelity) : PathLoad{};
 }
 
 std::uint32_t DockingModel::items(float fidelity) const noexcept {
@@ -119,6 +127,7 @@ void DockingModel::add_clash(const Pose& T_model_body, StepResult& result) const
 }
 
 void DockingModel::grip(const Pose& T_world_tool) noexcept {
+    glide_.restart();
     if (!bodies_.in_hand()) return;
     const Pose& body = bodies_.list().T_model_body[bodies_.list().active];
     com_from_tool_world_m_ = parts_->meta.to_world(body.p_m) - T_world_tool.p_m;
@@ -128,7 +137,7 @@ void DockingModel::grip(const Pose& T_world_tool) noexcept {
 
 void DockingModel::reset(const ToolState& tool) noexcept {
     fade_.cut();
-    clutched_ = true;  // a tool that is nowhere yet is gripped at the first good step
+    clutched_ = true;  // without a finite pose, the first good step takes the grip
     if (!tool.T_world_tool.finite()) return;
     if ((tool.buttons & 1U) != 0 || bodies_.active_fixed()) return;
     grip(tool.T_world_tool);
@@ -138,12 +147,12 @@ void DockingModel::reset(const ToolState& tool) noexcept {
 StepResult DockingModel::step(const ToolState& tool, const Budget& budget) noexcept {
     if (!is_in_reach(tool.T_world_tool)) {
         fade_.cut();
-        clutched_ = true;  // what follows is a new grip: the tool may be anywhere by then
+        clutched_ = true;  // a later step takes a new grip, because the tool may have moved
         StepResult result;
         result.status = StepStatus::out_of_range;
         return result;
     }
-    fade_.begin_step();
+    fade_.begin_step(step_s());
     StepResult result = feel(tool, budget);
     result.wrench_world = fade_.show(result.wrench_world);
     return result;
@@ -169,10 +178,11 @@ StepResult DockingModel::feel(const ToolState& tool, const Budget& budget) noexc
         body.p_m = parts_->meta.to_model(hand.p_m + com_from_tool_world_m_);
         body.q = (hand.q * q_tool_body_).normalized();
     }
-    StepResult clash;  // first: where time runs out, only the density can do with less
+    StepResult clash;  // computed first: only the density can be shortened when time runs out
     add_clash(body, clash);
     StepResult result = blend().evaluate(body, budget, &kept_);
     audit(result, body);
+    glide(budget.fidelity, result);
     result.wrench_world.force_n += clash.wrench_world.force_n;
     result.wrench_world.torque_n_m += clash.wrench_world.torque_n_m;
     result.load.cost += clash.load.cost;
@@ -182,8 +192,17 @@ StepResult DockingModel::feel(const ToolState& tool, const Budget& budget) noexc
     return result;
 }
 
-// A measurement above the bound raises the bound of all levels of this structure, for good. A step that used
-// old sums says nothing about its level, and has no time for this either.
+// Adds the offset of LevelGlide after a jump; small steps blend two levels and need none.
+void DockingModel::glide(float fidelity, StepResult& result) noexcept {
+    const bool fell_back = result.load.items != blend().items(fidelity);
+    const bool jumped = std::abs(fidelity - level_before_) > kLevelJump || fell_back != fell_back_;
+    glide_.apply(jumped, step_s(), result.wrench_world, result.load.error);
+    level_before_ = fidelity;
+    fell_back_ = fell_back;
+}
+
+// A measured error above the bound raises the bound of all levels of this structure permanently. Steps that reused
+// earlier sums are skipped: they do not measure their level and have no time to spare.
 void DockingModel::audit(const StepResult& result, const Pose& T_model_body) noexcept {
     if (result.status != StepStatus::ok || result.load.recomputed_fraction < 1.0F) return;
     double& scale = error_scale_[bodies_.structure()];
@@ -195,20 +214,21 @@ void DockingModel::audit(const StepResult& result, const Pose& T_model_body) noe
     if (audit_.bound() > 0.0) scale = std::max(scale, kErrorMargin * audit_.off() / audit_.bound());
 }
 
-// What is shown fades from here, and what is felt instead fades in after it.
+// Fades the present wrench out; the new force then fades in.
 void DockingModel::fade(const ForceFade& shown) noexcept {
     fade_.follow(shown);
+    glide_.restart();
     audit_.restart();
 }
 
-// The same, and what is in the hand now is gripped at the next good step.
+// Fades as above; the next good step takes a new grip.
 void DockingModel::let_go() noexcept {
     fade(fade_);
     clutched_ = true;
 }
 
-// The density that is as ordered, where there is one. A body must never feel a density that lacks the body
-// itself, and does so where another one was in the hand when it was made. True: another one than before.
+// Selects the map with the requested options, if it exists. A map made with another body in the hand has the present
+// body subtracted, so it must not be used. True: the map changed.
 bool DockingModel::choose_density() noexcept {
     const ForceMap* const before = felt_;
     const std::uint32_t asked = bodies_.list().options_asked & kForceMapOptions;
@@ -281,7 +301,7 @@ bool DockingModel::adopt(const ForceModel& old) noexcept {
     bodies_ = before.bodies_;
     com_from_tool_world_m_ = before.com_from_tool_world_m_;
     q_tool_body_ = before.q_tool_body_;
-    clutched_ = before.clutched_;  // the same gesture goes on
+    clutched_ = before.clutched_;  // keeps the state of the clutch
     error_scale_ = before.error_scale_;
     fade(before.fade_);
     static_cast<void>(choose_density());
@@ -289,7 +309,7 @@ bool DockingModel::adopt(const ForceModel& old) noexcept {
 }
 
 void DockingModel::give_up() noexcept {
-    // What is felt goes on, unless it was made for another body in the hand or for other neighbours.
+    // The present map stays, unless it was made for another body in the hand or for other bodies around it.
     const bool stays = (felt_->options & kDockingSubtraction) == 0 ||
                        (felt_->active_id == bodies_.active_id() && felt_->others == bodies_.list().others);
     const std::uint32_t felt = stays ? felt_->options : whole_->options;

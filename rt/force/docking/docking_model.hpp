@@ -1,24 +1,23 @@
-// Docking: atomic structures felt in an electron density map.
+// Docking model: force on atomic structures in an electron density map.
 //
 // Energy    U = -k_E * sum_i w_i rho(x_i), k_E in joules per sigma, w_i mass fractions, rho in sigma. Force
-//           and torque are its derivatives, so the field is conservative at every level of the knob.
-// Grip      the tool moves the body's centre of mass, the tool's rotation turns the body about it; so the
-//           wrench at the tool's origin is force and torque about the centre of mass. The grip is taken at
+//           and torque are its derivatives, so the field is conservative at every level.
+// Grip      the tool's translation moves the body's centre of mass and its rotation turns the body about it, so
+//           the wrench at the tool's origin is force and torque about the centre of mass. The grip is taken at
 //           reset(), when the clutch (button bit 0) is released, and when another body, or the same one
-//           elsewhere, comes into the hand. With the clutch held the body stays and the tool moves alone; so
-//           it does with a fixed body in the hand, of which nothing is felt.
-// Clash     with kDockingClash bodies push each other apart, clash_force.hpp; a constant-time order, as its
-//           fields are made with the model. It is no part of the knob: a wall that comes and goes with the
-//           load would be worse than one that always costs.
-// Bodies    copies of a structure share its point sets. A change of what is in the hand lets the old force
-//           fade to zero; only then does the new one fade in.
+//           elsewhere, comes into the hand. While the clutch is held, the tool moves alone and the body stays.
+//           A fixed body in the hand stays too and gives no force.
+// Clash     with kDockingClash bodies repel each other (clash_force.hpp); a constant-time order, because its
+//           fields are made with the model. The knob does not affect it: a wall must not depend on the load.
+// Bodies    copies of a structure share its point sets. When the body in the hand changes, the old force fades
+//           to zero before the new one fades in.
 // Knob      "docking.force": codebook levels from the smallest to all atoms, blended in between.
-// Share     step() applies the budget's share (level_blend.hpp); evaluate() always sums all of a level.
-// Frames    wrench in world, bodies in model. SceneMeta maps one to the other.
+// Work      step() recomputes the budget's work fraction (level_blend.hpp); evaluate() always sums a whole level.
+// Frames    wrench in world, bodies in model; SceneMeta converts between them.
 // Thread    constructed anywhere (may throw StartupError); then one thread, normally the servo. No
 //           allocation. rebuild() alone may run on another thread at the same time.
-// Fails by  out_of_range: a pose that is not finite gives no force and leaves the bodies where they are;
-//           out_of_time: the wrench is that of a smaller level.
+// Fails by  out_of_range: an invalid or distant pose gives zero force and leaves the bodies in place;
+//           out_of_time: the wrench is that of a smaller level, or of older sums.
 #pragma once
 
 #include <array>
@@ -38,6 +37,7 @@
 #include "rt/force/docking/error_audit.hpp"
 #include "rt/force/docking/force_map.hpp"
 #include "rt/force/docking/level_blend.hpp"
+#include "rt/force/docking/level_glide.hpp"
 #include "rt/force/force_fade.hpp"
 #include "rt/force/force_model.hpp"
 
@@ -45,13 +45,14 @@ namespace tact {
 
 class DockingModel final : public ForceModel {
 public:
-    // codebooks: one for each structure, levels rising in size and smaller than its atoms.
+    // codebooks: one per structure; levels of ascending size with fewer vectors than the structure has atoms.
     DockingModel(const SceneMeta& meta, const DensityGrid& grid, const std::vector<Structure>& structures,
                  const std::vector<Codebook>& codebooks, const DockingSettings& settings);
 
     [[nodiscard]] KnobSpec knob() const noexcept TACT_RT override;
     [[nodiscard]] std::uint32_t items(float fidelity) const noexcept TACT_RT override;
-    // By the choice of the scene's gain (ipc/scene/density/docking_gain.hpp), and of the clash on top.
+    [[nodiscard]] PathLoad predict(float fidelity) const noexcept TACT_RT override;
+    // Limit used for the scene's gain (ipc/scene/density/docking_gain.hpp), plus that of the clash force.
     [[nodiscard]] double stiffness_n_m() const noexcept TACT_RT override;
     void reset(const ToolState& tool) noexcept TACT_RT override;
     StepResult step(const ToolState& tool, const Budget& budget) noexcept TACT_RT override;
@@ -62,10 +63,9 @@ public:
     bool adopt(const ForceModel& old) noexcept TACT_RT override;
     void give_up() noexcept TACT_RT override;
 
-    // The wrench on the active body, were it at this place: what step() shows once its ramp is over.
-    // The clash is in it.
+    // Wrench on the active body at a pose, including the clash force; equals the wrench of step() after its ramp.
     [[nodiscard]] StepResult evaluate(const Pose& T_model_body, const Budget& budget) const noexcept TACT_RT;
-    // Turns options on or off (DockingOption); constant time, as order(). False: there are no such options.
+    // Turns options (DockingOption) on or off; constant time, as order(). False: unknown options.
     bool set_options(std::uint32_t options, bool on) noexcept TACT_RT;
 
     [[nodiscard]] const DensityMap& map() const { return felt_->map; }
@@ -76,8 +76,6 @@ public:
     [[nodiscard]] const ErrorAudit& audit() const { return audit_; }
 
     static constexpr const char* kKnobPath = "docking.force";
-    // Steps over which the force fades in after a grip, and out when the clutch is pressed.
-    static constexpr int kRampSteps = ForceFade::kRampSteps;
 
 private:
     DockingModel(const DockingModel& like, const ModelBodies& bodies);  // rebuilt
@@ -88,6 +86,7 @@ private:
     [[nodiscard]] LevelBlend blend() const noexcept;  // of the structure in the hand
     void add_clash(const Pose& T_model_body, StepResult& result) const noexcept;
     void show_options() noexcept;
+    void glide(float fidelity, StepResult& result) noexcept;
     [[nodiscard]] StepResult feel(const ToolState& tool, const Budget& budget) noexcept;
     void audit(const StepResult& result, const Pose& T_model_body) noexcept;
     void grip(const Pose& T_world_tool) noexcept;
@@ -98,23 +97,25 @@ private:
     std::shared_ptr<const DockingParts> parts_;
     double energy_j_per_sigma_;
     ClashGains clash_gains_;
-    // With nothing subtracted, and as ordered when this model was built: maybe the same. What is felt is one
-    // of the two, so that a step can go from one to the other.
+    // Map without subtraction, and map with the options requested when this model was built (may be the same map).
+    // felt_ points to one of them, so a step can switch between them.
     std::shared_ptr<const ForceMap> whole_, built_;
     const ForceMap* felt_;
     DockingBodies bodies_;
-    // The grip: translation from tool to centre of mass (world axes, it does not turn with the tool), and
-    // rotation.
+    // The grip: translation from tool to centre of mass (constant in world axes), and rotation from tool to body.
     Vec3 com_from_tool_world_m_ = Vec3::Zero();
     Quat q_tool_body_ = Quat::Identity();
-    bool clutched_ = true;  // until the first good step, which takes the grip where the tool then is
+    bool clutched_ = true;  // initially true: the first good step takes the grip
     ForceFade fade_;
     KeptSums kept_;
+    LevelGlide glide_;
+    float level_before_ = 0.0F;
+    bool fell_back_ = false;  // the last step used a smaller level than the budget's
     ErrorAudit audit_;
     std::array<double, ModelBodies::kMax> error_scale_;  // by structure, from audits; at least 1
 };
 
-// Reads the scene's map, structures and codebooks.
+// Reads map, structures and codebooks from the scene.
 std::unique_ptr<DockingModel> load_docking_model(const SceneFile& scene, const DockingSettings& settings);
 
 }  // namespace tact

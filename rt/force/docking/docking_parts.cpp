@@ -16,7 +16,8 @@ std::vector<PointSet> levels_of(const Structure& structure, const Codebook& code
     for (const Codebook::Level& level : codebook.levels) {
         if (level.size() <= before || level.size() >= structure.size()) {
             throw StartupError("reading the codebook of '" + structure.name + "'",
-                               "its levels do not rise in size, or exceed the atoms", "bake the scene again");
+                               "its levels do not ascend in size, or exceed the number of atoms",
+                               "bake the scene again");
         }
         before = level.size();
         levels.push_back(make_point_set(level.view(), structure.name));
@@ -56,7 +57,7 @@ std::shared_ptr<const DockingParts> make_docking_parts(const SceneMeta& meta, co
     parts->structures = structures;
     for (std::size_t i = 0; i < structures.size(); ++i) {
         if (!structures[i].home_com_model_m.allFinite()) {
-            throw StartupError("setting up docking", "'" + structures[i].name + "' has no finite place",
+            throw StartupError("setting up docking", "'" + structures[i].name + "' has no finite position",
                                "bake the scene again");
         }
         parts->levels.push_back(levels_of(structures[i], codebooks[i]));

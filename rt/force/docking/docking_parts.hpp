@@ -1,10 +1,9 @@
-// What all models of one docking scene share, whatever they feel: the map as read, structures, point sets.
+// Data shared by all models of one docking scene: the map as read, structures, point sets.
 //
-// Levels   of each structure: its codebook levels, sizes rising, then all atoms. The first has at most
-//          kAlways points, so that it fits every budget.
-// Thread   made off the servo thread; never changes afterwards, so copies of a body and rebuilt models share
-//          it without a lock.
-// Fails by StartupError: a scale, gain or place that is not finite, levels that do not rise, bad points.
+// Levels   per structure: its codebook levels in ascending size, then all atoms. The first has at most kAlways
+//          points, so that it fits every budget.
+// Thread   made off the servo thread, then immutable; bodies and rebuilt models share it without a lock.
+// Fails by StartupError: a scale, gain or pose that is not finite, levels that do not ascend, invalid points.
 #pragma once
 
 #include <memory>
@@ -19,18 +18,18 @@
 
 namespace tact {
 
-// Of the Laplacian, the same whatever is subtracted (force_map.hpp): found when first asked for, then kept.
+// Unit of the Laplacian, independent of subtraction (force_map.hpp); computed at the first request, then kept.
 struct LaplacianUnit {
     std::once_flag once;
     double value = 0.0;
 };
 
 struct DockingParts {
-    // A level of so few points is computed whatever the deadline says: some 5 us.
+    // A level of at most this many points ignores the deadline: about 5 us.
     static constexpr std::size_t kAlways = 512;
 
     SceneMeta meta{};
-    DensityGrid grid;  // felt where no option is on
+    DensityGrid grid;  // map of the force without options
     std::vector<Structure> structures;
     std::vector<std::vector<PointSet>> levels;
     std::vector<ClashField> clash;  // by structure
@@ -38,7 +37,7 @@ struct DockingParts {
     std::shared_ptr<LaplacianUnit> laplacian_unit = std::make_shared<LaplacianUnit>();
 };
 
-// codebooks: one for each structure.
+// codebooks: one per structure.
 std::shared_ptr<const DockingParts> make_docking_parts(const SceneMeta& meta, const DensityGrid& grid,
                                                        const std::vector<Structure>& structures,
                                                        const std::vector<Codebook>& codebooks);

@@ -21,7 +21,7 @@ double start_energy_j_per_sigma(const SceneMeta& meta, const DockingSettings& se
     }
     if (settings.force_scale < 0.0 || settings.force_scale > 100.0) {
         throw StartupError("setting up docking", "the force scale is not in [0, 100]",
-                           "use 1, or a bit less");
+                           "use a value of 1 or slightly less");
     }
     return meta.energy_j_per_sigma * settings.force_scale;
 }
@@ -41,8 +41,8 @@ std::vector<StartBody> start_bodies(const DockingParts& parts, const DockingSett
     for (const StartBody& body : start) {
         if (body.structure >= parts.structures.size() || !is_placeable(parts.meta, body.T_model_body))
             throw StartupError("setting up docking",
-                               "a body is of no structure of the scene, or too far from its map",
-                               "give places of this scene");
+                               "a body has an unknown structure, or a pose too far from the map",
+                               "use structures and poses of this scene");
     }
     return start;
 }

@@ -1,8 +1,8 @@
-// Measures while the loop runs how far the shown, reduced sum was from that over all atoms.
+// Measures the error of the reduced sum against the sum over all atoms while the loop runs.
 //
-// A measurement keeps the pose of one step and its reduced sum, and adds up the atoms there in slices, one a
-// step, each at most an eighth of the step's own points (32 at least). So it costs little, its work is known
-// before the step, and runs repeat exactly; at 200 vectors and 5000 atoms it takes 160 steps.
+// A measurement keeps pose and reduced sum of one step and sums the atoms at that pose in slices, one per step.
+// A slice has an eighth of the step's points, at least 32. Its cost is small and known beforehand, and runs
+// repeat exactly. With 200 vectors and 5000 atoms a measurement takes 160 steps.
 //
 // Runs on   servo thread, every step; no allocation
 // Frame     gradients in sigma per model metre, model axes
@@ -19,14 +19,14 @@ namespace tact {
 
 class ErrorAudit {
 public:
-    // What is being felt is another thing from now on; the measurement under way is dropped.
+    // Call when map or body changes; drops the measurement in progress.
     void restart() noexcept TACT_RT { running_ = false; }
 
-    // One slice. reduced: the step's own gradient at this pose, bound: what its distance from the exact one
-    // should not exceed, points: how many it summed. True: a measurement is complete.
+    // Sums one slice. reduced: gradient of this step at this pose; bound: limit of its error; points: number of
+    // points it summed. True: a measurement is complete.
     bool step(const DensityMap& map, const PointSet& atoms, const Pose& T_model_body, const Vec3& reduced,
               double bound, std::size_t points) noexcept TACT_RT {
-        if (points >= atoms.size()) {  // it was all atoms; nothing to measure
+        if (points >= atoms.size()) {  // the step summed all atoms; nothing to measure
             running_ = false;
             return false;
         }
@@ -48,7 +48,7 @@ public:
         ++done_;
         return true;
     }
-    // Of the last complete measurement.
+    // Error and bound of the last complete measurement; number of complete measurements.
     [[nodiscard]] double off() const noexcept { return off_; }
     [[nodiscard]] double bound() const noexcept { return off_bound_; }
     [[nodiscard]] std::size_t done() const noexcept { return done_; }

@@ -14,7 +14,7 @@ namespace {
 
 constexpr int kCalibrationPoses = 128;
 
-// Of eight places drawn in the map the densest, turned at random.
+// Draws eight points in the map; returns the densest with a random rotation.
 Pose dense_pose(const DensityMap& map, SeededRandom& random) {
     Pose pose;
     double best = -1e300;
@@ -32,8 +32,8 @@ Pose dense_pose(const DensityMap& map, SeededRandom& random) {
     return pose;
 }
 
-// Three quarters of the poses within 15 A and 30 degrees of home, one quarter anywhere in dense parts of the
-// map, turned at random. The cost is the median of nine timed sums at home.
+// Errors: three quarters of the poses lie within 15 A and 30 degrees of home, one quarter in dense parts of the map
+// with random rotations. Cost: median of nine timed sums at home.
 std::vector<LevelMetrics> calibrated(const DensityMap& map, const std::vector<PointSet>& levels,
                                      const Pose& home, double newtons_per_gradient) {
     std::vector<LevelMetrics> metrics(levels.size());
@@ -49,7 +49,7 @@ std::vector<LevelMetrics> calibrated(const DensityMap& map, const std::vector<Po
                 std::max(metrics[l].error_n, kErrorMargin * newtons_per_gradient * off.norm());
         }
     }
-    // Fewer vectors may do better by luck; the knob promises that errors do not rise with it.
+    // A smaller level may have a smaller error by chance; the knob requires errors that do not rise with the level.
     for (std::size_t l = levels.size() - 1; l-- > 0;)
         metrics[l].error_n = std::max(metrics[l].error_n, metrics[l + 1].error_n);
     for (std::size_t l = 0; l < levels.size(); ++l) {
@@ -79,8 +79,8 @@ double contour_resolution_m(const DockingParts& parts) {
     return std::max(parts.meta.resolution_m, kContourResolutionM);
 }
 
-// With the unit u the energy is -k_E sum w L / u, k_E the scene's gain. The gain that suits L in units of its
-// root mean square r is k_L, so u = r k_E / k_L.
+// With the unit u the energy is -k_E sum w L / u, where k_E is the scene's gain. docking_gain() gives k_L for L in
+// units of its root mean square r, so u = r k_E / k_L.
 double laplacian_unit(const DockingParts& parts, const DensityGrid& filtered) {
     const double rms = rms_of(filtered);
     std::vector<GainBody> bodies;
@@ -104,7 +104,7 @@ DensityMap force_map(const DockingParts& parts, std::uint32_t options, const Mod
         return laplacian_map(grid, meta.map_background, contour_resolution_m(parts));
     };
     const DensityGrid felt = filtered(subtracted ? without_others(parts, bodies) : parts.grid);
-    // Half of the work of this function, and nothing in it changes from one body in the hand to the next.
+    // Half of the work of this function; independent of the body in the hand, so computed once.
     LaplacianUnit& unit = *parts.laplacian_unit;
     std::call_once(unit.once,
                    [&] { unit.value = laplacian_unit(parts, subtracted ? filtered(parts.grid) : felt); });

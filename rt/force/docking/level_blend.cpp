@@ -1,15 +1,15 @@
-// Derivation. A body has points x_i = c + q b_i with weights w_i, sum w_i = 1, b_i from its centre of mass,
-// so c is that centre. With U = -k_E sum w_i rho(x_i), a displacement dc and a small rotation dphi (model
-//     axes) give dU = -k_E sum w_i grad rho(x_i) . (dc + dphi x (x_i - c))
+// Derivation. A body has points x_i = c + q b_i with weights w_i, sum w_i = 1, and b_i relative to its centre
+// of mass c. With U = -k_E sum w_i rho(x_i), a displacement dc and a small rotation dphi (model axes) give
+//     dU = -k_E sum w_i grad rho(x_i) . (dc + dphi x (x_i - c))
 //        = -k_E [ (sum w_i grad rho) . dc + (sum w_i (x_i - c) x grad rho) . dphi ].
-// The seed prints the torque as w_i x grad rho; the lever arm is from the centre of mass, as here. World axes
-// are parallel to model axes and dx_world = S dx_model (S = world_per_model), so what the hand feels is
+// The docking paper prints the torque as w_i x grad rho; the lever arm must be x_i - c. World axes are parallel
+// to model axes and dx_world = S dx_model (S = world_per_model), so force and torque at the hand are
 //     F_world = (k_E / S) sum w_i grad rho,    Q_world = k_E sum w_i (x_i - c) x grad rho,
-// which is the derivative of the same U by the tool's place and rotation: whatever path the hand takes, no
-// energy is gained. As the weights sum to one, neither depends on how many points stand for the body.
+// the derivatives of the same U by the tool's position and rotation: the hand gains no energy on a closed path.
+// As the weights sum to one, neither depends on the number of points that represent the body.
 //
 // Between two levels the wrenches are blended linearly. A blend is the derivative of the blended energies:
-// still conservative while the knob stands still, and continuous when it turns.
+// conservative at a constant knob, and continuous as the knob changes.
 #include "rt/force/docking/level_blend.hpp"
 
 #include <algorithm>
@@ -21,15 +21,15 @@ namespace tact {
 
 namespace {
 
-// Where the level asked for is bigger, one of at most 1/kSafeShare of it is summed first, to fall back on.
+// A larger level is preceded by the sum of one of at most 1/kSafeShare of its size, as a fallback.
 constexpr std::size_t kSafeShare = 16;
-constexpr double kOnLevel = 1e-5;  // of the way to the next level
+constexpr double kOnLevel = 1e-5;  // fraction of the distance between levels
 
 }  // namespace
 
 float LevelBlend::start_fidelity() const noexcept {
     std::size_t start = 0;
-    while (start + 1 < levels.size() && levels[start].size() < 200) ++start;  // as in the seed
+    while (start + 1 < levels.size() && levels[start].size() < 200) ++start;  // as in the docking paper
     return levels.size() > 1 ? static_cast<float>(start) / static_cast<float>(levels.size() - 1) : 1.0F;
 }
 
@@ -37,7 +37,7 @@ LevelBlend::Plan LevelBlend::plan(float fidelity) const noexcept {
     const double f = fidelity > 0.0F ? std::min(static_cast<double>(fidelity), 1.0) : 0.0;
     const std::size_t last = levels.size() - 1;
     double place = f * static_cast<double>(last);
-    // A level's own fidelity is seldom a float; a hair above it the next level would be summed for nothing.
+    // A level's exact fidelity is rarely a float; without rounding, the next level would be summed in vain.
     if (std::abs(place - std::round(place)) < kOnLevel) place = std::round(place);
     const auto lower = std::min(static_cast<std::size_t>(place), last);
     const double blend = place - static_cast<double>(lower);
@@ -68,6 +68,8 @@ PartialSums::Result LevelBlend::sum_level(std::size_t level, const Pose& T_model
                                                   static_cast<double>(budget.work_fraction), deadline);
     PartialSums::Result result;
     result.complete = sum_until(map, points.view(), T_model_body, deadline, result.sums);
+    result.late = !result.complete;
+    if (!result.complete) result.recomputed_fraction = 0.0F;
     return result;
 }
 
@@ -92,7 +94,7 @@ StepResult LevelBlend::evaluate(const Pose& T_model_body, const Budget& budget,
         result.load.recomputed_fraction = sum.recomputed_fraction;
     };
     const std::size_t wanted = levels[p.lower].size();
-    if (wanted > DockingParts::kAlways) {  // something to fall back on, small beside the whole
+    if (wanted > DockingParts::kAlways) {  // sum a fallback that is small beside the whole
         std::size_t safe = 0;
         while (levels[safe + 1].size() <= std::min(DockingParts::kAlways, wanted / kSafeShare)) ++safe;
         use(safe, sum_level(safe, T_model_body, budget, nullptr));
@@ -100,15 +102,14 @@ StepResult LevelBlend::evaluate(const Pose& T_model_body, const Budget& budget,
     const PartialSums::Result lower = sum_level(p.lower, T_model_body, budget, kept);
     if (!lower.complete) {
         result.status = StepStatus::out_of_time;
+        result.load.work_done = lower.recomputed_fraction;
     } else {
         use(p.lower, lower);
+        bool late = lower.late;
         if (p.upper != p.lower) {
-            PartialSums::Result upper;
-            upper.complete = false;
-            if (!budget.deadline.passed()) upper = sum_level(p.upper, T_model_body, budget, kept);
-            if (!upper.complete) {
-                result.status = StepStatus::out_of_time;
-            } else {
+            const PartialSums::Result upper = sum_level(p.upper, T_model_body, budget, kept);
+            late = late || upper.late;
+            if (upper.complete) {
                 const Wrench a = wrench(lower.sums), b = wrench(upper.sums);
                 result.wrench_world.force_n = (1.0 - p.blend) * a.force_n + p.blend * b.force_n;
                 result.wrench_world.torque_n_m = (1.0 - p.blend) * a.torque_n_m + p.blend * b.torque_n_m;
@@ -120,9 +121,9 @@ StepResult LevelBlend::evaluate(const Pose& T_model_body, const Budget& budget,
                 result.load.recomputed_fraction =
                     (m * lower.recomputed_fraction + n * upper.recomputed_fraction) / (m + n);
             }
-        } else if (budget.deadline.passed()) {
-            result.status = StepStatus::out_of_time;  // complete, but too late
         }
+        if (late || budget.deadline.passed()) result.status = StepStatus::out_of_time;
+        if (late) result.load.work_done = result.load.recomputed_fraction;
     }
     result.load.cost = Monotonic::now() - begin;
     return result;

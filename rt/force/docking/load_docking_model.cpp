@@ -1,4 +1,4 @@
-// A baked docking scene becomes a force model.
+// Makes the force model of a baked docking scene.
 #include <string>
 
 #include "ipc/base/error.hpp"

@@ -1,6 +1,6 @@
-// Why motion and not time: a body that rests has no stale sums, however old they are, and one that sets off,
-// turns round or is fast is judged by where it is. Between two poses the point that moves most moves by at
-// most |dp| + 2 r sin(angle / 2), r its distance from the body's origin.
+// Staleness depends on motion, not on time: at rest old sums stay exact, and during motion only the distance from
+// the pose of the sum counts. Between two poses, every point within r of the body's origin moves by at most
+// |dp| + 2 r sin(angle / 2).
 #include "rt/force/docking/partial_sums.hpp"
 
 #include <algorithm>
@@ -10,11 +10,11 @@ namespace tact {
 
 namespace {
 
-// Points between two looks at the clock: some 25 us here.
+// Points between two readings of the clock: about 25 us.
 constexpr std::size_t kChunk = 2048;
-// Less motion than this is lost in the rounding of the sums: nothing is learned from it.
+// Smaller motion is below the rounding of the sums and does not update the slope.
 constexpr double kStillVoxels = 1e-4;
-// What the slope keeps at each renewal; a peak is remembered for some hundred of them.
+// Decay of the slope per renewal; a peak lasts for about a hundred renewals.
 constexpr double kSlopeKept = 0.99;
 
 void add(DensitySums& to, const DensitySums& part) {
@@ -40,7 +40,7 @@ bool sum_until(const DensityMap& map, const PointsView& points, const Pose& T_mo
 }
 
 double PartialSums::motion_m(const Pose& from, const Pose& to) const noexcept {
-    // |q1 - q2| = 2 sin(angle / 4), of the nearer of the two quaternions of a rotation.
+    // |q1 - q2| = 2 sin(angle / 4), for the nearer of q and -q.
     const double apart =
         std::min((to.q.coeffs() - from.q.coeffs()).norm(), (to.q.coeffs() + from.q.coeffs()).norm());
     return (to.p_m - from.p_m).norm() + 2.0 * points_->radius_m * apart;
@@ -64,15 +64,19 @@ PartialSums::Result PartialSums::step(const DensityMap& map, const PointSet& poi
         Slice& slice = slices_[k];
         const double moved_m = slice.made ? motion_m(slice.made_at, T_model_body) : 0.0;
         const double most = slice.slope < 0.0 ? kStillVoxels : kFarthestVoxels;
-        if (turn >= due && slice.made && moved_m <= most * voxel_m) {
-            result.stale += kMargin * std::max(slice.slope, 0.0) * moved_m;
-            continue;
-        }
+        const bool near = slice.made && moved_m <= most * voxel_m;
         const std::size_t begin = k * n / kSlices, end = (k + 1) * n / kSlices;
         DensitySums sums;
-        if (!sum_until(map, points.view(begin, end - begin), T_model_body, deadline, sums)) {
+        const bool due_now = turn < due || !near;
+        if (due_now && !result.late)
+            result.late = !sum_until(map, points.view(begin, end - begin), T_model_body, deadline, sums);
+        if (due_now && result.late && !near) {
             result.complete = false;
             break;
+        }
+        if (!due_now || result.late) {
+            result.stale += kMargin * std::max(slice.slope, 0.0) * moved_m;
+            continue;
         }
         summed += end - begin;
         if (moved_m > kStillVoxels * voxel_m)
@@ -83,7 +87,7 @@ PartialSums::Result PartialSums::step(const DensityMap& map, const PointSet& poi
         slice.made = true;
         if (turn < due) next_ = (k + 1) % kSlices;
     }
-    for (const Slice& slice : slices_) add(result.sums, slice.sums);  // in one order, whoever was renewed
+    for (const Slice& slice : slices_) add(result.sums, slice.sums);  // fixed order: runs repeat exactly
     result.recomputed_fraction = static_cast<float>(static_cast<double>(summed) / static_cast<double>(n));
     return result;
 }

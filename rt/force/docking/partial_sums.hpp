@@ -1,16 +1,17 @@
-// The sums of a big level in slices, so that a step may do a share of the work anew and use older sums for
-// the rest. What is given up is freshness, not points: a share that changes moves nothing.
+// Sums a large level in slices. A step recomputes a fraction of the slices and reuses earlier sums for the rest.
+// All points always count, so a change of the fraction causes no step of the force.
 //
-// Work      in proportion to the share; slices are renewed in turn, so with any share each of them is at most
-//           kSlices - 1 steps old. As a step with less to do is over sooner, the oldest sum is hardly older
-//           than the time that all of them take.
-// Whole     with share 1; and slice by slice, whatever the share, where a sum says nothing: of another level
-//           or density, never made, or made more than kFarthestVoxels of motion ago. A sum is a function of
-//           these and of the place, so no grip, order or reset need be told.
-// Stale     what the old sums may be off by: the motion since each was made, times the most that the sum
-//           changed per motion lately, times kMargin, added up. An estimate of a bound: in a direction in
-//           which the body has not moved lately the density may be steeper.
-// Frame     gradients in sigma per model metre, model axes; motion is that of the point that moves most
+// Work      proportional to the fraction; slices are renewed in turn, so each is at most kSlices - 1 steps old.
+//           Steps with less work are shorter, so the oldest sum is hardly older than a whole step takes.
+// Late      after the deadline, slices with a sum near enough (kFarthestVoxels) are not recomputed: the step is
+//           late but includes all points. Without such sums it is incomplete.
+// Forced    a slice is recomputed at any fraction if its sum is of another level or map, does not exist, or is
+//           more than kFarthestVoxels of motion old. A sum depends on nothing else, so grips, orders and resets
+//           need no call.
+// Stale     estimated error of reused sums: motion since each sum, times its largest recent change per motion,
+//           times kMargin, added up. The density may be steeper in a direction without recent motion, so this is
+//           no strict bound.
+// Frame     gradients in sigma per model metre, model axes; motion is that of the fastest-moving point
 // Thread    one; no allocation
 #pragma once
 
@@ -27,18 +28,19 @@ namespace tact {
 class PartialSums {
 public:
     static constexpr std::size_t kSlices = 8;
-    static constexpr std::size_t kPointsMin = 2048;  // below, a step costs little beside the cycle around it
+    static constexpr std::size_t kPointsMin = 2048;  // smaller levels cost little beside the rest of a cycle
     static constexpr double kFarthestVoxels = 0.5;
     static constexpr double kMargin = 2.0;
 
     struct Result {
         DensitySums sums{};
-        double stale = 0.0;                // of the gradient
-        float recomputed_fraction = 1.0F;  // of the points, summed in this step
-        bool complete = true;              // else the deadline came first; the slices made by then are kept
+        double stale = 0.0;                // estimated error of the gradient
+        float recomputed_fraction = 1.0F;  // fraction of the points summed in this step
+        bool complete = true;              // false: the deadline passed first; finished slices are kept
+        bool late = false;                 // the deadline passed before all due slices were summed
     };
 
-    // share in (0, 1]; anything else is 1. The pose finite.
+    // work_fraction in (0, 1]; other values count as 1. The pose must be finite.
     Result step(const DensityMap& map, const PointSet& points, const Pose& T_model_body, double work_fraction,
                 const Deadline& deadline) noexcept TACT_RT;
 
@@ -46,7 +48,7 @@ private:
     struct Slice {
         DensitySums sums{};
         Pose made_at{};
-        double slope = -1.0;  // of the gradient per motion, lately; negative: not known
+        double slope = -1.0;  // recent change of the gradient per motion; negative: unknown
         bool made = false;
     };
     [[nodiscard]] double motion_m(const Pose& from, const Pose& to) const noexcept TACT_RT;
@@ -57,7 +59,7 @@ private:
     const PointSet* points_ = nullptr;
 };
 
-// In pieces, with a look at the clock before each; false: the deadline came first.
+// Sums in chunks and checks the deadline before each; false: the deadline passed first.
 bool sum_until(const DensityMap& map, const PointsView& points, const Pose& T_model_body,
                const Deadline& deadline, DensitySums& sums) noexcept TACT_RT;
 

@@ -14,7 +14,7 @@ namespace {
 
 constexpr float kFarthestM = 1e-3F;  // ten million angstrom: no molecule is wider
 
-// Twenty bits per axis, interleaved.
+// Interleaves twenty bits per axis.
 std::uint64_t morton(const std::array<std::uint32_t, 3>& cell) {
     std::uint64_t code = 0;
     for (int bit = 19; bit >= 0; --bit) {
@@ -26,17 +26,19 @@ std::uint64_t morton(const std::array<std::uint32_t, 3>& cell) {
 void check(const PointsView& p, const std::string& name) {
     const std::string attempt = "reading the points of '" + name + "'";
     const std::size_t n = p.x.size();
-    if (n == 0) throw StartupError(attempt, "there are none", "use a structure with atoms");
+    if (n == 0) throw StartupError(attempt, "there are no points", "use a structure with atoms");
     if (p.y.size() != n || p.z.size() != n || p.weight.size() != n) {
-        throw StartupError(attempt, "their coordinates and weights differ in number", "bake the scene again");
+        throw StartupError(attempt, "the numbers of coordinates and weights differ", "bake the scene again");
     }
     double total = 0.0;
     for (std::size_t i = 0; i < n; ++i) {
         const float farthest = std::max({std::abs(p.x[i]), std::abs(p.y[i]), std::abs(p.z[i])});
         const bool placed = std::isfinite(p.x[i]) && std::isfinite(p.y[i]) && std::isfinite(p.z[i]);
         if (!placed || farthest > kFarthestM) {
-            throw StartupError(attempt, "point " + std::to_string(i) + " is not finite or out of all range",
-                               "bake the scene again");
+            throw StartupError(
+                attempt,
+                "point " + std::to_string(i) + " is not finite or farther than a millimetre from the origin",
+                "bake the scene again");
         }
         if (!(p.weight[i] >= 0.0F && p.weight[i] <= 1.0F)) {
             throw StartupError(attempt, "the weight of point " + std::to_string(i) + " is not in [0, 1]",
@@ -45,7 +47,7 @@ void check(const PointsView& p, const std::string& name) {
         total += static_cast<double>(p.weight[i]);
     }
     if (std::abs(total - 1.0) > 1e-3) {
-        throw StartupError(attempt, "their weights sum to " + std::to_string(total) + " instead of 1",
+        throw StartupError(attempt, "the weights sum to " + std::to_string(total) + " instead of 1",
                            "bake the scene again");
     }
 }

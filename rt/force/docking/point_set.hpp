@@ -1,9 +1,9 @@
-// Weighted points of a body, stored in the order in which they are best summed.
+// Weighted points of a body, stored in an order that is fast to sum.
 //
 // Frame    body, metres. Weights sum to 1.
-// Order    along a Morton curve, so that neighbours in memory share cache lines of the map. The sum does not
+// Order    along a Morton curve, so that consecutive points share cache lines of the map. The sum does not
 //          depend on the order beyond single-precision rounding.
-// Fails by StartupError: points that are not finite, farther than a millimetre out, or without weight.
+// Fails by StartupError: no points, points that are not finite or farther out than a millimetre, invalid weights.
 #pragma once
 
 #include <string>
@@ -15,7 +15,7 @@ namespace tact {
 
 struct PointSet {
     std::vector<float> x_m, y_m, z_m, weight;
-    double radius_m = 0.0;  // of the point that is farthest from the origin
+    double radius_m = 0.0;  // distance of the farthest point from the origin
 
     [[nodiscard]] std::size_t size() const { return x_m.size(); }
     [[nodiscard]] PointsView view() const { return {x_m, y_m, z_m, weight}; }
@@ -26,7 +26,7 @@ struct PointSet {
     }
 };
 
-// name is of the structure, for the message.
+// name: of the structure, for error messages.
 PointSet make_point_set(const PointsView& points, const std::string& name);
 
 }  // namespace tact

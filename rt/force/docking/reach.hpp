@@ -1,4 +1,4 @@
-// Which poses of the tool and of bodies are taken for real.
+// Validity checks for poses of the tool and of bodies.
 //
 // Thread   any; constant time, no allocation.
 #pragma once
@@ -9,10 +9,10 @@
 
 namespace tact {
 
-// From the scene's centre, world axes: a hand, and a body, is never farther away.
+// Largest valid distance of a tool or body from the world origin.
 inline constexpr double kReachM = 10.0;
 
-// Finite, and with a rotation; it may have to be normalized.
+// True: finite, with a quaternion of about unit length that may need normalizing.
 [[nodiscard]] inline bool is_pose(const Pose& pose) noexcept TACT_RT {
     const double turn = pose.q.norm();
     return pose.finite() && turn > 0.9 && turn < 1.1;

@@ -1,4 +1,4 @@
-// A seeded place some way from another.
+// A random pose at a given distance and angle from another.
 //
 // Thread   any; no allocation.
 #pragma once
@@ -7,7 +7,7 @@
 
 namespace tact {
 
-// home, moved by offset_m in a random direction and turned by angle_rad about a random axis through its
+// Returns home moved by offset_m in a random direction and rotated by angle_rad about a random axis through its
 // origin.
 inline Pose start_pose(const Pose& home, double offset_m, double angle_rad, std::uint64_t seed) {
     SeededRandom random(seed);

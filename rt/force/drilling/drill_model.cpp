@@ -75,6 +75,7 @@ DrillModel::DrillModel(const SceneMeta& meta, DrillBone& bone, const DrillSettin
 }
 
 void DrillModel::drive(const ToolDrive& drive) noexcept {
+    ForceModel::drive(drive);
     driven_ = drive;
     turn_burr({.burr_rad_s = drive.on ? settings_.burr_rad_s : 0.0, .step_s = drive.step_s});
 }
@@ -225,7 +226,7 @@ StepResult DrillModel::step(const ToolState& tool, const Budget& budget) noexcep
     const DrillWork planned = expected(budget.fidelity);
     result.load.cost_predicted = drill_cost(planned);
     felt_ = {};
-    fade_.begin_step();
+    fade_.begin_step(drive_.step_s);
     if (asked_) erosion_.begin();
     if (!hand_is_there(tool.T_world_tool)) {
         fade_.cut();

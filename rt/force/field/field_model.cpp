@@ -1,6 +1,6 @@
-// Points of the ball: a low-discrepancy sequence of three dimensions (Roberts' generalization of the golden ratio, whose steps are the
-// powers of 1 / 1.22074...), mapped to the ball so that equal volumes get equally many points, each with its mirror image: every odd
-// moment is zero, so a field that is linear across the ball is averaged exactly at any level.
+// Points of the ball: a low-discrepancy sequence in three dimensions (Roberts' generalization of the golden ratio, with
+// steps that are powers of 1 / 1.22074...), mapped to the ball with uniform density. Each point has its mirror image, so
+// every odd moment is zero and any level averages a field that is linear across the ball exactly.
 #include "rt/force/field/field_model.hpp"
 
 #include <algorithm>
@@ -14,8 +14,8 @@ namespace {
 
 constexpr int kErrorPlaces = 512;
 constexpr double kErrorMargin = 1.25;
-constexpr double kReachM = 10.0;   // farther away is no place of a hand
-constexpr double kOnLevel = 1e-5;  // of the way to the next level
+constexpr double kReachM = 10.0;   // positions farther away are invalid
+constexpr double kOnLevel = 1e-5;  // tolerance of being on a level, as a fraction of a level's distance
 // ns, 2026-11-25, AVX-512 at 3.7 GHz.
 constexpr double kFieldStepNs = 100.0, kFieldPointNs = 8.0;
 
@@ -105,7 +105,7 @@ Vec3 FieldModel::force_n(const Level& level, const Vec3& at_model_m, std::size_t
     return (-field_.force_n_m_per_unit * field_.deviation) * sums.gradient;
 }
 
-// 1 inside the box, 0 from kFadeSteps outside of it on.
+// 1 inside the box, 0 beyond kFadeSteps outside of it.
 double FieldModel::inside(const Vec3& at_model_m) const noexcept {
     double outside = 0.0;
     for (Eigen::Index a = 0; a < 3; ++a)
@@ -118,7 +118,7 @@ double FieldModel::inside(const Vec3& at_model_m) const noexcept {
 StepResult FieldModel::step(const ToolState& tool, const Budget& budget) noexcept {
     const Instant begin = Monotonic::now();
     StepResult result;
-    fade_.begin_step();
+    fade_.begin_step(step_s());
     if (!tool.T_world_tool.finite() || tool.T_world_tool.p_m.cwiseAbs().maxCoeff() > kReachM ||
         tool.T_world_tool.q.norm() < 0.5) {
         fade_.cut();

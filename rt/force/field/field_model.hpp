@@ -1,11 +1,14 @@
-// A potential field on a grid, shown as the force on a charged ball: minus the gradient of the potential, averaged over the ball.
+// A potential field on a grid, rendered as the force on a charged ball: minus the gradient of the potential, averaged over
+// the ball.
 //
-// Force    F_world = -gain * mean over the ball of grad(phi), with the gain of the scene (ipc/scene/field). The potential between grid
-//          points is a tricubic B-spline (ipc/scene/density), so the force is continuous and, inside the box, conservative.
-// Knob     field.force: points of the ball at which the gradient is summed, 8 to 4096 in four levels, blended linearly between levels.
-//          At the floor, 8 points are summed: the direction is right, the average over a ball near a strong charge is coarse.
-// Error    of a level: the greatest difference from twice the points of the finest level, at 512 seeded places of the box, times 1.25
-// Outside  of the box the force fades to zero over four grid steps, where the potential is continued with the slope at its faces
+// Force    F_world = -gain * mean over the ball of grad(phi), with the gain of the scene (ipc/scene/field). A tricubic
+//          B-spline (ipc/scene/density) interpolates the potential, so the force is continuous and, inside the box,
+//          conservative.
+// Knob     field.force: number of points of the ball at which the gradient is summed, 8 to 4096 in four levels, blended
+//          linearly between levels. The floor of 8 points gives the right direction, but near a strong charge a coarse mean.
+// Error    of a level: 1.25 times the largest difference from a sum over twice the points of the finest level, at 512
+//          random positions (fixed seed) in the box
+// Outside  the box the force fades to zero over four grid steps; the potential continues there with the slope at the faces
 // Clutch   while it is held, the force fades out
 // Thread   servo; TACT_RT. Construction takes tens of milliseconds and may allocate
 #pragma once
@@ -40,7 +43,7 @@ public:
 
 private:
     struct Level {
-        std::vector<float> x, y, z, weight;  // of the ball, about its centre, model metres
+        std::vector<float> x, y, z, weight;  // points relative to the ball's centre, model metres
         double error_n = 0.0;
     };
     struct Plan {
@@ -62,7 +65,7 @@ private:
     ForceFade fade_;
 };
 
-// Throws StartupError where the scene is no field.
+// Throws StartupError if the scene is not a field.
 [[nodiscard]] std::unique_ptr<ForceModel> load_field_model(const SceneFile& scene);
 
 }  // namespace tact

@@ -8,10 +8,10 @@
 namespace tact {
 namespace {
 
-constexpr float kTurned = 0.02F;        // a smaller change of the fidelity is not followed
-constexpr double kStepsLookS = 3.4e-3;  // times the speed: how far a step of 1 ms may look (contact.cpp)
-constexpr float kLearns = 0.1F;         // of each turn that builds
-constexpr double kKeepsFrom = 0.2;      // of what is asked for: nearer to the border a newer surface is taken
+constexpr float kTurned = 0.02F;        // smaller changes of the fidelity are ignored
+constexpr double kStepsLookS = 3.4e-3;  // times the speed: search radius of a 1 ms step (contact.cpp)
+constexpr float kLearns = 0.1F;         // filter weight of each update that builds
+constexpr double kKeepsFrom = 0.2;      // fraction of the radius: with less margin, a newer surface is used
 
 RefinementSettings refine_settings(const AdaptiveSettings& s) {
     RefinementSettings r;
@@ -59,8 +59,8 @@ void AdaptiveSurface::set_filter(float fidelity, const FilterForm& form) noexcep
     refinement_.set_filter(form.filter(static_cast<float>(radius_m(fidelity))));
 }
 
-// Whether what was built last will do until the next turn and some more: it holds what a step may look at, from
-// here to half of the way that it was built for.
+// True if the last near surface still suffices: it contains the search radius of a step from here to half of the
+// look-ahead path.
 bool AdaptiveSurface::still_holds(const Vec3& tool_m, const Vec3& velocity_m_s) const noexcept {
     const double need_m = settings_.least_m + kStepsLookS * velocity_m_s.norm();
     const Vec3 half_way_m = 0.5 * settings_.look_ahead_s * velocity_m_s;

@@ -7,7 +7,7 @@
 namespace tact {
 namespace {
 
-constexpr double kTurnLearns = 0.05;  // of each turn of slow_update(): half of a tenth of a second
+constexpr double kTurnLearns = 0.05;  // filter weight of each slow update
 
 }  // namespace
 

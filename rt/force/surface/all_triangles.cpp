@@ -6,9 +6,9 @@
 namespace tact {
 namespace {
 
-constexpr double kBoundSlack = 1e-5;  // of distances in single precision
+constexpr double kBoundSlack = 1e-5;  // relative rounding of distances in single precision
 
-// see(first, lanes, looks): sixteen at a time. It goes on while that says so.
+// Calls see(first, lanes, queries) for sixteen triangles at a time, until it returns false.
 template <typename See>
 void query_all(const QueryKernel& kernel, QueryJob& job, std::uint32_t all, const See& see) noexcept {
     TriangleQueries seen;

@@ -1,4 +1,4 @@
-// Every triangle of a surface, one after the other: how mode off-brute finds them, for comparison with the tree.
+// Linear search over all triangles of a surface: mode off-brute, for comparison with the tree.
 //
 // Thread    any, TACT_RT.  Unit  metres of the model.
 #pragma once
@@ -14,10 +14,10 @@ class AllTriangles {
 public:
     explicit AllTriangles(const SurfaceMesh& mesh) : mesh_(mesh), kernel_(&best_query_kernel()) {}
 
-    // Those nearer than this, in their order. False: they are more than `out` takes.
+    // Finds the triangles nearer than radius_m, in index order. False: more than `out` holds.
     bool near(const Vec3& place_m, double radius_m, std::span<std::uint32_t> out,
               std::size_t& count) const noexcept TACT_RT;
-    // Nothing is nearer than this, which is at the most at_most_m.
+    // A lower bound on the distance of the surface, at most at_most_m.
     [[nodiscard]] double clearance_m(const Vec3& place_m, double at_most_m) const noexcept TACT_RT;
 
 private:

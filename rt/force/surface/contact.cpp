@@ -8,19 +8,19 @@
 namespace tact {
 namespace {
 
-constexpr double kCollectedMoves = 1.25;  // the collected ball reaches so many moves far
+constexpr double kCollectedMoves = 1.25;  // radius of the collected ball, in moves
 constexpr double kCollectedTooFar = 8.0;
 constexpr std::size_t kCollectedFew = 4096;
-constexpr double kBoundSlack = 1e-5;    // of distances in single precision
+constexpr double kBoundSlack = 1e-5;    // relative rounding of distances in single precision
 constexpr double kFollowedSteps = 1.5;  // a proxy on a slope travels farther than the goal
 constexpr double kNextMove = 0.3;
-constexpr double kGoesOn = 1.5;  // after a move that was cut, what was left of it
+constexpr double kGoesOn = 1.5;  // next reach after a cut move, in lengths of its remainder
 constexpr double kSlidesOn = 1.15;
 constexpr int kRounds = 4;
 constexpr double kRestingMargins = 0.02;
 constexpr double kNearerMargins = 0.05;
 constexpr double kTangentMargins = 0.25;
-constexpr std::uint32_t kSeatVisits = 4096;  // of the tree: some 100 us
+constexpr std::uint32_t kSeatVisits = 4096;  // tree nodes, about 100 us
 
 }  // namespace
 
@@ -42,7 +42,7 @@ double SurfaceContact::looks_m(const Vec3& goal_m) const noexcept {
 
 void SurfaceContact::use(const SurfaceMesh& mesh) noexcept { mesh_ = mesh; }
 
-// False: there are more than fit.
+// False: too many triangles.
 bool SurfaceContact::find(double radius_m) noexcept {
     if (settings_.brute) return all_.near(proxy_m_, radius_m, triangle_, collected_);
     std::size_t leaves = 0;
@@ -56,8 +56,8 @@ bool SurfaceContact::find(double radius_m) noexcept {
     return true;
 }
 
-// Triangles for moves of reach_m. Where they are too many the moves are made shorter; false: even the shortest
-// has too many.
+// Collects triangles for moves of reach_m, and shortens reach_m if there are too many. False: too many even for the
+// shortest move.
 bool SurfaceContact::collect(double& reach_m) noexcept {
     const double moved = (proxy_m_ - collected_at_m_).norm();
     const bool too_many = collected_ > kCollectedFew && collected_m_ - moved > kCollectedTooFar * reach_m;
@@ -78,8 +78,8 @@ bool SurfaceContact::collect(double& reach_m) noexcept {
     return false;
 }
 
-// The guards of all triangles that a move of reach_m can touch: shorter, where there are too many, and up to
-// most_m where that has no more than are looked at together.
+// Adds the half-spaces of all triangles that a move of reach_m can touch. Shortens reach_m if they are too many, and
+// extends it up to most_m if that adds no further batch of queries.
 void SurfaceContact::query(double& reach_m, double most_m, std::uint32_t& triangles) noexcept {
     QueryJob job = mesh_.query_job(proxy_m_);
     TriangleQueries seen;
@@ -126,12 +126,12 @@ void SurfaceContact::query(double& reach_m, double most_m, std::uint32_t& triang
     reach_m = 0.0;
 }
 
-// False: there is no room.
+// False: no room.
 bool SurfaceContact::half_space(std::uint32_t triangle, const TriangleQueries& seen,
                                 std::size_t lane) noexcept {
     const double radius = settings_.radius_m, margin = settings_.margin_m;
     const bool over = (seen.over >> lane & 1U) != 0;
-    // Out again by no more than a margin a move: what is inside is so by rounding, or was put there.
+    // Push out by at most one margin per move: a penetration comes from rounding or from seating.
     const double slack =
         std::max(static_cast<double>(seen.distance[lane]) - (over ? radius : radius - margin), -margin);
     const double height = static_cast<double>(seen.height[lane]) - radius;
@@ -139,8 +139,8 @@ bool SurfaceContact::half_space(std::uint32_t triangle, const TriangleQueries& s
                             !over && height >= 0.0);
 }
 
-// What holds the solution touches the ball there, and pushes as it was taken to: another move would find the same
-// place again. The triangles that do not hold it are no nearer than their guards say.
+// True if every active triangle touches the ball at the solution and its normal there equals the assumed one: another
+// move would find the same position. Inactive triangles are at least as far away as their half-spaces require.
 bool SurfaceContact::rests(const HalfSpaces::Solution& solution) const noexcept {
     if (!solution.exact) return false;
     const double most = kTangentMargins * settings_.margin_m;
@@ -163,13 +163,13 @@ bool SurfaceContact::rests(const HalfSpaces::Solution& solution) const noexcept 
     return true;
 }
 
-// Where friction leaves the proxy that would go to `free` without.
+// Applies friction to the frictionless solution `free`.
 HalfSpaces::Solution SurfaceContact::held_back(const HalfSpaces::Solution& free, const Vec3& goal_m,
                                                double tolerance_m) const noexcept {
     const Vec3 lift = free.move_m - goal_m;
     const double depth = lift.norm();
     if (!(depth > 0.0) || free.active_count == 0) return free;
-    // It falls freely on what it does not touch yet.
+    // No friction before contact.
     bool touches = false;
     for (std::size_t i = 0; i < free.active_count; ++i)
         touches |= free.active[i].slack_m <= 2.0 * settings_.margin_m + 0.01 * depth;
@@ -193,27 +193,25 @@ Contact SurfaceContact::follow(const Vec3& goal_m, std::uint32_t moves_max,
     double left = allowed;
     double least_m = std::numeric_limits<double>::infinity();  // from the goal, of the moves
     bool cut_before = false;
-    int rounds = 0;  // the last so many of them came no nearer than one before
-    // A slide goes on as it did: where it does not, a second move makes up for it.
+    int rounds = 0;  // number of last moves that came no nearer to the goal
+    // Expect the slide to continue at its speed; a second move covers the rest.
     double reach = std::max(std::min(step, kSlidesOn * moved_m_), settings_.margin_m);
     contact.state = ContactState::lagging;
-    moves_max = std::min(moves_max, kMovesMost);
     while (contact.moves < moves_max && contact.triangles < kTrianglesMost) {
         if (contact.moves > 0 && deadline.passed()) {
             contact.late = true;
             break;
         }
-        if (contact.moves > 0) after_m_[contact.moves - 1] = proxy_m_;
         ++contact.moves;
         const Vec3 request = goal_m - proxy_m_;
         double reach_now = std::min({reach, left, std::max(request.norm(), settings_.margin_m)});
         if (!collect(reach_now)) break;
-        // Where it rubs, the place without friction is found with the guards in reach, however the rest was collected.
+        // With friction, the frictionless position depends only on half-spaces in reach, not on what was collected.
         const bool rubs = settings_.friction > 0.0;
         const double room = collected_m_ - (proxy_m_ - collected_at_m_).norm();
         query(reach_now, rubs ? 0.0 : std::min({room, left, std::max(request.norm(), settings_.margin_m)}),
               contact.triangles);
-        // Single precision of a guard over the length of the request, and of the distances.
+        // Single precision of a half-space over the length of the request, and of the distances.
         const double tolerance = 3e-7 * (request.norm() + settings_.radius_m) + 1e-3 * settings_.margin_m;
         HalfSpaces::Solution free = half_spaces_.solve(request, tolerance);
         if (!free.exact) {
@@ -231,13 +229,13 @@ Contact SurfaceContact::follow(const Vec3& goal_m, std::uint32_t moves_max,
         const bool small = free.exact && length <= settings_.margin_m;
         const bool at_rest = !cut && (small || (rests(free) && (!rubs || rests(held))));
         if (cut) move *= reach_now / length;
-        // At rest it rests: what is left is rounding.
+        // Shorter moves are rounding noise; the proxy stays at rest.
         if (cut || length > kRestingMargins * settings_.margin_m) {
             proxy_m_ += move;
             way_m_ += move.norm();
         }
         left = allowed - (proxy_m_ - begin_m).norm();
-        // To and fro between two places: the limits over a facet and over its edge differ by a margin.
+        // Oscillation between two positions: the limits over a facet and over its edge differ by a margin.
         const bool to_and_fro = (proxy_m_ - two_ago_m).norm() <= settings_.margin_m;
         two_ago_m = one_ago_m;
         one_ago_m = proxy_m_;
@@ -249,13 +247,13 @@ Contact SurfaceContact::follow(const Vec3& goal_m, std::uint32_t moves_max,
             contact.state = ContactState::gliding;
             break;
         }
-        // In a hollow that the ball just fits all ways are as level as numbers are good: moves lead round in a ring.
+        // In a hollow that just fits the ball, no direction is better within rounding and the moves go round in a ring.
         const double gap_m = (goal_m - proxy_m_).norm();
         rounds = gap_m > least_m - kNearerMargins * settings_.margin_m ? rounds + 1 : 0;
         least_m = std::min(least_m, gap_m);
         if (rounds == kRounds) break;
-        // A move that was not cut is followed by a much shorter one, as only the curvature is left.
-        // Of one that was cut the rest is left; where that was cut too, it goes on to who knows where.
+        // After a complete move only the curvature remains, so the next move is much shorter. After a cut move its
+        // remainder is left; after two cut moves the distance is unknown.
         const double rest = kGoesOn * (length - reach_now), twice = 2.0 * reach_now;
         reach = std::max(!cut         ? kNextMove * length
                          : cut_before ? twice
@@ -263,19 +261,16 @@ Contact SurfaceContact::follow(const Vec3& goal_m, std::uint32_t moves_max,
                          settings_.margin_m);
         cut_before = cut;
     }
-    // What was used up on a ring was not lacking: it is where it should be, but for a margin. With fewer moves than there are
-    // at most, nobody knows that it is a ring before the last round.
-    const bool ring = rounds == kRounds || (rounds > 0 && contact.moves == kMovesMost);
-    if (contact.state == ContactState::lagging && ring && !contact.late)
+    // Moves spent on a ring do not count as lag: the proxy is at its goal within a margin.
+    if (contact.state == ContactState::lagging && rounds > 0 && !contact.late)
         contact.state = ContactState::settled;
     moved_m_ = (proxy_m_ - begin_m).norm();
     contact.proxy_m = proxy_m_;
-    contact.after_m = {after_m_.data(), std::max(contact.moves, 1U) - 1};
     return contact;
 }
 
-// Of the triangles that share the nearest point, the one that the point is highest above tells the side
-// (an edge's other triangle may be seen from behind).
+// Of the triangles that share the nearest point, the one that the point is highest above decides the side (the point
+// may be behind the other triangle of an edge).
 bool SurfaceContact::inside(const Vec3& point_m, const SurfacePoint& nearest) noexcept {
     const double reach = nearest.distance_m * (1.0 + 1e-5);
     std::uint32_t teller = nearest.triangle;
@@ -308,8 +303,7 @@ void SurfaceContact::seat(const Vec3& goal_m) noexcept {
     const double depth = out.norm();
     const Vec3 normal = depth > 0.0 ? Vec3(out / depth) : mesh_.facet_normal(nearest.triangle);
     proxy_m_ = nearest.point_m + settings_.radius_m * normal;
-    // Where other parts of the surface are nearer than the radius, away from them; what is left the guards
-    // push out.
+    // Move away from other parts of the surface nearer than the radius; the half-spaces remove the remaining overlap.
     for (int i = 0; i < 8; ++i) {
         nearest = mesh_.nearest(proxy_m_, settings_.radius_m, nearest.triangle, kSeatVisits);
         if (nearest.triangle == SurfacePoint::kNone || !(nearest.distance_m > 0.0)) break;

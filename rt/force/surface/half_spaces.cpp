@@ -12,8 +12,8 @@ using F4 [[gnu::vector_size(16)]] = float;
 using I4 [[gnu::vector_size(16)]] = std::int32_t;
 constexpr float kAlwaysKept = 1e30F;
 
-// Nearest to the goal on the planes n·x + s = 0 of at most three half-spaces: x = goal + sum of weight n. False
-// where the planes are nearly parallel or a weight is negative.
+// The point nearest to the goal on the planes n·x + s = 0 of at most three half-spaces: x = goal + sum of weight * n.
+// False if the planes are nearly parallel or a weight is negative.
 bool meet(const Vec3& goal_m, std::span<HalfSpaces::Active* const> planes, Vec3& move_m) noexcept {
     const auto lack = [&](std::size_t i) { return -(planes[i]->normal.dot(goal_m) + planes[i]->slack_m); };
     const auto normal = [&](std::size_t i) -> const Vec3& { return planes[i]->normal; };
@@ -26,7 +26,7 @@ bool meet(const Vec3& goal_m, std::span<HalfSpaces::Active* const> planes, Vec3&
         weight[0] = (lack(0) - g * lack(1)) / det;
         weight[1] = (lack(1) - g * lack(0)) / det;
     } else {
-        // The point where three planes meet, then the weights by the dual basis.
+        // The intersection of the three planes, then the weights by the dual basis.
         const Vec3 n12 = normal(1).cross(normal(2)), n20 = normal(2).cross(normal(0)),
                    n01 = normal(0).cross(normal(1));
         const double det = normal(0).dot(n12);
@@ -49,7 +49,7 @@ bool HalfSpaces::add(std::uint32_t triangle, const TriangleQueries& query, std::
                      float near_slack_m, float facet_slack_m, bool facet_holds) noexcept {
     if (count_ == kMax) return false;
     const std::size_t i = count_++;
-    // They are gone through by fours: behind the last are such as are kept by every move.
+    // The search works in blocks of four: pad the block with half-spaces that every move satisfies.
     for (std::size_t k = i + 1; i % 4 == 0 && k < i + 4; ++k) {
         for (const Row r : {near_x, near_y, near_z, facet_x, facet_y, facet_z, facet_s}) row(r)[k] = 0.0F;
         row(near_s)[k] = kAlwaysKept;
@@ -82,7 +82,7 @@ std::size_t HalfSpaces::most_violated(const Vec3& move_m, double& value) const n
         const auto facet = load(facet_x) * x + load(facet_y) * y + load(facet_z) * z + load(facet_s);
         return near > facet ? near : facet;
     };
-    // g++ leaves a loop for the least and its place as it is: four lanes by hand.
+    // g++ does not vectorize a minimum with its index: four lanes by hand.
     F4 least4 = F4{} + 1e30F;
     I4 at4{};
     I4 here{0, 1, 2, 3};
@@ -129,7 +129,7 @@ HalfSpaces::Active HalfSpaces::asked_least(std::size_t index, const Vec3& move_m
     return near.normal.dot(move_m) + near.slack_m >= facet.normal.dot(move_m) + facet.slack_m ? near : facet;
 }
 
-// The largest share of a move, at most 1, at whose end every guard is kept.
+// The largest fraction of a move, at most 1, whose end satisfies every half-space.
 double HalfSpaces::free_share(const Vec3& move_m) const noexcept {
     double share = 1.0;
     for (std::size_t i = 0; i < count_; ++i) {
@@ -146,9 +146,9 @@ double HalfSpaces::free_share(const Vec3& move_m) const noexcept {
     return share;
 }
 
-// A guard that holds the solution although its other half-space is kept there was taken by the wrong one: far
-// from the surface, where the search begins, that one asked less. It is turned to the other, as long as that
-// leads nearer to the goal.
+// If a triangle is active although its other half-space is satisfied, the search chose the wrong one of the two: it was
+// less violated far from the surface, where the search starts. Switch to the other one while this comes nearer to
+// the goal.
 HalfSpaces::Solution HalfSpaces::solve(const Vec3& goal_m, double tolerance_m) const noexcept {
     std::array<Active, kTurnsMax> turned;
     std::size_t turns = 0;
@@ -182,8 +182,8 @@ HalfSpaces::Solution HalfSpaces::solve_with(const Vec3& goal_m, double tolerance
         double value = 0.0;
         const std::size_t worst = most_violated(s.move_m, value);
         if (value >= -tolerance_m) return s;
-        // The optimum under what is active and the new one, which has to be active too: the only choice of
-        // them with weights of one sign that keeps the others.
+        // The optimum under the active half-spaces and the new one, which has to be active: the only subset with
+        // non-negative weights that satisfies the others.
         std::array<Active, 4> all;
         const std::size_t before = s.active_count;
         for (std::size_t i = 0; i < before; ++i) all[i] = s.active[i];

@@ -1,16 +1,16 @@
-// What keeps a proxy off a surface for one move: half-spaces, and the nearest place to a goal inside them.
+// Half-space constraints that keep the proxy off a surface during one move, and the point nearest to a goal inside them.
 //
-// Sound    Let a ball of radius r about c be free of a triangle. A half-space n·x + s >= 0 (x from c, n unit)
-//          in which all places of the centre are free suffices against that triangle, and so does any other
-//          one. Each triangle brings two: away from its nearest point (its distance is a convex function of x,
-//          and n its slope), and over its own plane. A move whose end is, for every triangle, inside one of its
-//          two is free all along, as its beginning is inside both. No sweep is needed.
-// Solve    the point nearest to the goal under the half-spaces found necessary: an active set of at most
-//          three, to which the most violated triangle is added, by the one of its two that asks less, until
-//          none is violated. The distance to the goal rises with each, so it ends; kRoundsMax is the net. Then
-//          guards that hold by the wrong one of their two are turned round, as long as that leads nearer.
-// Unit     metres of the model; single precision about the proxy.
-// Thread   made anywhere (it allocates); then servo, TACT_RT.
+// Sound    Let a ball of radius r about c be free of a triangle. Any half-space n·x + s >= 0 (x relative to c, n unit) of
+//          collision-free centre positions suffices for that triangle. Each triangle has two: away from its nearest
+//          point (the distance is a convex function of x with slope n), and above its plane. If the end of a move is
+//          inside at least one of the two for every triangle, the whole move is free, because its start is inside
+//          both. No sweep is needed.
+// Solve    finds the point nearest to the goal by an active set of at most three half-spaces. Each round adds the less
+//          violated half-space of the most violated triangle, until none is violated. The distance to the goal grows
+//          in each round, so it terminates; kRoundsMax is a safeguard. Then active triangles whose other half-space
+//          is satisfied are switched to that one, as long as this brings the solution nearer to the goal.
+// Unit     metres of the model; single precision relative to the proxy.
+// Thread   constructed anywhere (allocates); then servo, TACT_RT.
 #pragma once
 
 #include <array>
@@ -32,16 +32,17 @@ public:
 
     struct Active {
         Vec3 normal = Vec3::Zero();
-        double slack_m = 0.0;   // how far the proxy may go against the normal
-        double weight_m = 0.0;  // >= 0; the sum of weight times normal leads from the goal to the solution
+        double slack_m = 0.0;   // allowed displacement of the proxy against the normal
+        double weight_m = 0.0;  // >= 0; solution = goal + sum of weight_m * normal
         std::uint32_t half_space = 0;
-        bool facet = false;  // which of its two
+        bool facet = false;  // false: nearest point, true: plane
     };
     struct Solution {
         Vec3 move_m = Vec3::Zero();  // from the proxy
         std::array<Active, 3> active;
         std::size_t active_count = 0;
-        bool exact = true;  // false: numbers or rounds ran out, and the move was shortened until it is free
+        bool exact =
+            true;  // false: rounding or kRoundsMax ended the search; the move was shortened until free
     };
 
     HalfSpaces() : float_(std::size_t{8} * kRow), triangle_(kMax) {}
@@ -51,16 +52,16 @@ public:
     [[nodiscard]] std::uint32_t triangle(std::size_t half_space) const noexcept TACT_RT {
         return triangle_[half_space];
     }
-    // near_slack_m may be negative: then the proxy is to be pushed out. False: there is no room.
+    // A negative near_slack_m pushes the proxy out. False: no room.
     bool add(std::uint32_t triangle, const TriangleQueries& query, std::size_t lane, float near_slack_m,
              float facet_slack_m, bool facet_holds) noexcept TACT_RT;
-    // Nothing is pushed out any more: staying is allowed by every guard.
+    // Sets negative slacks to zero, so that every half-space permits a zero move.
     void allow_staying() noexcept TACT_RT;
-    // goal_m: from the proxy. tolerance_m: of a guard that counts as kept.
+    // goal_m: relative to the proxy. tolerance_m: violation up to which a half-space counts as satisfied.
     [[nodiscard]] Solution solve(const Vec3& goal_m, double tolerance_m) const noexcept TACT_RT;
 
 private:
-    // A cache line more, so that the rows of one guard do not fall on the same lines of the cache.
+    // One extra cache line per row, so that the rows of one half-space do not map to the same cache set.
     static constexpr std::size_t kRow = kMax + 16;
     enum Row : std::size_t { near_x, near_y, near_z, near_s, facet_x, facet_y, facet_z, facet_s };
     [[nodiscard]] float* row(Row r) noexcept { return float_.data() + r * kRow; }

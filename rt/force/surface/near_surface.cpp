@@ -38,11 +38,11 @@ struct NearSurface::Builder {
     std::uint32_t made = 0;
     bool room = true;
 
-    // A bit for each child that reaches into the box.
+    // One bit per child that overlaps the box.
     [[nodiscard]] unsigned reaching(const SurfaceNode& node) const noexcept {
         unsigned mask = 0;
         for (std::size_t k = 0; k < 4; ++k) {
-            unsigned in = 1;  // a child that is not there has an empty box
+            unsigned in = 1;  // missing children have an empty box
             for (std::size_t axis = 0; axis < 3; ++axis)
                 in &= static_cast<unsigned>(node.low_m[axis][k] <= high_m[axis]) &
                       static_cast<unsigned>(node.high_m[axis][k] >= low_m[axis]);
@@ -50,7 +50,7 @@ struct NearSurface::Builder {
         }
         return mask;
     }
-    // What holds all of a child that is in the box: its only child there, and so on.
+    // Skips nodes with a single child in the box.
     [[nodiscard]] Child reduced(Child child) const noexcept {
         while (!child.is_leaf()) {
             const unsigned mask = reaching(from[child.code()]);
@@ -59,7 +59,7 @@ struct NearSurface::Builder {
         }
         return child;
     }
-    // Depth first, as in the full tree. There is one place for it.
+    // Copies depth first, as in the full tree. Needs room for one node.
     std::uint32_t copy(const SurfaceNode& node) noexcept {
         const std::uint32_t place = made++;
         SurfaceNode copied = kEmpty;

@@ -1,9 +1,9 @@
-// The full mesh around the tool, found in a small tree of its own: what the contact asks instead of the whole tree.
+// The full mesh around the tool with a small tree of its own, which the contact searches instead of the full tree.
 //
-// Tree      of the one over the full mesh, what reaches into a box: the same leaves, so the same triangles. Where only one
-//           child of a node does, the node is left out.
-// Memory    128 bytes for each node that may be there, taken by the constructor.
-// Thread    build() on the thread that refines; then the servo reads. No allocation.
+// Tree      the part of the full tree that reaches into a box: same leaves, so same triangles. Nodes with only one
+//           child in the box are left out.
+// Memory    128 bytes per node of capacity, allocated by the constructor
+// Thread    build() on the refining thread; then the servo reads. No allocation.
 #pragma once
 
 #include <array>
@@ -18,8 +18,8 @@ class NearSurface {
 public:
     NearSurface() = default;
     explicit NearSurface(std::uint32_t nodes_max) : node_(nodes_max) {}
-    // Every triangle whose own box reaches into this one is there. False: there are more than fit, and it holds
-    // nothing. version: rises from build to build, from 1.
+    // Collects every triangle whose bounding box overlaps the given box. False: too many; the surface is then empty.
+    // version: increases from build to build, from 1.
     bool build(const SurfaceMesh& full, const std::array<float, 3>& low_m, const std::array<float, 3>& high_m,
                std::uint64_t version) noexcept;
 
@@ -27,7 +27,7 @@ public:
         return nodes_ > 0 && ((centre_m.array() - radius_m) >= low_m_.array()).all() &&
                ((centre_m.array() + radius_m) <= high_m_.array()).all();
     }
-    // Of what holds something.
+    // Only if not empty.
     [[nodiscard]] const SurfaceMesh& mesh() const noexcept TACT_RT { return mesh_; }
     [[nodiscard]] std::uint64_t version() const noexcept TACT_RT { return version_; }
 

@@ -3,8 +3,8 @@
 namespace tact {
 namespace {
 
-// Cosines between the normal of a triangle and the interpolated one: shaded wholly from the first (20 degrees),
-// not at all below the second (40 degrees).
+// Cosines of the angle between facet normal and interpolated normal: full shading above the first (20 degrees), none
+// below the second (40 degrees).
 constexpr double kShadedFrom = 0.940, kShadedTo = 0.766;
 
 double shaded_share(double cosine) noexcept {
@@ -17,7 +17,7 @@ Vec3 shaded_turn_m(const SurfaceMesh& mesh, std::uint32_t triangle, const Vec3& 
                    double weight_m) noexcept {
     Vec3 smooth = mesh.normal_at(mesh.point_of(triangle, proxy_m));
     Vec3 facet = mesh.facet_normal(triangle);
-    if (facet.dot(normal) < 0.0) {  // felt from behind
+    if (facet.dot(normal) < 0.0) {  // the tool is behind the facet
         smooth = -smooth;
         facet = -facet;
     }

@@ -1,12 +1,11 @@
-// Force shading: a smooth surface of flat triangles feels smooth, and an edge stays one.
+// Force shading: flat triangles of a smooth surface feel smooth, and real edges stay sharp.
 //
-// Turn     what holds the tool at a touched place pushes along the normal that is interpolated between the triangle's
-//          corners instead of its own, where both are less than 20 degrees apart; not at all where they are more than 40
-//          degrees apart, and by a share of it between.
-// Pace     other triangles may hold the tool in the next step, so the turn changes by glide_m a step, and by kTurnShare of
-//          what the way from the tool to the proxy changed by besides, as far as both together stay within kForceSteps
-//          times what the tool went, and two glides.
-// Unit     metres of the model: times the stiffness it is a force.  Thread  servo, TACT_RT.
+// Turn     The contact force of a triangle acts along the normal interpolated between its corners instead of the facet
+//          normal, if both are less than 20 degrees apart; shading fades out between 20 and 40 degrees.
+// Pace     Other triangles may be active in the next step, so the change of the turn per step is limited to lag_m plus
+//          kTurnShare of the change of the way (tool to proxy), as long as the changes of turn and way together stay
+//          within kForceSteps times the tool's displacement plus 2 lag_m.
+// Unit     metres of the model; times the stiffness, a force.  Thread  servo, TACT_RT.
 #pragma once
 
 #include <algorithm>
@@ -17,12 +16,12 @@
 
 namespace tact {
 
-// What a place adds to the way from the tool to the proxy. proxy_m: the centre of the ball there. normal: unit, towards
-// the tool, along which the triangle pushes by weight_m.
+// The shading correction of one contact, added to the way from the tool to the proxy. proxy_m: centre of the ball at the
+// contact. normal: unit, towards the tool. weight_m: of the contact along the normal.
 [[nodiscard]] Vec3 shaded_turn_m(const SurfaceMesh& mesh, std::uint32_t triangle, const Vec3& proxy_m,
                                  const Vec3& normal, double weight_m) noexcept TACT_RT;
 
-// Vec: three lengths, or a twist of six.
+// Vec: a 3-D vector, or a 6-D twist.
 template <class Vec>
 class PacedTurn {
 public:
@@ -33,7 +32,8 @@ public:
         turn_m_.setZero();
         way_m_.setZero();
     }
-    // wanted_m: the turn without a pace. way_m: from the tool to the proxy. gone_m: by the tool, since the last step.
+    // wanted_m: the turn before rate limiting. way_m: from the tool to the proxy. gone_m: displacement of the tool since
+    // the last step.
     const Vec& follow(const Vec& wanted_m, const Vec& way_m, double gone_m, double lag_m) noexcept TACT_RT {
         const double pulled = (way_m - way_m_).norm(), left = kForceSteps * gone_m + lag_m - pulled;
         const double most = lag_m + std::clamp(kTurnShare * pulled, 0.0, std::max(left, 0.0));

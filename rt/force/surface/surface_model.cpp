@@ -9,10 +9,7 @@
 namespace tact {
 namespace {
 
-constexpr double kFarM = 1e3;         // no hand is there
-constexpr double kForgetSizes = 3.0;  // on a rough sphere at 0.5 m/s, see the contract's cases
-// ns, 2026-11-25, AVX-512 at 3.7 GHz.
-constexpr double kTouchStepNs = 200.0, kTouchMoveNs = 250.0, kTouchTriangleNs = 4.0;
+constexpr double kFarM = 1e3;  // positions farther away are invalid
 
 bool tool_is_there(const Pose& pose) noexcept {
     const double turn = pose.q.squaredNorm();
@@ -22,7 +19,7 @@ bool tool_is_there(const Pose& pose) noexcept {
 ContactSettings contact_settings(const SceneMeta& meta, const SurfaceSettings& s) {
     check_surface_settings(s);
     const double radius = std::max(s.radius_m, SurfaceModel::kPointM);
-    // Half of a point's; of a ball a thousandth. Felt as some millinewtons where a facet ends.
+    // Half the radius of a point, a thousandth of that of a ball: a few millinewtons at the end of a facet.
     const double margin = std::min(0.5 * radius, std::max(1e-3 * radius, 0.5 * SurfaceModel::kPointM));
     const double lag = SurfaceModel::kLagN / s.stiffness_n_m;
     return {radius / meta.world_per_model, margin / meta.world_per_model, s.friction,
@@ -37,7 +34,7 @@ void check_surface_settings(const SurfaceSettings& s) {
             throw StartupError(
                 std::string("setting the ") + what + " of the tool",
                 std::to_string(value) + " is outside " + std::to_string(low) + " to " + std::to_string(high),
-                "give one inside");
+                "choose a value inside the range");
     };
     within("radius in m", s.radius_m, 0.0, 0.1);
     within("stiffness in N/m", s.stiffness_n_m, 1.0, 20000.0);
@@ -65,7 +62,7 @@ void SurfaceModel::use_full_surface() noexcept {
     used_ = 0;
 }
 
-// Before a step: what holds all that it may look at.
+// Before a step: selects the surface that contains the step's search radius.
 void SurfaceModel::choose_surface(const Vec3& goal_m, float fidelity) noexcept {
     if (adaptive_ == nullptr) return;
     if (adaptive_->around(solver_.proxy_m(), solver_.looks_m(goal_m))) {
@@ -86,24 +83,12 @@ KnobSpec SurfaceModel::knob() const noexcept {
 
 std::uint32_t SurfaceModel::items(float fidelity) const noexcept {
     return adaptive_ == nullptr
-               ? static_cast<std::uint32_t>(std::lround(lag_.mean_moves(moves(fidelity))))
+               ? moves(fidelity)
                : static_cast<std::uint32_t>(adaptive_->surface().predicted_triangles(fidelity));
 }
 
-PathLoad SurfaceModel::predict(float fidelity) const noexcept {
-    const std::uint32_t most = moves(fidelity);
-    PathLoad load;
-    load.items = items(fidelity);
-    load.cost_predicted = Duration(std::llround(
-        kTouchStepNs + lag_.moves(most) * (kTouchMoveNs + kTouchTriangleNs * lag_.triangles_per_move())));
-    const double newton = settings_.stiffness_n_m * meta_.world_per_model;
-    load.error = newton * 2.0 * solver_.settings().margin_m +
-                 std::min(newton * lag_.lag_m(most), 2.0 * settings_.force_n_max);
-    return load;
-}
-
 std::uint32_t SurfaceModel::moves(float fidelity) noexcept {
-    const float level = fidelity >= 0.0F ? std::min(fidelity, 1.0F) : 0.0F;  // not a number: the floor
+    const float level = fidelity >= 0.0F ? std::min(fidelity, 1.0F) : 0.0F;  // NaN: the floor
     return kMovesLeast +
            static_cast<std::uint32_t>(std::lround(level * static_cast<float>(kMovesMost - kMovesLeast)));
 }
@@ -167,24 +152,11 @@ Vec3 SurfaceModel::force_n(const ToolState& tool, const Vec3& goal_model_m, doub
     return std::clamp(settings_.stiffness_n_m * depth_m + damped, 0.0, settings_.force_n_max) * normal;
 }
 
-// A proxy that lagged may rest elsewhere than one that did not: in the cone of friction, or in another hollow. Both places are
-// as near to the tool as this one, or nearer. They meet where the proxy is free, or as the tool goes on by some ways of
-// the size of what holds them.
-void SurfaceModel::forget_lag(double gone_m, double depth_m) noexcept {
-    if (contact_.state == ContactState::lagging)
-        lagged_ = 1.0;
-    else if (contact_.planes == 0 && contact_.state == ContactState::settled)
-        lagged_ = 0.0;
-    else
-        lagged_ *= std::exp(-gone_m / (kForgetSizes * (solver_.settings().radius_m + depth_m)));
-}
-
 StepResult SurfaceModel::step(const ToolState& tool, const Budget& budget) noexcept {
     const Instant begin = Monotonic::now();
     StepResult result;
-    result.load = predict(budget.fidelity);
-    result.load.error = 0.0;
-    fade_.begin_step();
+    result.load.items = items(budget.fidelity);
+    fade_.begin_step(step_s());
     const bool valid = tool_is_there(tool.T_world_tool);
     const bool clutch = (tool.buttons & 1U) != 0;
     if (!valid) {
@@ -212,21 +184,12 @@ StepResult SurfaceModel::step(const ToolState& tool, const Budget& budget) noexc
             const double gone_m = (goal_m - solver_.goal_m()).norm();
             contact_ = solver_.follow(goal_m, hurried ? 1 : moves(budget.fidelity), budget.deadline);
             const bool on_time = !hurried && !contact_.late;
-            const double planned = lag_.moves(moves(budget.fidelity));
-            if (on_time) {
-                lag_.add(contact_, (contact_.proxy_m - goal_m).norm());
-            } else {
-                result.load.work_done = static_cast<float>(std::min(contact_.moves / planned, 1.0));
-            }
-            if (adaptive_ == nullptr) result.load.items = contact_.moves;
             if (on_time && contact_.state == ContactState::lagging) ++lagging_;
             if (!on_time || contact_.state == ContactState::lagging) result.status = StepStatus::out_of_time;
             const double newton = settings_.stiffness_n_m * meta_.world_per_model;
             const double pulled_n = newton * (contact_.proxy_m - goal_m).norm();
-            const double depth_m = (contact_.proxy_m - goal_m).norm();
-            forget_lag(gone_m, depth_m);
             result.load.error = contact_.state == ContactState::settled
-                                    ? 2.0 * newton * (solver_.settings().margin_m + lagged_ * depth_m)
+                                    ? 2.0 * newton * solver_.settings().margin_m
                                     : 2.0 * std::min(pulled_n, settings_.force_n_max);
             result.wrench_world = fade_.show({fade_.gain() * force_n(tool, goal_m, gone_m), Vec3::Zero()});
             if (pulled_n > kLostLimits * settings_.force_n_max) {
@@ -249,7 +212,7 @@ StepResult SurfaceModel::step(const ToolState& tool, const Budget& budget) noexc
 std::unique_ptr<SurfaceModel> load_surface_model(const SceneFile& scene, const SurfaceSettings& settings) {
     const SceneMeta meta = read_meta(scene);
     if (scene.count(SurfaceMesh::kTag) == 0)
-        throw StartupError("loading '" + scene.name() + "'", "it is not a surface",
+        throw StartupError("loading '" + scene.name() + "'", "the scene is not a surface",
                            "bake one with tact-prep touch MESH -o SCENE");
     const SurfaceMesh mesh = read_surface(scene);
     if (settings.mode != SurfaceMode::chr || scene.count({'F', 'R', 'S', 'T'}) == 0)

@@ -7,7 +7,7 @@
 
 namespace tact {
 
-// The solver and the topic number the same states.
+// The solver and the topic use the same numbers for the states.
 static_assert(static_cast<int>(ContactState::settled) == static_cast<int>(TouchState::settled) &&
               static_cast<int>(ContactState::gliding) == static_cast<int>(TouchState::gliding) &&
               static_cast<int>(ContactState::lagging) == static_cast<int>(TouchState::lagging));

@@ -1,4 +1,4 @@
-// What a model that touches a surface shows of it, and the topic that carries it.
+// The contact data that a surface model publishes, and its conversion to the topic.
 //
 // Frame   model, metres
 #pragma once
@@ -14,24 +14,24 @@
 
 namespace tact {
 
-// How fine the surface is around the tool, of models that refine it there.
+// Detail of the surface around the tool; only valid for models that refine it.
 struct SurfaceDetail {
     bool valid = false;
-    bool full = false;                      // within the radius all is as in the full mesh
+    bool full = false;                      // full detail within the radius
     double radius_m = 0.0;                  // of full detail
     DetailShape shape = DetailShape::bell;  // of the filter beyond it
     float width = 0.0F, error_far = 0.0F;   // of the filter, in radii
-    double deviation_m = 0.0;               // largest, of the surface beyond the radius from the full mesh
+    double deviation_m = 0.0;  // bound for the coarse part outside the radius, from the full mesh
     std::uint32_t vertices = 0, triangles = 0;  // active
     std::uint32_t near_triangles = 0;           // expected around the tool
-    double turn_s = 0.0,
-           turn_predicted_s = 0.0;  // of the slow update: filtered, and as predicted for the level
+    // Duration of a slow update, filtered, and its prediction for the level.
+    double turn_s = 0.0, turn_predicted_s = 0.0;
 };
 
 struct SurfaceTouch {
     Vec3 probe_m = Vec3::Zero(), proxy_m = Vec3::Zero();
     double radius_m = 0.0;
-    std::uint32_t planes = 0;                  // that hold the proxy
+    std::uint32_t planes = 0;                  // number of active contacts
     std::array<Vec3, kTouchPlanesMax> normal;  // unit, towards the proxy
     std::array<double, kTouchPlanesMax> push_n{};
     TouchState state = TouchState::settled;

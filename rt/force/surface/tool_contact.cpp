@@ -10,14 +10,15 @@ namespace {
 constexpr std::size_t kBeyondAtOnce = 48;
 constexpr int kMoveRounds = 12;
 constexpr double kGoneSteps = 1.5;   // a proxy on a slope travels farther than the goal
-constexpr double kLookedWays = 1.3;  // a look reaches so much farther than the way asks for
-constexpr double kAskedRooms = 4.0;  // a point with a bound of so many ways is asked before it is looked at
-constexpr double kFirstMoves = 2.0;  // the first move of a step is at most so many of the last step's longest
-constexpr double kGrows = 4.0;       // after a move that was cut
-constexpr double kNextMoves = 3.0;   // after one that was not
-constexpr double kShrinks = 0.5;     // where there was no room for its guards
+constexpr double kLookedWays = 1.3;  // reach of a triangle query, in displacements of the point
+constexpr double kAskedRooms =
+    4.0;  // points with a bound above this many displacements get a cheap query first
+constexpr double kFirstMoves = 2.0;  // longest first move of a step, in longest moves of the last step
+constexpr double kGrows = 4.0;       // growth of the longest move after a cut move
+constexpr double kNextMoves = 3.0;   // longest move after an uncut move, in lengths of that move
+constexpr double kShrinks = 0.5;     // factor after a move without room for its half-spaces
 constexpr double kLeastMargins = 8.0;
-constexpr double kRestingShare = 0.02;  // of a margin: what is left is rounding
+constexpr double kRestingShare = 0.02;  // fraction of a margin; shorter moves are rounding noise
 
 Vec3 linear(const Vec6& y) { return y.head<3>(); }
 
@@ -48,7 +49,8 @@ void ToolContact::seat(const Pose& goal) noexcept {
     seating_ = kSeatingMost;
 }
 
-// The guards of all triangles that a ball touches within reach_m; shorter, where there are too many.
+// Adds the half-spaces of all triangles that a point's ball can touch within reach_m; shortens the reach if there are too
+// many.
 bool ToolContact::query(std::uint32_t point, double reach_m, ToolTouch& touch) noexcept {
     const Vec3 place = points_.place_m(point);
     const Eigen::Vector3f lever = points_.lever_m(point) / static_cast<float>(points_.gyration_m());
@@ -72,7 +74,7 @@ bool ToolContact::query(std::uint32_t point, double reach_m, ToolTouch& touch) n
                 const double distance = static_cast<double>(seen.distance[lane]),
                              height = static_cast<double>(seen.height[lane]) - ball;
                 const bool over = (seen.over >> lane & 1U) != 0;
-                // Out again by no more than a margin a move.
+                // Push out by at most one margin per move.
                 const double slack = std::max(distance - (over ? ball : edge), -settings_.margin_m);
                 if (!half_spaces_.add(point, list.triangle[first + lane], lever, seen, lane,
                                       static_cast<float>(slack), static_cast<float>(height),
@@ -91,7 +93,7 @@ Vec6 ToolContact::held_back(const TwistHalfSpaces::Solution& free, const Vec6& g
     const Vec6 lift = free.move_m - goal_m;
     const double depth = lift.norm();
     if (!(depth > 0.0) || free.active_count == 0) return free.move_m;
-    // It falls freely on what it does not touch yet.
+    // No friction before contact.
     bool touches = false;
     for (std::size_t i = 0; i < free.active_count; ++i)
         touches |= free.active[i].slack_m <= 2.0 * settings_.margin_m + 0.01 * depth;
@@ -125,7 +127,7 @@ ToolContact::Move ToolContact::find_move(const Vec6& request, double left_m, Too
                                   : std::max(kNextMoves * move.y.norm(), kLeastMargins * settings_.margin_m);
             return move;
         }
-        // Of triangles near a way there are as many as its square.
+        // The number of triangles in reach grows with the square of the move's length.
         longest_m_ = kShrinks * tried_m;
         if (longest_m_ < settings_.margin_m || touch.late || touch.looked >= kLooksMost) return move;
     }
@@ -145,7 +147,7 @@ ToolContact::Move ToolContact::find_move_within(const Vec6& request, double left
     for (std::size_t i = 0; i < held_count_ && room; ++i) {
         if (points_.is_awake(held_[i])) room = query(held_[i], expected, touch);
     }
-    // Single precision of a guard over the length of the request.
+    // Single precision of a half-space over the length of the request.
     const double tolerance = 6e-7 * (request.norm() + settings_.ball_m) + 1e-3 * settings_.margin_m;
     TwistHalfSpaces::Solution free = TwistHalfSpaces::fresh(request);
     Move move;
@@ -177,7 +179,7 @@ ToolContact::Move ToolContact::find_move_within(const Vec6& request, double left
             const std::uint32_t i = beyond_[k];
             if (touch.looked >= kLooksMost || touch.asked >= kQueriesMost) break;
             const double way = points_.way_m(i, v, w);
-            // What was far when it was asked is asked again; what is near is looked at.
+            // Update the distance bound of far points; query triangles only for near ones.
             if (points_.asked_m(i) > kAskedRooms * way + settings_.ball_m) {
                 ++touch.asked;
                 points_.ask(i, way);
@@ -187,7 +189,7 @@ ToolContact::Move ToolContact::find_move_within(const Vec6& request, double left
         }
     }
     move.full = !room;
-    // Only as far as is known to be free.
+    // Move only as far as known to be free.
     const auto [v, w] = twist(move.y);
     const double share = points_.share_in_room(v, w);
     if (share < 1.0) {
@@ -256,7 +258,7 @@ ToolTouch ToolContact::follow(const Pose& goal, std::uint32_t points, std::uint3
         }
     }
     if (touch.state == ContactState::settled) seating_ = 0;
-    last_move_m_ = gone;  // the next step's first one
+    last_move_m_ = gone;  // for the first move of the next step
     touch.adaptive = near != nullptr && !lists_.elsewhere();
     touch.T_model_proxy = proxy_;
     return touch;

@@ -1,19 +1,18 @@
-// A rigid body that follows the hand in six degrees of freedom as far as a surface lets it: the proxy of a
-// tool given as a mesh.
+// The proxy of a mesh tool: a rigid body that follows the hand in six degrees of freedom as far as the surface allows.
 //
-// Model     Balls at the tool's points (touch_tool.hpp) stay free of every triangle. The proxy is the pose that
-//           is nearest to the goal, in the metric of twist_guards.hpp, along moves that are free all along. So
-//           k times the way from the goal to it is what the touched places push with, and k times the square of
-//           the radius of gyration times the turn is the torque of those forces about the hand's point.
-// Turns     A move turns by so little that the way of no point is off its tangent by more than margin_m.
-// Lazy      A move asks for a pose with the guards of the few points that held the last one; points that the
-//           answer takes farther than they are known to be free are looked at and bring their guards, until
-//           none is left. The others cost an addition.
-// Friction  as contact.hpp, in the same metric: the cone is one of the whole wrench.
-// Glide     as contact.hpp: in one step at the most 1.5 times as far as the goal, and glide_m more.
-// Lag       a step that used up its moves, queries or time leaves the proxy where it is free, nearer to the goal
-//           than before, and says so. No point goes where it is not known to be free; it cannot jam.
-// Unit      metres of the model.  Thread  made anywhere (it allocates); then servo, TACT_RT.
+// Model     Balls at the tool's points (touch_tool.hpp) stay free of every triangle. The proxy is the free pose nearest
+//           to the goal in the metric of twist_half_spaces.hpp, reached by moves that are free along their whole
+//           length. So k times the displacement from goal to proxy is the sum of the contact forces, and k times the
+//           squared radius of gyration times the rotation is their torque about the hand point.
+// Turns     A move rotates so little that no point leaves its tangent by more than margin_m.
+// Lazy      A move starts with the half-spaces of the few points active in the last move. Points that the solution moves
+//           beyond their known free distance are queried and add their half-spaces, until none is left. All other
+//           points cost one addition.
+// Friction  as in contact.hpp, in the same metric: one cone for the whole wrench.
+// Glide     as in contact.hpp: per step at most 1.5 times the goal's displacement, plus lag_m.
+// Lag       A step that runs out of moves, queries or time leaves the proxy at a free pose nearer to the goal and reports
+//           `lagging`. No point leaves its known free region, so the proxy cannot jam.
+// Unit      metres of the model.  Thread  constructed anywhere (allocates); then servo, TACT_RT.
 #pragma once
 
 #include <cstdint>
@@ -33,14 +32,14 @@ struct ToolContactSettings {
     double friction = 0.0;
     double lag_m = 0.0;  // > 0
     bool brute =
-        false;  // every triangle is looked at in every step, without the tree; not to seat or wake points
+        false;  // query every triangle in every step, without the tree; not for seating or waking points
 };
 
-// A place of the tool that holds it.
+// An active contact of the tool.
 struct TouchedPlace {
-    Vec3 lever_m = Vec3::Zero();  // from the hand's point
+    Vec3 lever_m = Vec3::Zero();  // from the hand point
     Vec3 normal = Vec3::Zero();   // towards the tool, unit
-    double weight_m = 0.0;        // times stiffness: the force there
+    double weight_m = 0.0;        // times stiffness: the contact force
     std::uint32_t point = 0, triangle = 0;
 };
 
@@ -48,7 +47,7 @@ struct ToolTouch {
     Pose T_model_proxy;
     std::array<TouchedPlace, 6> place;
     std::uint32_t places = 0;                        // 0: free
-    std::uint32_t moves = 0, looked = 0, asked = 0;  // points looked at, and queries of the tree besides
+    std::uint32_t moves = 0, looked = 0, asked = 0;  // moves, triangle queries, distance queries
     ContactState state = ContactState::settled;
     bool late = false;
     bool adaptive = false;  // all triangles were found on the adaptive surface
@@ -56,10 +55,11 @@ struct ToolTouch {
 
 class ToolContact {
 public:
-    static constexpr std::uint32_t kLooksMost = 320;    // of a step
-    static constexpr std::uint32_t kQueriesMost = 320;  // of a step, those that wake points not counted
-    static constexpr std::uint32_t kWakeQueries = 24;   // of a step
-    static constexpr std::uint32_t kSeatQueries = 96;   // of a step, until every point was tried once
+    // Limits per step.
+    static constexpr std::uint32_t kLooksMost = 320;    // triangle queries
+    static constexpr std::uint32_t kQueriesMost = 320;  // distance queries, except those that wake points
+    static constexpr std::uint32_t kWakeQueries = 24;   // queries that wake points
+    static constexpr std::uint32_t kSeatQueries = 96;   // the same, until every point was tried once
 
     ToolContact(const SurfaceMesh& mesh, const TouchTool& tool, const ToolContactSettings& settings);
 
@@ -68,27 +68,27 @@ public:
     [[nodiscard]] const Pose& proxy() const noexcept TACT_RT { return proxy_; }
     [[nodiscard]] const SurfaceMesh& mesh() const noexcept TACT_RT { return mesh_; }
     [[nodiscard]] const Pose& goal() const noexcept TACT_RT { return goal_; }
-    // From a pose to another: (way, radius of gyration times turn).
+    // Difference of two poses: (displacement, radius of gyration times rotation vector).
     [[nodiscard]] Vec6 way_m(const Pose& from, const Pose& to) const noexcept TACT_RT;
 
-    // The proxy begins where it is free all around and comes to the goal, or to rest on the surface, by steps of a
-    // kSeatSteps-th of the tool's reach; until then it is seating(), and nothing should be felt.
+    // Puts the proxy at a pose that is free all around. It then approaches the goal or the surface by 1 / kSeatSteps of
+    // the tool's reach per step; until it arrives, seating() is true and the force should be off.
     static constexpr double kSeatSteps = 30.0;
     static constexpr int kSeatingMost = 400;
     void seat(const Pose& goal) noexcept TACT_RT;
     [[nodiscard]] bool seating() const noexcept TACT_RT { return seating_ > 0; }
-    // near: of an adaptive surface, until this returns; may be null.
+    // near: of an adaptive surface, valid during the call; may be null.
     ToolTouch follow(const Pose& goal, std::uint32_t points, std::uint32_t moves_max,
                      const Deadline& deadline = {}, const NearSurface* near = nullptr) noexcept TACT_RT;
 
 private:
     struct Move {
         Vec6 y = Vec6::Zero();
-        bool cut = false;     // by what a move or a step may do at the most
-        bool short_ = false;  // by what is not known to be free
-        bool full = false;    // there was no room for all guards
+        bool cut = false;     // shortened to the maximum of a move or step
+        bool short_ = false;  // shortened to the region known to be free
+        bool full = false;    // no room for all half-spaces
     };
-    // As long as left_m, as longest_m_, and as there is room for its guards.
+    // Finds a move no longer than left_m and longest_m_ that has room for its half-spaces.
     Move find_move(const Vec6& request, double left_m, ToolTouch& touch,
                    const Deadline& deadline) noexcept TACT_RT;
     Move find_move_within(const Vec6& request, double left_m, ToolTouch& touch,
@@ -105,12 +105,12 @@ private:
     const QueryKernel* kernel_;
     ToolLists lists_;
     std::vector<std::uint32_t> beyond_;
-    std::array<std::uint32_t, 6> held_{};  // points that held the last move
+    std::array<std::uint32_t, 6> held_{};  // points active in the last move
     std::size_t held_count_ = 0;
     double turn_max_rad_;
     double last_move_m_ = 0.0;
-    double longest_m_ = 0.0;  // of the next move: what a longer one could touch would be looked at in vain
-    int seating_ = 0;         // steps that are left for it
+    double longest_m_ = 0.0;  // maximum length of the next move; a longer one would only waste queries
+    int seating_ = 0;         // steps left for seating
     Pose proxy_, goal_;
 };
 

@@ -1,13 +1,12 @@
-// The triangles about those points of a tool that are near a surface, kept from move to move: looking at them is
-// cheaper than finding them.
+// Cached triangle lists around the tool points near a surface: a query of a cached list is cheaper than a tree search.
 //
-// List      the triangles of all leaves whose boxes reach into a ball about where the point was; good as long as
-//           the ball that is asked for lies inside that one
-// Found     in the tree over the full mesh; of an adaptive surface's, where that holds the ball: the same leaves; or
-//           among all triangles (brute), anew in each step
-// Room      kLists lists of kEach triangles; the one not used for the longest goes. Where triangles are denser,
-//           they are found each time.
-// Unit      metres of the model.  Thread  made anywhere (it allocates); then servo, TACT_RT.
+// List      the triangles of all leaves whose boxes overlap a ball about the point; valid as long as the requested ball
+//           lies inside it
+// Found     in the tree over the full mesh, or in an adaptive surface's tree if that contains the ball (same leaves), or
+//           among all triangles (brute), then again in each step
+// Room      kLists lists of kEach triangles; the least recently used one is replaced. Denser triangles are searched each
+//           time.
+// Unit      metres of the model.  Thread  constructed anywhere (allocates); then servo, TACT_RT.
 #pragma once
 
 #include <algorithm>
@@ -27,10 +26,10 @@ public:
     static constexpr std::size_t kLists = 256, kEach = 8 * kLooks, kLeavesMost = 1024;
 
     struct Near {
-        // Filled up to a multiple of kLooks by repetition; count of them count.
+        // `count` triangles, padded to a multiple of kLooks by repetition.
         const std::uint32_t* triangle = nullptr;
         std::size_t count = 0;
-        double radius_m = 0.0;  // every triangle nearer than this is there; 0: they are too many
+        double radius_m = 0.0;  // contains every triangle nearer than this; 0: too many
     };
 
     ToolLists(const SurfaceMesh& mesh, std::uint32_t points, bool brute)
@@ -43,14 +42,14 @@ public:
           leaf_(kLeavesMost),
           found_(4 * kLeavesMost + kLooks) {}
 
-    // near: of an adaptive surface, valid until the step's end; may be null.
+    // near: of an adaptive surface, valid during the step; may be null.
     void begin_step(const NearSurface* near) noexcept TACT_RT {
         adaptive_ = near;
         elsewhere_ = false;
         if (!brute_) return;
         for (List& l : list_) l.radius_m = -1.0;
     }
-    // Since then a ball was asked for that the adaptive surface does not hold.
+    // True if a ball outside the adaptive surface was requested in this step.
     [[nodiscard]] bool elsewhere() const noexcept TACT_RT { return elsewhere_; }
 
     [[nodiscard]] Near near(std::uint32_t point, const Vec3& place_m, double radius_m) noexcept TACT_RT {
@@ -84,7 +83,7 @@ private:
     };
     static constexpr double kWider = 3.0;
 
-    // False: there are more than fit.
+    // False: too many triangles.
     bool find(const Vec3& place_m, double radius_m, std::size_t& count) noexcept TACT_RT {
         if (brute_) {
             if (!all_.near(place_m, radius_m, std::span(found_).first(4 * kLeavesMost), count)) return false;
@@ -127,7 +126,7 @@ private:
     bool brute_;
     const NearSurface* adaptive_ = nullptr;
     bool elsewhere_ = false;
-    std::vector<std::size_t> list_of_;  // of each point; kLists: none
+    std::vector<std::size_t> list_of_;  // index of each point's list; kLists: none
     std::vector<List> list_;
     std::vector<std::uint32_t> triangle_, leaf_, found_;
     std::uint64_t clock_ = 0;

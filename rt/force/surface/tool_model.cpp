@@ -9,8 +9,8 @@ namespace tact {
 namespace {
 
 constexpr double kFarHandM = 1e3;
-constexpr double kBallMargin = 0.05;  // of its radius
-// Two to three times the median that was measured: 1000 points of a block flat on a rough sphere take 40 to 77 us (TOOLS.md).
+constexpr double kBallMargin = 0.05;  // fraction of the ball's radius
+// Two to three times the measured median: 1000 points of a block flat on a rough sphere take 40 to 77 us (TOOLS.md).
 constexpr double kStepUs = 10.0, kPointUs = 0.15;
 
 bool holds_tool(const Pose& pose) noexcept {
@@ -46,7 +46,7 @@ void ToolModel::slow_update(const ToolState& predicted, const Budget&) noexcept 
         adaptive_->slow_update(predicted.twist_world.linear_m_s / meta_.world_per_model);
 }
 
-// Before a step: the one that holds the whole tool, however it turns; null: there is none.
+// Before a step: returns the near surface if it contains the whole tool in any orientation, else null.
 const NearSurface* ToolModel::choose_surface(float fidelity) noexcept {
     if (adaptive_ == nullptr) return nullptr;
     const Vec3& proxy_m = solver_.proxy().p_m;
@@ -64,7 +64,7 @@ KnobSpec ToolModel::knob() const noexcept {
 }
 
 std::uint32_t ToolModel::items(float fidelity) const noexcept {
-    const float level = fidelity >= 0.0F ? std::min(fidelity, 1.0F) : 0.0F;  // not a number: the floor
+    const float level = fidelity >= 0.0F ? std::min(fidelity, 1.0F) : 0.0F;  // NaN: the floor
     const std::uint32_t all = solver_.points().size(), least = std::min(all, std::max(kPointsLeast, all / 8));
     return least + static_cast<std::uint32_t>(std::lround(level * static_cast<float>(all - least)));
 }
@@ -84,7 +84,7 @@ void ToolModel::reset(const ToolState& tool) noexcept {
     touch_ = {};
     ++grips_;
     const bool valid = holds_tool(tool.T_world_tool);
-    // A proxy that is good is kept: it knows on which side of the surface it is.
+    // Keep a valid proxy: it is on the right side of the surface.
     const bool keeps =
         valid && seated_ &&
         settings_.stiffness_n_m * meta_.world_per_model * solver_.way_m(goal(tool), solver_.proxy()).norm() <
@@ -112,7 +112,7 @@ SurfaceTouch ToolModel::touch() const noexcept {
     t.state = static_cast<TouchState>(touch_.state);
     t.regime = regime_;
     if (adaptive_ != nullptr) t.detail = adaptive_->detail();
-    double below_m = 1e300;  // the places go by their weights
+    double below_m = 1e300;  // publishes the contacts in order of their weights
     for (t.planes = 0; t.planes < kTouchPlanesMax; ++t.planes) {
         const TouchedPlace* next = nullptr;
         for (std::uint32_t i = 0; i < touch_.places; ++i) {
@@ -135,7 +135,7 @@ Pose ToolModel::goal(const ToolState& tool) const noexcept {
     return {meta_.to_model(tool.T_world_tool.p_m), tool.T_world_tool.q.normalized()};
 }
 
-// What shading adds to the way from the hand to the proxy.
+// The shading correction of the twist from hand to proxy.
 Vec6 ToolModel::shaded_m() const noexcept {
     Vec6 sum = Vec6::Zero();
     for (std::uint32_t i = 0; settings_.shading && i < touch_.places; ++i) {
@@ -166,7 +166,7 @@ StepResult ToolModel::step(const ToolState& tool, const Budget& budget) noexcept
     const Instant begin = Monotonic::now();
     StepResult result;
     result.load = predict(budget.fidelity);
-    fade_.begin_step();
+    fade_.begin_step(step_s());
     const bool clutch = (tool.buttons & 1U) != 0;
     if (!holds_tool(tool.T_world_tool)) {
         fade_.cut();
@@ -195,7 +195,7 @@ StepResult ToolModel::step(const ToolState& tool, const Budget& budget) noexcept
                                     choose_surface(budget.fidelity));
             if (adaptive_ != nullptr) regime_ = touch_.adaptive ? TouchRegime::adaptive : TouchRegime::tree;
             const bool on_time = !hurried && !touch_.late;
-            // A proxy that was late made one move of those that it needed, or some; how many are missing is unknown.
+            // The number of moves that a late step lacks is unknown; at least one.
             if (!on_time) {
                 const auto moves = static_cast<float>(std::max(touch_.moves, 1U));
                 result.load.work_done = moves / (moves + 1.0F);
@@ -229,7 +229,7 @@ StepResult ToolModel::step(const ToolState& tool, const Budget& budget) noexcept
 std::unique_ptr<ToolModel> load_tool_model(const SceneFile& scene, const SurfaceSettings& settings) {
     const SceneMeta meta = read_meta(scene);
     if (scene.count(SurfaceMesh::kTag) == 0 || !has_touch_tool(scene))
-        throw StartupError("loading '" + scene.name() + "'", "it is not a surface with a tool",
+        throw StartupError("loading '" + scene.name() + "'", "the scene is not a surface with a tool",
                            "bake one with tact-prep touch MESH --tool TOOL -o SCENE");
     const SurfaceMesh mesh = read_surface(scene);
     const TouchTool tool = read_touch_tool(scene);

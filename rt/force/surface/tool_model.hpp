@@ -1,22 +1,22 @@
-// Touching a triangle mesh with a tool that is a mesh itself: six degrees of freedom, force and torque.
+// Force and torque on a mesh tool that touches a triangle mesh, in six degrees of freedom.
 //
-// Force    k times the way from the hand to the proxy (tool_contact.hpp), at the hand's point; torque k g^2 times
-//          the turn from the hand to the proxy, g the tool's radius of gyration about that point, which is the
-//          metric of the proxy. So without friction both are slopes of one energy, and the wrench is the sum of
-//          what the touched places push with: torque = lever x force of each.
-// Damping  b times the speed along the wrench, in the same metric, in proportion to the depth up to
-//          kDampedDepthM; it never pulls.
-// Limit    the wrench keeps its direction where (force, torque / g) is larger than force_n_max. Left behind by
-//          more than kLostLimits times the way at that limit, the proxy is released as in surface_model.hpp.
-// Knob     "surface.force": points of the tool that are felt, an eighth to all of them. Points that the knob
-//          brings while the surface pokes between the others wait until they are free (tool_points.hpp).
-// Error    of feeling n points: k times their cover, as deep as a surface may poke between them whose slope
-//          against the tool's own stays below 45 degrees. While it glides or lags twice the force instead.
-// Shading  as surface_model.hpp at each touched place: the turn of its push acts there, so it has its torque. Its pace
-//          is that of (force, torque / g).
-// Seat     after a reset or the clutch the proxy comes from away from the surface to the hand, or to rest on it,
-//          within some 60 steps; then the force fades in. At a reset a proxy that is within the limit is kept.
-// Else     bodies, clutch, frames, thread as surface_model.hpp.
+// Force    k times the displacement from the hand to the proxy (tool_contact.hpp), at the hand point; torque k g^2 times
+//          the rotation from the hand to the proxy, with the tool's radius of gyration g about that point, as in the
+//          proxy's metric. So without friction both are gradients of one energy, and the wrench is the sum of the
+//          contact forces with their torques lever x force.
+// Damping  b times the velocity along the wrench, in the same metric, proportional to the depth up to kDampedDepthM;
+//          never pulls.
+// Limit    (force, torque / g) is scaled down to force_n_max, keeping its direction. If the proxy lags by more than
+//          kLostLimits times the displacement at that limit, it is released as in surface_model.hpp.
+// Knob     "surface.force": number of tool points in use, an eighth to all. Points added by the knob while the surface
+//          is between the others wait until they are free (tool_points.hpp).
+// Error    of n points: k times their cover, the depth to which a surface with a slope below 45 degrees against the
+//          tool's can enter between them. While gliding or lagging, twice the force instead.
+// Shading  as in surface_model.hpp at each contact, with the torque of the corrected force there. Its rate limit applies
+//          to (force, torque / g).
+// Seat     After a reset or the clutch the proxy approaches the hand or the surface from outside within about 60 steps;
+//          then the force fades in. A reset keeps a proxy within the limit.
+// Else     bodies, clutch, frames, thread as in surface_model.hpp.
 #pragma once
 
 #include <memory>
@@ -34,8 +34,8 @@ public:
     static constexpr double kLostLimits = SurfaceModel::kLostLimits;
     static constexpr std::uint32_t kPointsLeast = 32, kMovesMost = 32;
 
-    // settings.radius_m: of the points' balls in the hand's world; 0: as the tool says. The bytes behind mesh and
-    // forest must outlive the model. The forest is there for mode chr alone.
+    // settings.radius_m: radius of the points' balls in world metres; 0: the tool's. The memory behind mesh and forest
+    // must outlive the model. Only mode chr needs the forest.
     ToolModel(const SceneMeta& meta, const SurfaceMesh& mesh, const TouchTool& tool,
               const SurfaceSettings& settings, const VertexForest* forest = nullptr);
 
@@ -45,13 +45,13 @@ public:
     void reset(const ToolState& tool) noexcept TACT_RT override;
     StepResult step(const ToolState& tool, const Budget& budget) noexcept TACT_RT override;
     [[nodiscard]] ModelBodies bodies() const noexcept TACT_RT override;
-    // About the hand's point; the three places that push most.
+    // Contact data at the hand point, with the three strongest contacts.
     [[nodiscard]] SurfaceTouch touch() const noexcept TACT_RT;
-    // Where touch() is published each cycle; before the first step. Nowhere: the default.
+    // Sets the topic to which publish() writes touch(); call it before the first step. Default: none.
     void publish_to(Latest<TouchTopic>& topic) { topic_ = &topic; }
     void publish(const ModelCycle& cycle) noexcept TACT_RT override;
 
-    // The filter's form, in mode chr.
+    // Accepts only the filter's form, in mode chr.
     bool order(const ModelOrder& order) noexcept TACT_RT override {
         return adaptive_ != nullptr && adaptive_->order(order);
     }
@@ -62,7 +62,7 @@ public:
     void slow_update(const ToolState& predicted, const Budget& budget) noexcept override;
     [[nodiscard]] TouchRegime regime() const noexcept TACT_RT { return regime_; }  // of the last step
 
-    // Cost and error of a level before it is computed.
+    // Predicted cost and error bound of a level.
     [[nodiscard]] PathLoad predict(float fidelity) const noexcept TACT_RT override;
     [[nodiscard]] const ToolTouch& tool_touch() const { return touch_; }  // of the last step
     [[nodiscard]] const ToolContact& contact() const { return solver_; }
@@ -90,8 +90,8 @@ private:
     std::uint64_t grips_ = 0, lagging_ = 0, released_ = 0;
 };
 
-// Fails by StartupError where the scene is no surface with a tool or a setting is out of range. The scene must
-// outlive the model.
+// Fails by StartupError if the scene is not a surface with a tool or a setting is out of range. The scene must outlive
+// the model.
 std::unique_ptr<ToolModel> load_tool_model(const SceneFile& scene, const SurfaceSettings& settings);
 
 }  // namespace tact

@@ -6,17 +6,17 @@
 namespace tact {
 namespace {
 
-// A query first asks whether anything is nearer than this share of the way to the triangle found last: mostly
-// nothing is, and then few boxes are opened.
+// A query first searches within this fraction of the distance to the last found triangle. Usually nothing is nearer,
+// and the search visits few nodes.
 constexpr double kAskedShare = 0.75;
 constexpr double kFarAway = 1e9;
 constexpr int kQueryTries = 6;
-constexpr double kAtMost = 16.0;           // ways of a point that it is asked about
-constexpr std::uint32_t kWayQueries = 24;  // of one way from point to point
-constexpr double kFreeShare = 0.5;         // of a ball's radius: nearer to the surface is not free
+constexpr double kAtMost = 16.0;           // search radius of a distance query, in displacements of the point
+constexpr std::uint32_t kWayQueries = 24;  // per path between two points
+constexpr double kFreeShare = 0.5;         // fraction of a ball's radius; nearer to the surface is not free
 constexpr std::uint32_t kRootsTried = 8;
 constexpr int kRaises = 16;
-constexpr float kRounding = 4e-7F;  // of the coordinates that a room is made of
+constexpr float kRounding = 4e-7F;  // relative rounding of the coordinates
 
 std::size_t filled_up(std::uint32_t count) { return (std::size_t{count} + 3) / 4 * 4; }
 
@@ -43,7 +43,7 @@ ToolPoints::ToolPoints(const SurfaceMesh& mesh, const TouchTool& tool, double ba
         sum += square;
         reach_m_ = std::max(reach_m_, std::sqrt(square));
     }
-    // A tool of one point in the hand turns freely; it still needs a scale.
+    // A tool with one point at the hand point rotates freely, but still needs a length scale.
     gyration_m_ = std::max(std::sqrt(sum / count_), ball_m_);
     reach_m_ += ball_m_;
 }
@@ -96,10 +96,11 @@ ToolPoints::Seen ToolPoints::query(const Vec3& place_m, std::uint32_t hint) cons
         if (found.triangle != SurfacePoint::kNone) hint = found.triangle;
         return {found.distance_m * (1.0 - 1e-6), hint};
     }
-    return {0.0, hint};  // nothing is known
+    return {0.0, hint};  // unknown
 }
 
-// To where a ball about the hand's point that holds the whole tool is free: one query tells of all points.
+// Moves the tool to a position where the ball about the hand point that contains the whole tool is free: one query
+// bounds the distances of all points.
 bool ToolPoints::seat_freely(const Pose& pose, Vec3& hand_m) noexcept {
     hand_m = pose.p_m;
     const double wanted = reach_m_ + 4.0 * ball_m_;
@@ -125,7 +126,7 @@ bool ToolPoints::seat_freely(const Pose& pose, Vec3& hand_m) noexcept {
     return false;
 }
 
-// One point that is outside, or on the side of an open surface where most of the first ones are.
+// Wakes one point: outside a closed surface, or on the side of an open one where most of the first points are.
 void ToolPoints::seat_one(Pose pose, Vec3& hand_m) noexcept {
     const std::uint32_t tried = std::min(kRootsTried, count_);
     std::array<std::uint32_t, 2> first{count_, count_},
@@ -146,7 +147,7 @@ void ToolPoints::seat_one(Pose pose, Vec3& hand_m) noexcept {
     }
     const std::size_t side = mesh_.closed() || found_there[0] >= found_there[1] ? 0 : 1;
     root_ = first[side];
-    if (root_ == count_) {  // as a whole to where the last one tried is outside
+    if (root_ == count_) {  // none: move the whole tool until the last tried point is outside
         root_ = tried - 1;
         hand_m += found.point_m + 2.0 * ball_m_ * normal - place_m(root_);
         anchor_m_ = pose.p_m = hand_m;
@@ -171,7 +172,7 @@ bool ToolPoints::way_is_free(const Vec3& from_m, double free_m, const Vec3& to_m
     double gone = 0.0;
     while (queries > 0) {
         if (free_m < kFreeShare * ball_m_) return false;
-        // The next ball's centre lies inside the last one.
+        // The centre of the next ball lies inside the last ball.
         gone = std::min(gone + free_m - 0.5 * kFreeShare * ball_m_, length);
         const Vec3 place = length > 0.0 ? Vec3(from_m + gone / length * (to_m - from_m)) : to_m;
         const Seen seen = query(place, hint);
@@ -208,7 +209,7 @@ bool ToolPoints::try_to_wake(std::uint32_t i, std::uint32_t& queries) noexcept {
     if (way < 8.0 * ball_m_ || seen.distance_m > way) {
         is_free = way_is_free(start, seen.distance_m, end, hint, there, allowed);
     } else if (hint < mesh_.triangles()) {
-        // Up, over and down: beside the surface the balls are small.
+        // Take a detour away from the surface: close to it the free balls are small.
         const Vec3 away = start - mesh_.point_of(hint, start).point_m;
         const double size = away.norm();
         const Vec3 up = size > 0.0 ? Vec3(0.7 * way / size * away) : Vec3(Vec3::Zero());
@@ -228,7 +229,7 @@ void ToolPoints::wake(const Pose& pose, std::uint32_t points, std::span<const st
     const auto is_kept = [&](std::uint32_t i) {
         return std::find(kept.begin(), kept.end(), i) != kept.end();
     };
-    std::uint32_t beyond = 0;  // awake behind the first
+    std::uint32_t beyond = 0;  // awake points with an index of at least `points`
     for (std::uint32_t i = points; i < points_; ++i) {
         if (!is_known(i)) continue;
         if (i != root_ && !is_kept(i))
@@ -238,7 +239,7 @@ void ToolPoints::wake(const Pose& pose, std::uint32_t points, std::span<const st
     }
     root_counts_ = root_ < points || is_kept(root_);
     if (root_ >= std::max(points, points_)) ++beyond;
-    // What is kept lies behind the first: the rows are gone through as far as they go.
+    // Kept points may have higher indices: extend the range that loops visit.
     points_ = points;
     for (const std::uint32_t i : kept) {
         if (i < count_ && is_known(i)) points_ = std::max(points_, i + 1);
@@ -249,7 +250,7 @@ void ToolPoints::wake(const Pose& pose, std::uint32_t points, std::span<const st
     }
     turn_levers(pose);
     if (next_ >= points) next_ = 0;
-    // At the most once round; points whose parents sleep cost nothing.
+    // At most one pass; points with sleeping parents cost nothing.
     for (std::uint32_t tried = 0; tried < points && queries > 0; ++tried) {
         if (!is_known(next_)) try_to_wake(next_, queries);
         if (++next_ == points) {
@@ -260,7 +261,7 @@ void ToolPoints::wake(const Pose& pose, std::uint32_t points, std::span<const st
 }
 
 void ToolPoints::begin_move(const Pose& pose) noexcept {
-    // Far from the anchor single precision is not enough.
+    // Single precision does not suffice far from the anchor: move the anchor.
     if ((pose.p_m - anchor_m_).squaredNorm() > 4.0 * reach_m_ * reach_m_) {
         const Eigen::Vector3f by = (pose.p_m - anchor_m_).cast<float>();
         for (std::size_t axis = 0; axis < 3; ++axis)
@@ -329,7 +330,7 @@ void ToolPoints::ask(std::uint32_t i, double wanted_m) noexcept {
     const double at_most = kAtMost * wanted_m + ball_m_;
     const double distance =
         brute_ ? all_.clearance_m(place_m(i), at_most) : mesh_.clearance_m(place_m(i), at_most, kVisits);
-    // Boxes tell less than triangles did where those are large.
+    // With large triangles, the bound from boxes can be worse than the known one.
     if (distance - ball_m_ <= room_m(i)) return;
     put(i, distance, SurfacePoint::kNone);
     room_[i] = static_cast<float>((distance - ball_m_) * (1.0 - 1e-6));

@@ -1,15 +1,14 @@
-// How far the points of a tool are from a surface at the least, asked only where that is used up.
+// Lower bounds on the distances of a tool's points from a surface, renewed only when used up.
 //
-// Bound     the distance of a point when it was asked, less the way that it has gone since: so far from the
-//           surface a point costs nothing. One that is asked again costs one query of the tree, bounded.
-// Awake     a point counts once it is known to be on the side of the surface where the tool is: by the bound of
-//           its parent (the point nearest to it before it), or by a way from there to it, over the surface,
-//           along which balls free of the surface touch each other. A point that is on the other side (the
-//           knob rose where something pokes between the points) sleeps: it is not felt, and is tried again from
-//           time to time. No point that counts is ever on another side.
-// Work      counted in queries; every function has a limit of them.
-// Unit      metres of the model. Single precision about an anchor near the tool.
-// Thread    made anywhere (it allocates); then servo, TACT_RT.
+// Bound     the distance at the last query minus the displacement since. Points far from the surface cost nothing; a
+//           renewal costs one bounded query of the tree.
+// Awake     A point is awake (in use) once it is known to be on the tool's side of the surface: by the bound of its
+//           parent (the nearest point before it in the order), or by a path from the parent along which free balls
+//           overlap. A point on the other side (the knob rose while the surface was between the points) sleeps: it has
+//           no effect and is retried from time to time. No awake point is ever on the other side.
+// Work      counted in queries; every function has a limit.
+// Unit      metres of the model; single precision relative to an anchor near the tool.
+// Thread    constructed anywhere (allocates); then servo, TACT_RT.
 #pragma once
 
 #include <array>
@@ -27,10 +26,9 @@ namespace tact {
 
 class ToolPoints {
 public:
-    static constexpr std::uint32_t kVisits = 192;  // of the tree, for one query: some microseconds
+    static constexpr std::uint32_t kVisits = 192;  // tree nodes per query: a few microseconds
 
-    // The bytes behind `mesh` must outlive the object. ball_m: of each point.
-    // brute: ask() looks at all triangles.
+    // The memory behind `mesh` must outlive the object. ball_m: radius at each point. brute: ask() uses all triangles.
     ToolPoints(const SurfaceMesh& mesh, const TouchTool& tool, double ball_m, bool brute = false);
 
     [[nodiscard]] std::uint32_t size() const noexcept TACT_RT { return count_; }
@@ -40,24 +38,24 @@ public:
         return static_cast<double>(cover_m_[points - 1]);
     }
 
-    // All sleep but one. Returns where the hand's point has to be for the whole tool to be free: where it is, or
-    // farther away from the surface, outside if that is closed. Where there is no room for that, where it is
-    // or beside it; then points that are in the surface sleep.
+    // Puts all points but one to sleep. Returns a position of the hand point at which the whole tool is free: the given
+    // one, or one farther from the surface (outside, if closed). Without such a position, returns one at or near the
+    // given one; points inside the surface then stay asleep.
     Vec3 seat(const Pose& pose) noexcept TACT_RT;
-    // Those behind the first `points` sleep if they are not among `kept`, the others wake as far as the queries
-    // go; what is left waits.
+    // Puts points beyond the first `points` to sleep unless they are in `kept`, and wakes the others within the limit of
+    // queries; the remaining ones wait for the next call.
     void wake(const Pose& pose, std::uint32_t points, std::span<const std::uint32_t> kept,
               std::uint32_t queries) noexcept TACT_RT;
-    // Every one of the first `points` was tried since the tool was seated.
+    // True if each of the first `points` was tried since the tool was seated.
     [[nodiscard]] bool tried_all() const noexcept TACT_RT { return tried_all_; }
     [[nodiscard]] std::uint32_t awake() const noexcept TACT_RT { return awake_; }
 
-    // Levers and rooms for moves from this pose.
+    // Computes levers and rooms (free displacements) for moves from this pose.
     void begin_move(const Pose& pose) noexcept TACT_RT;
-    // Awake points that v + w x lever takes farther than their room; as many as fit.
+    // Lists awake points whose displacement v + w x lever exceeds their room; as many as fit into `out`.
     std::size_t beyond(const Vec3& v_m, const Vec3& w_rad,
                        std::span<std::uint32_t> out) const noexcept TACT_RT;
-    // The largest share of the move, at most 1, that leaves every point in its room.
+    // The largest fraction of the move, at most 1, that keeps every point in its room.
     [[nodiscard]] double share_in_room(const Vec3& v_m, const Vec3& w_rad) const noexcept TACT_RT;
     [[nodiscard]] Vec3 place_m(std::uint32_t i) const noexcept TACT_RT;
     [[nodiscard]] Eigen::Vector3f lever_m(std::uint32_t i) const noexcept TACT_RT {
@@ -67,14 +65,14 @@ public:
     [[nodiscard]] double room_m(std::uint32_t i) const noexcept TACT_RT {
         return static_cast<double>(room_[i]);
     }
-    // The distance when it was asked last.
+    // The distance at the last query.
     [[nodiscard]] double asked_m(std::uint32_t i) const noexcept TACT_RT {
         return static_cast<double>(bound_[i]);
     }
-    // A query: the room may be larger than was known, and than wanted_m.
+    // Renews the bound of a point by a query; the room may become larger than wanted_m.
     void ask(std::uint32_t i, double wanted_m) noexcept TACT_RT;
-    // What was seen there: nothing is nearer than distance_m. Within guarded_m guards hold the ball off, so
-    // that it may move that far.
+    // Sets the result of a triangle query: nothing is nearer than distance_m. Within guarded_m half-spaces keep the ball
+    // off the surface, so it may move that far.
     void saw(std::uint32_t i, double distance_m, double guarded_m) noexcept TACT_RT;
     [[nodiscard]] bool is_awake(std::uint32_t i) const noexcept TACT_RT {
         return bound_[i] >= 0.0F && (i != root_ || root_counts_);
@@ -82,7 +80,7 @@ public:
 
 private:
     struct Seen {
-        double distance_m;  // nothing is nearer
+        double distance_m;  // lower bound
         std::uint32_t triangle;
     };
     bool seat_freely(const Pose& pose, Vec3& hand_m) noexcept TACT_RT;
@@ -104,14 +102,14 @@ private:
     std::uint32_t count_;
     std::vector<std::uint32_t> parent_, hint_;
     std::vector<float> cover_m_;
-    // Rows, filled up to a multiple of four: as in the tool; levers of the pose; where it was asked, from the
-    // anchor.
+    // Rows, padded to a multiple of four: points in the tool frame; levers of the pose; positions at the last query,
+    // relative to the anchor.
     std::vector<float> local_[3], lever_[3], asked_[3];
-    std::vector<float> bound_;  // distance where it was asked; below 0: asleep
-    std::vector<float> room_;   // of the centre, before a move leaves what is known
+    std::vector<float> bound_;  // distance at the last query; below 0: asleep
+    std::vector<float> room_;   // displacement of the centre known to be free
     Vec3 hand_m_ = Vec3::Zero(), anchor_m_ = Vec3::Zero();
     std::uint32_t points_ = 0, awake_ = 0, next_ = 0;
-    std::uint32_t root_ = 0;  // known before all others; counts where it is among the first
+    std::uint32_t root_ = 0;  // the first awake point; in use only if among the first points or kept
     bool tried_all_ = false, root_counts_ = true;
 };
 

@@ -1,6 +1,6 @@
-// The newest value from one thread to another inside a process; neither ever waits, and nothing is copied.
+// Passes the newest value from one thread to another in a process, wait-free and without copies.
 //
-// Three of them: one is written, one is read, the newest lies between. One writer, one reader.
+// Three buffers: one being written, one being read, and the newest in between. One writer, one reader.
 #pragma once
 
 #include <array>
@@ -21,13 +21,13 @@ public:
     void publish() noexcept TACT_RT {
         back_ = between_.exchange(back_ | kFresh, std::memory_order_acq_rel) & kIndex;
     }
-    // Reader: the newest; stays as it is until the next call.
+    // Reader: the newest value; unchanged until the next call.
     [[nodiscard]] const T& newest() noexcept TACT_RT {
         if ((between_.load(std::memory_order_relaxed) & kFresh) != 0)
             front_ = between_.exchange(front_, std::memory_order_acq_rel) & kIndex;
         return buffer_[front_];
     }
-    // Reader: the one of the last newest().
+    // Reader: the value of the last newest().
     [[nodiscard]] const T& same() const noexcept TACT_RT { return buffer_[front_]; }
 
 private:

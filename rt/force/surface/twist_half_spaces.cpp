@@ -7,7 +7,7 @@ namespace tact {
 namespace {
 
 constexpr std::size_t kSlackRow = 6, kRowsEach = 7;
-// Squares: of the part of a normal that the active ones do not span; below it, it adds no direction.
+// Relative square of the part of a normal outside the span of the active ones; below it, the normal is dependent.
 constexpr double kIndependent = 1e-8;
 
 }  // namespace
@@ -91,9 +91,9 @@ TwistHalfSpaces::Active TwistHalfSpaces::asked_least(std::size_t index, const Ve
     return near.normal.dot(move_m) + near.slack_m >= facet.normal.dot(move_m) + facet.slack_m ? near : facet;
 }
 
-// The optimum under the active guards and a violated one, which has to be active too. Along z the active ones
-// stay kept and the new one gets kept; r is by how much the old weights shrink meanwhile. What has shrunk to
-// zero leaves.
+// Finds the optimum under the active half-spaces and a violated one, which becomes active. A step along z keeps the
+// active ones satisfied and reduces the violation; the old weights shrink by r. A half-space whose weight reaches zero
+// is removed.
 bool TwistHalfSpaces::bring_in(const Active& wanted, Solution& s) noexcept {
     Active entering = wanted;
     entering.weight_m = 0.0;
@@ -178,7 +178,7 @@ void TwistHalfSpaces::solve(const Vec6& goal_m, double tolerance_m, Solution& be
     solve_with(tolerance_m, {}, before);
 }
 
-// As HalfSpaces::solve does.
+// As in HalfSpaces::solve.
 void TwistHalfSpaces::turn(const Vec6& goal_m, double tolerance_m, Solution& best) const noexcept {
     std::array<Active, kTurnsMax> turned;
     std::size_t turns = 0;
@@ -202,7 +202,7 @@ void TwistHalfSpaces::turn(const Vec6& goal_m, double tolerance_m, Solution& bes
     }
 }
 
-// The largest share of a move, at most 1, at whose end every guard is kept.
+// The largest fraction of a move, at most 1, whose end satisfies every half-space.
 double TwistHalfSpaces::free_share(const Vec6& move_m) const noexcept {
     double share = 1.0;
     for (std::size_t i = 0; i < count_; ++i) {

@@ -1,18 +1,18 @@
-// What keeps a rigid body off a surface for one move: half-spaces of its twist, and the twist nearest to a goal
-// inside them.
+// Half-space constraints on the twist of a rigid body that keep it off a surface during one move, and the twist nearest to
+// a goal inside them.
 //
-// Twist    y = (v, g w): v the way of the hand's point, w the rotation about it in radians, g the body's radius
-//          of gyration; so y is in metres, and its length is the metric in which "nearest" is meant. A place of
-//          the body at the lever l from the hand's point moves by v + w x l, to first order in w.
-// Sound    as guards.hpp: each triangle near a ball brings two half-spaces of the ball's way, away from the
-//          nearest point and over the plane; the end of a move is to be inside one of the two. A half-space
-//          n·(v + w x l) + s >= 0 is one of the twist, with the normal (n, l x n / g).
-// Solve    dual active set (Goldfarb, Idnani 1983) of at most six, to which the most violated guard is added, by
-//          the one of its two that asks less. It goes on where it was when guards were added since. Then guards
-//          that hold by the wrong one of their two are turned round, as long as that leads nearer.
-// Weights  y = goal + sum of weight times normal: times stiffness they are the forces of the touched places.
-// Unit     metres of the model; guards in single precision.
-// Thread   made anywhere (it allocates); then servo, TACT_RT.
+// Twist    y = (v, g w): displacement v of the hand point, rotation vector w about it in radians, radius of gyration g of
+//          the body. So y is in metres, and its length is the metric for "nearest". A point of the body at lever l
+//          from the hand point moves by v + w x l, to first order in w.
+// Sound    as in half_spaces.hpp: each triangle near a ball has two half-spaces for the ball's displacement, away from
+//          the nearest point and above the plane; the end of a move must be inside one of the two. A half-space
+//          n·(v + w x l) + s >= 0 constrains the twist with the normal (n, l x n / g).
+// Solve    dual active-set method (Goldfarb, Idnani 1983) with at most six active half-spaces. Each round adds the less
+//          violated half-space of the most violated triangle. It resumes after half-spaces were added. Then active
+//          triangles whose other half-space is satisfied are switched to that one, as in half_spaces.hpp.
+// Weights  y = goal + sum of weight * normal; weight times stiffness is a contact force.
+// Unit     metres of the model; half-spaces in single precision.
+// Thread   constructed anywhere (allocates); then servo, TACT_RT.
 #pragma once
 
 #include <array>
@@ -36,7 +36,7 @@ public:
 
     struct Active {
         Vec6 normal = Vec6::Zero();
-        double slack_m = 0.0;  // how far the place may go against the normal
+        double slack_m = 0.0;  // allowed displacement of the contact against the normal
         double weight_m = 0.0;
         std::uint32_t half_space = 0;
         bool facet = false;
@@ -45,7 +45,8 @@ public:
         Vec6 move_m = Vec6::Zero();
         std::array<Active, 6> active;
         std::size_t active_count = 0;
-        bool exact = true;  // false: numbers or rounds ran out; the move is free, but maybe not the nearest
+        bool exact =
+            true;  // false: rounding or kRoundsMax ended the search; the move is free, but may not be nearest
     };
 
     TwistHalfSpaces() : float_(std::size_t{14} * kRow), triangle_(kMax), point_(kMax) {}
@@ -58,23 +59,24 @@ public:
     [[nodiscard]] std::uint32_t point(std::size_t half_space) const noexcept TACT_RT {
         return point_[half_space];
     }
-    // lever: from the hand's point, in radii of gyration. False: there is no room.
+    // lever: from the hand point, in radii of gyration. False: no room.
     bool add(std::uint32_t point, std::uint32_t triangle, const Eigen::Vector3f& lever,
              const TriangleQueries& query, std::size_t lane, float near_slack_m, float facet_slack_m,
              bool facet_holds) noexcept TACT_RT;
-    // Nothing is pushed out any more: staying is allowed by every guard.
+    // Sets negative slacks to zero, so that every half-space permits a zero move.
     void allow_staying() noexcept TACT_RT;
 
-    // tolerance_m: of a guard that counts as kept. before: of the same goal and fewer guards, or fresh.
+    // tolerance_m: violation up to which a half-space counts as satisfied. before: solution for the same goal and fewer
+    // half-spaces, or fresh().
     [[nodiscard]] static Solution fresh(const Vec6& goal_m) noexcept TACT_RT;
     void solve(const Vec6& goal_m, double tolerance_m, Solution& before) const noexcept TACT_RT;
-    // Turns what holds by the wrong one of its two.
+    // Switches active triangles whose other half-space is satisfied to that one.
     void turn(const Vec6& goal_m, double tolerance_m, Solution& best) const noexcept TACT_RT;
 
 private:
-    // A cache line more, so that the rows of one guard do not fall on the same lines of the cache.
+    // One extra cache line per row, so that the rows of one half-space do not map to the same cache set.
     static constexpr std::size_t kRow = kMax + 16;
-    // Rows of 7: three of the way, three of the turn, slack; first of the nearest points, then of the planes.
+    // Two groups of 7 rows (nearest points, planes): three for displacement, three for rotation, slack.
     [[nodiscard]] float* row(std::size_t r) noexcept { return float_.data() + r * kRow; }
     [[nodiscard]] const float* row(std::size_t r) const noexcept { return float_.data() + r * kRow; }
     [[nodiscard]] std::size_t most_violated(const Vec6& move_m, double& value) const noexcept TACT_RT;

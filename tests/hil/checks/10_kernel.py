@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""The kernel is a real-time one, core 1 is kept free, and a FIFO thread with locked memory runs there."""
+"""The kernel is real-time, core 1 is isolated, and a FIFO thread with locked memory runs on it."""
 import ctypes
 import os
 import sys
@@ -26,8 +26,8 @@ os.sched_setaffinity(0, {1})
 os.sched_setscheduler(0, os.SCHED_FIFO, os.sched_param(80))
 assert os.sched_getscheduler(0) == os.SCHED_FIFO and os.sched_getparam(0).sched_priority == 80
 with open("/proc/self/stat", encoding="utf-8") as f:
-    assert f.read().rsplit(")", 1)[1].split()[36] == "1", "it does not run on core 1"
+    assert f.read().rsplit(")", 1)[1].split()[36] == "1", "the thread does not run on core 1"
 with open("/dev/cpu_dma_latency", "wb", buffering=0) as f:
     assert f.write(b"\0\0\0\0") == 4
-print(f"{os.uname().release}: real-time, core 1 isolated, FIFO 80 with locked memory there")
+print(f"{os.uname().release}: real-time, core 1 isolated, FIFO 80 with locked memory on it")
 sys.exit(0)

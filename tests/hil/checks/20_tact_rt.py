@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
-"""tact and tact-rt as they are shipped: the servo thread has the isolated core and its priority, and never allocates.
+"""tact and tact-rt as shipped: the servo thread has the isolated core and its priority, and never allocates.
 
-usage: 20_tact_rt.py BIN_DIR. Lateness is printed, never judged: it says something on a real processor only.
+usage: 20_tact_rt.py BIN_DIR. Lateness is printed but not checked: it is meaningful only on a real processor.
 """
 import json
 import os
@@ -24,7 +24,7 @@ def text_of(path):
 
 
 def threads(pid):
-    """name -> (thread id, policy, priority, core it ran on last, cores it may run on)"""
+    """name -> (thread id, policy, priority, last core, allowed cores)"""
     found = {}
     for tid in map(int, os.listdir(f"/proc/{pid}/task")):
         stat = text_of(f"/proc/{pid}/task/{tid}/stat").rsplit(")", 1)[1].split()
@@ -35,7 +35,7 @@ def threads(pid):
 
 
 def controller_of(launcher):
-    """Process id of the tact-rt that this tact started, or None."""
+    """Process id of the tact-rt started by this tact, or None."""
     children = text_of(f"/proc/{launcher}/task/{launcher}/children").split()
     return next((int(c) for c in children if text_of(f"/proc/{c}/comm").strip() == "tact-rt"), None)
 
@@ -74,7 +74,7 @@ def main():
         assert run.wait(timeout=PATIENCE_S) in (0, 130), run.returncode
     finally:
         if run.poll() is None:
-            run.terminate()  # tact takes its controller along
+            run.terminate()  # tact also ends its controller
             run.wait(timeout=PATIENCE_S)
     report = json.loads(text_of("/out/tact_run.json"))
     servo = report["servo"]

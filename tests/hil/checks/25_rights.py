@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""What tact doctor says, and what tact-rt gets as an ordinary user with the rights of deploy/limits.conf and without.
+"""The findings of tact doctor, and the scheduling of tact-rt for an ordinary user with and without the rights of deploy/limits.conf.
 
 usage: 25_rights.py BIN_DIR
 """
@@ -13,11 +13,11 @@ import sys
 BIN = sys.argv[1]
 HERE = os.path.dirname(os.path.abspath(__file__))
 NOBODY = 65534
-MINE = "/run/rights"  # of nobody, who may not be let into the build folder
+MINE = "/run/rights"  # owned by nobody, who may have no access to the build folder
 
 
 def doctor():
-    """What is to be well on a machine that was set up as the README says."""
+    """Checks the findings that must be ok on a machine set up according to the README."""
     done = subprocess.run([f"{BIN}/tact", "doctor", "--json"], capture_output=True, text=True, timeout=100)
     found = {f["name"]: f for f in json.loads(done.stdout)["findings"]}
     for name in ("kernel", "isolation", "rtprio", "memlock", "dma_latency"):
@@ -60,4 +60,4 @@ assert "FIFO, pinned, isolated core, memory locked" in granted
 refused = said_as_nobody(0, 65536)
 for words in ("cannot use SCHED_FIFO", "cannot lock memory", "fix:", "ordinary scheduling"):
     assert words in refused, words
-print("doctor is content; an ordinary user gets FIFO and locked memory by deploy/limits.conf, and goes on without")
+print("doctor reports ok; an ordinary user gets FIFO and locked memory with deploy/limits.conf, and runs without them otherwise")

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
-"""tact station on the real-time kernel: setup and undo on a tree, verify, and the service's watchdog while the servo stands.
+"""tact station on the real-time kernel: setup and undo on a tree, verify, and the service's watchdog while the servo is stopped.
 
-usage: 27_station.py BIN_DIR. Lateness is printed, never judged: it means something on a real processor only.
+usage: 27_station.py BIN_DIR. Lateness is printed but not checked: it is meaningful only on a real processor.
 """
 import ctypes
 import json
@@ -18,7 +18,7 @@ import parts
 BIN = sys.argv[1]
 TREE, REPORT, CONFIG = "/run/station_tree", "/out/station-report.json", "/run/station.toml"
 PTRACE_SEIZE, PTRACE_INTERRUPT, PTRACE_DETACH, WALL = 0x4206, 0x4207, 17, 0x40000000
-LIMIT_S = 0.8  # of the watchdog
+LIMIT_S = 0.8  # watchdog limit
 
 
 def tact(*arguments):
@@ -40,7 +40,7 @@ def files_of(tree):
 
 
 def setup_and_undo():
-    """On a tree with this machine's own processors."""
+    """Setup and undo on a tree with this machine's processors."""
     os.makedirs(f"{TREE}/sys/devices/system/cpu")
     os.makedirs(f"{TREE}/etc/default")
     shutil.copy("/sys/devices/system/cpu/online", f"{TREE}/sys/devices/system/cpu/online")
@@ -51,13 +51,13 @@ def setup_and_undo():
     wanted = parts.text_of(f"{TREE}/etc/default/grub.d/tact.cfg")
     in_force = parts.text_of("/proc/cmdline").split()
     for item in ("isolcpus=managed_irq,domain,1", "nohz_full=1", "rcu_nocbs=1", "irqaffinity=0"):
-        assert item in wanted and item in in_force, (item, wanted)  # this machine was started as setup would have it
+        assert item in wanted and item in in_force, (item, wanted)  # this machine boots with the arguments that setup writes
     assert tact("undo", "--root", TREE)[0] == 0
     assert files_of(TREE) == before
 
 
 def setup_for_real():
-    """Files and groups of this machine, whose root is a layer in memory. No systemd and no udev run here."""
+    """Setup and undo of this machine's files and groups; its root is an overlay in memory. systemd and udev do not run here."""
     places = ("/etc/udev/rules.d", "/etc/security", "/etc/systemd", "/usr/local/lib")
     groups = ("/etc/group", "/etc/gshadow")
 
@@ -99,7 +99,7 @@ def servo_of(process):
 
 
 def watchdog():
-    """Counts the datagrams of a real tact-rt; then its servo thread alone is held."""
+    """Counts the watchdog datagrams of a real tact-rt, then stops only its servo thread."""
     manager = socket.socket(socket.AF_UNIX, socket.SOCK_DGRAM)
     manager.bind("/run/notify")
 
@@ -134,7 +134,7 @@ def watchdog():
         assert libc.ptrace(PTRACE_INTERRUPT, tid, 0, 0) == 0
         os.waitpid(tid, WALL)
         try:
-            came(LIMIT_S / 2)  # for the cycles before
+            came(LIMIT_S / 2)  # datagrams for earlier cycles
             quiet = came(3 * LIMIT_S)
             assert rt.poll() is None
         finally:
@@ -161,7 +161,7 @@ def main():
     late, smi = report["lateness_us"], report["smi"]
     print(f"setup undone byte for byte; verify: {report['status']}, {report['cycles']} cycles on core 1, lateness p99.9 "
           f"{late['p999']:.0f} us, cyclictest {report['cyclictest']['max_us']:.0f} us, SMI {smi.get('count', smi['text'])}; "
-          "no watchdog datagram while the servo stood")
+          "no watchdog datagram while the servo was stopped")
 
 
 if __name__ == "__main__":

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""A program becomes a USB device (FunctionFS on dummy_hcd), and another talks to it through usbfs, as libusb does."""
+"""A program emulates a USB device (FunctionFS on dummy_hcd), and another uses it through usbfs, as libusb does."""
 import ctypes
 import errno
 import fcntl
@@ -12,7 +12,7 @@ import time
 GADGET, FFS = "/sys/kernel/config/usb_gadget/check", "/run/ffs"
 VENDOR_CLASS, INTERRUPT, EP_IN = 0xFF, 3, 0x80
 PATIENCE_S = 30
-CLAIM, BULK = 0x8004550F, 0xC0185502  # USBDEVFS_CLAIMINTERFACE, USBDEVFS_BULK (does interrupt endpoints too)
+CLAIM, BULK = 0x8004550F, 0xC0185502  # USBDEVFS_CLAIMINTERFACE, USBDEVFS_BULK (also does interrupt endpoints)
 
 
 def put(path, text):
@@ -31,7 +31,7 @@ def of_sysfs(folder, name):
 def descriptors():
     """One vendor interface, 64 bytes in on endpoint 1 and out on endpoint 2, for full and high speed."""
     speeds = b""
-    for interval in (1, 4):  # 1 ms in either speed
+    for interval in (1, 4):  # 1 ms at either speed
         speeds += struct.pack("<BBBBBBBBB", 9, 4, 0, 0, 2, VENDOR_CLASS, 0, 0, 1)
         for address in (1 | EP_IN, 2):
             speeds += struct.pack("<BBBBHB", 7, 5, address, INTERRUPT, 64, interval)
@@ -39,7 +39,7 @@ def descriptors():
 
 
 def transfer(device, endpoint, data):
-    """Bytes moved by one transfer, and what they are."""
+    """One transfer; returns the number of bytes moved and the buffer."""
     buffer = ctypes.create_string_buffer(data, 64)
     request = struct.pack("@IIIP", endpoint, 64, PATIENCE_S * 1000, ctypes.addressof(buffer))
     return fcntl.ioctl(device, BULK, bytearray(request)), buffer.raw
@@ -68,7 +68,7 @@ def main():
     node = f"/dev/bus/usb/{int(of_sysfs(found[0], 'busnum')):03}/{int(of_sysfs(found[0], 'devnum')):03}"
     print(node, *(of_sysfs(found[0], n) for n in ("idVendor", "idProduct", "product", "speed")))
 
-    def echo():  # the device: answers each packet with its bytes turned round
+    def echo():  # the device: answers each packet with its bytes reversed
         for _ in range(20):
             os.write(to_host, os.read(from_host, 64)[::-1])
 
@@ -81,13 +81,13 @@ def main():
         assert transfer(device, 1 | EP_IN, b"") == (64, sent[::-1])
 
     put(f"{GADGET}/UDC", "\n")  # unplug
-    said = []  # a transfer may meet the unplug under way
+    said = []  # the first transfer may coincide with the unplug
     end = time.monotonic() + PATIENCE_S
     while "ENODEV" not in said:
         assert time.monotonic() < end, said
         try:
             transfer(device, 1 | EP_IN, b"")
-            sys.exit("a transfer worked after the unplug")
+            sys.exit("a transfer succeeded after the unplug")
         except OSError as e:
             said.append(errno.errorcode[e.errno])
     print(f"20 packets of 64 bytes each way, then unplugged: {', '.join(sorted(set(said)))}")

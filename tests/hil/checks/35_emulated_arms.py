@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""tact-emu's two arms on the USB bus, met through usbfs: who they are, states, commands, watchdog, faults, unplug."""
+"""The two arms of tact-emu on the USB bus, through usbfs: identity, states, commands, watchdog, faults, unplug."""
 import os
 import sys
 
@@ -20,7 +20,7 @@ def good_states(board, count):
 
 
 def powered(board, emulator, serial):
-    """Enable edge, then current until the board says that it flows."""
+    """Sends an enable edge and a current; returns when the board reports that current flows."""
     board.command((0,) * 6, False)
     board.command(CURRENTS, True)
     emulator.until("amplifier", "on", serial)
@@ -45,12 +45,12 @@ def main():
             moved = left.state()
         assert moved["status"] & ON and moved["command_seen"] > 0, moved
         assert moved["counts"][0] != still["counts"][0], (still, moved)
-        tripped = emulator.until("amplifier", "tripped", "LEFT")  # nobody commands any more
+        tripped = emulator.until("amplifier", "tripped", "LEFT")  # no more commands
         zero = emulator.until("currents", "zero", "LEFT")
         assert zero["t_ns"] >= tripped["t_ns"]
         left.command(CURRENTS, True)
         good_states(left, 5)
-        assert emulator.status("LEFT")["detail"] == "tripped", "an enable that stayed up armed it again"
+        assert emulator.status("LEFT")["detail"] == "tripped", "an enable that stayed high armed the board again"
 
         powered(left, emulator, "LEFT")
         emulator.order("brown-out LEFT")
@@ -60,11 +60,11 @@ def main():
             pass
         emulator.order("well LEFT")
         emulator.until("fault", "well", "LEFT")
-        while emulator.newest("amplifier", "LEFT")[1]["detail"] != "off":  # fixed by the board's next step
+        while emulator.newest("amplifier", "LEFT")[1]["detail"] != "off":  # the board's next step clears it
             left.command((0,) * 6, False)
             left.state()
 
-        # A board whose states are not fetched in time drops the oldest, so many are spoilt and one has to be seen.
+        # A board drops the oldest states that are not fetched in time, so many states are corrupted to observe one.
         for fault, seen in (("corrupt", lambda a, b: not b["good"]),
                             ("repeat", lambda a, b: a["sequence"] == b["sequence"]),
                             ("reorder", lambda a, b: b["sequence"] < a["sequence"])):
@@ -76,7 +76,7 @@ def main():
                 assert len(states) < 200, (fault, states[-3:])
             emulator.order("well LEFT")
             emulator.until("fault", "well", "LEFT")
-            [left.state() for _ in range(20)]  # those that wait in the board
+            [left.state() for _ in range(20)]  # states queued in the board
             good_states(left, 20)
 
         emulator.order("stall LEFT")
@@ -98,12 +98,12 @@ def main():
             emulator.order("plug LEFT")
             emulator.until("usb", "configured", "LEFT")
             left = parts.Board("LEFT")
-            assert left.query()["boot"] == infos[0]["boot"], "it was not the board that lost its power"
+            assert left.query()["boot"] == infos[0]["boot"], "the board lost its power at the unplug"
             good_states(left, 5)
-        good_states(right, 5)  # the other one went on
+        good_states(right, 5)  # unaffected
 
         emulator.order("nonsense")
-        assert "there is no order" in emulator.until("refused")["detail"]
+        assert "unknown order" in emulator.until("refused")["detail"]
         code = emulator.end()
         assert code == 0, code
     assert parts.find_board("LEFT") is None and parts.find_board("RIGHT") is None

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""A virtual CAN interface carries FD frames and error frames, and says when it is down."""
+"""A virtual CAN interface carries FD frames and error frames, and reports when it is down."""
 import errno
 import os
 import socket
@@ -31,10 +31,10 @@ assert a.send(sent) == 72 and b.recv(72) == sent
 a.send(struct.pack("=IB3x8s", ERROR_FRAME | BUS_OFF, 8, bytes(8)))
 assert struct.unpack_from("=I", b.recv(72))[0] == ERROR_FRAME | BUS_OFF
 ip("link", "set", "vcan0", "down")
-for s in (a, b):  # each socket says it once: by the next call, whichever that is, even if the interface is up by then
+for s in (a, b):  # each socket reports it once, at its next call, even if the interface is up again by then
     try:
         s.recv(72)
-        raise SystemExit("a read worked while the interface was down")
+        raise SystemExit("a read succeeded while the interface was down")
     except OSError as e:
         assert e.errno == errno.ENETDOWN, e
 ip("link", "set", "vcan0", "up")

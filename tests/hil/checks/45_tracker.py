@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
-"""tact-rt with a head tracker of four sensors on vcan: classic and FD, and everything that can go wrong on the bus.
+"""tact-rt with a head tracker of four sensors on vcan: classic and FD, and all faults of the bus.
 
-usage: 45_tracker.py BIN_DIR. The head is frozen, lost and found again; the force never notices.
+usage: 45_tracker.py BIN_DIR. The head is frozen, lost and found again; the force is unaffected.
 """
 import os
 import subprocess
@@ -39,9 +39,9 @@ def head_is(state, link=None):
 
 
 def works(rt, after=0):
-    """The newest sample, which is newer than `after`; the head is in front of the screen, the force is on."""
+    """Returns the sequence number of a sample newer than `after`; asserts that the head is in front of the screen and the force is on."""
     now = rt.wait_for(lambda s: s.get("head") and s["head"]["sequence"] > after and s["head"]["link"] == "up"
-                      and s["head"]["state"] == "fresh", "a head that moves")
+                      and s["head"]["state"] == "fresh", "a moving head")
     x, y, z = now["head"]["pos_screen_m"]
     assert abs(x) < 0.6 and abs(y) < 0.6 and 0.2 < z < 1.2, now["head"]
     assert now["state"] == "active", (now["state"], now["reason"])
@@ -60,7 +60,7 @@ def session(form, faults):
         now = rt.status()
         assert now["state"] == "active" and now["servo"]["cycles"] > 0, now
         parts.unhurt(now)
-        assert not [line for line in rt.said() if "tact-rt error" in line], "the force noticed"
+        assert not [line for line in rt.said() if "tact-rt error" in line], "tact-rt logged an error"
         assert rt.end() == 0
         return now["servo"]["cycles"]
 
@@ -74,7 +74,7 @@ def everything(emulator, rt, seen):
         emulator.order(fault)
         rt.wait_for(head_is("lost", "up"), f"{fault}: lost")
         seen = well_again()
-    emulator.order("tracker flood")  # the newest frame comes again and again; the head goes on
+    emulator.order("tracker flood")  # the newest frame is repeated; head tracking continues
     before = rt.status()
     works(rt, before["head"]["sequence"] + 10)
     rt.wait_for(lambda s: s["servo"]["cycles"] > before["servo"]["cycles"] + 20, "cycles in the flood")
@@ -85,7 +85,7 @@ def everything(emulator, rt, seen):
     emulator.order("can down")
     rt.wait_for(head_is("lost", "down"), "down")
     seen = well_again("can up")
-    ip("link", "del", IFACE)  # an adapter is pulled out
+    ip("link", "del", IFACE)  # the adapter is unplugged
     rt.wait_for(head_is("lost", "gone"), "gone")
     make_interface()
     emulator.until("link", "found again")
@@ -102,5 +102,5 @@ def a_moment(emulator, rt, seen):
 make_interface()
 cycles = session("fd", everything) + session("classic", a_moment)
 ip("link", "del", IFACE)
-print(f"four sensors, {RATE_HZ} Hz, FD and classic; silence, NaN, corrupt, out of range, flood, bus off, down, gone: the "
-      f"head was lost and found; {cycles} servo cycles, active all the time")
+print(f"four sensors, {RATE_HZ} Hz, FD and classic; after silence, NaN, corrupt, out of range, flood, bus off, down, gone the "
+      f"head was found again; {cycles} servo cycles, always active")

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""A program becomes a CP2112 USB adapter (uhid), whose real driver makes a gpiochip; one line is driven, one read."""
+"""A program emulates a CP2112 USB adapter (uhid), for which the kernel's driver makes a gpiochip; one line is written, one read."""
 import fcntl
 import os
 import select
@@ -17,7 +17,7 @@ REPORTS = bytes((0x06, 0x00, 0xFF, 0x09, 0x01, 0xA1, 0x01, 0x15, 0x00, 0x26, 0xF
 
 
 class Adapter:
-    """Eight lines; output line 4 goes, inverted, to input line 0."""
+    """Eight lines; output line 4 is connected to input line 0 with inversion."""
 
     def __init__(self):
         self.out = self.direction = 0
@@ -67,7 +67,7 @@ def line(chip, offset, flags):
 adapter = Adapter()
 end = time.monotonic() + 60
 while (found := chip_of("cp2112_gpio")) is None:
-    assert time.monotonic() < end, "no gpiochip came"
+    assert time.monotonic() < end, "no gpiochip appeared"
     time.sleep(0.1)
 chip_fd, chip_name, count = found
 drive, sense = line(chip_fd, 4, OUTPUT), line(chip_fd, 0, INPUT)
@@ -75,4 +75,4 @@ for i in range(20):
     fcntl.ioctl(drive, SET_VALUES, bytes((i & 1,)) + bytes(63))
     assert fcntl.ioctl(sense, GET_VALUES, bytes(64))[0] == 1 - (i & 1), f"round {i}"
 os.write(adapter.fd, struct.pack("=I", DESTROY))
-print(f"{chip_name} of {count} lines by the kernel's hid-cp2112; 20 times set and read back")
+print(f"{chip_name} of {count} lines by the kernel's hid-cp2112; 20 times written and read back")

@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
-"""tact-rt docks with an arm behind USB: found by its serial, calibrated by a person, armed, and then everything goes wrong.
+"""tact-rt docks with an arm on USB: found by its serial, calibrated by a person, armed, then subjected to every fault.
 
-usage: 60_phantom_usb.py BIN_DIR. First at 1 kHz, with packets that are spoilt, until it is killed; then, emulated slower,
-each fault of board and cable and ten unplugs in one run. After each fault the motors have no current, and nothing but the
+usage: 60_phantom_usb.py BIN_DIR. First at 1 kHz with corrupted packets until it is killed; then, slower if emulated,
+each fault of board and cable and ten unplugs in one run. After each fault the motors have no current, and only the
 person arms them again.
 """
 import os
@@ -26,7 +26,7 @@ GROWTH_KB_MAX = 512  # from the second unplug to the last
 
 
 def session(rate_hz, arms, story):
-    """tact-rt and a board of that rate. The board's watchdog is counted in states; KVM's host may be a busy one."""
+    """Runs tact-rt with a board of that rate. The board's watchdog is a number of states; with KVM it is longer, because the host may be busy."""
     watchdog_ms = 20_000 // rate_hz if TCG else 1000
     config = f"""
 [servo]
@@ -49,7 +49,7 @@ timing_latches = "{parts.TIMING_LATCHES}"
             story(person_at_arms)
             parts.unhurt(rt.status())
             cycles = rt.status()["servo"]["cycles"]
-            os.kill(rt.process.pid, signal.SIGKILL)  # the board's own watchdog is what is left
+            os.kill(rt.process.pid, signal.SIGKILL)  # now only the board's own watchdog can stop the current
             parts.wait_for(lambda: not person_at_arms.flowing(), "zero after SIGKILL")
             assert emulator.status("LEFT")["flowing"] == 0
             return cycles
@@ -64,12 +64,12 @@ def rates(person_at_arms):
     after = look()
     seconds = after[2] - before[2]
     print(f"-- docked: about {(after[0] - before[0]) / seconds:.0f} cycles and {(after[1] - before[1]) / seconds:.0f} states "
-          "a second", flush=True)
+          "per second", flush=True)
 
 
 def docked(person_at_arms):
     rates(person_at_arms)
-    for order in SPOILT:  # a few bad packets: nobody feels them
+    for order in SPOILT:  # a few bad packets have no effect
         person_at_arms.emulator.order(order + " LEFT")
         person_at_arms.new_states(order)
         print(f"-- {order}: {person_at_arms.rt.state()}", flush=True)
@@ -78,7 +78,7 @@ def docked(person_at_arms):
 
 
 def holds(rt):
-    """What tact-rt has of the kernel: descriptors, threads, and kB of data."""
+    """Kernel resources of tact-rt: descriptors, threads, and kB of data."""
     folder = f"/proc/{rt.process.pid}"
     data = next(line for line in parts.text_of(f"{folder}/status").splitlines() if line.startswith("VmData"))
     return len(os.listdir(f"{folder}/fd")), len(os.listdir(f"{folder}/task")), int(data.split()[1])
@@ -88,7 +88,7 @@ def faults(person_at_arms):
     for order in FAULTS:
         person_at_arms.fault(order)
         SEEN.append(order)
-    # Seen only where a motor pushes against it while the others move: one encoder after the other.
+    # Detected only while a motor pushes against it and the others move: one encoder after the other.
     if any(person_at_arms.fault(f"encoder stuck {i}", patience_s=3.0) for i in (0, 1, 2, 0, 1, 2)):
         SEEN.append("encoder stuck")
     else:
@@ -106,7 +106,7 @@ def faults(person_at_arms):
 
 def main():
     cycles = session(1000, ("LEFT", "OTHER"), docked) + session(250 if TCG else 1000, ("LEFT",), faults)
-    print(f"an arm on USB docked, found by its serial beside another; zero and latched: {', '.join(SEEN)}, "
+    print(f"an arm on USB docked, found by its serial beside another; zero current and latched after: {', '.join(SEEN)}, "
           f"{UNPLUGS} unplugs without a leak; {cycles} cycles without an allocation, lock, page fault or system call but "
           "sleep; killed: zero by the board's watchdog")
     return 0

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Both arms in one tact-rt: told apart by their serials, calibrated and armed together; a fault of either stops both.
+"""Both arms in one tact-rt: identified by their serials, calibrated and armed together; a fault of either stops both.
 
 usage: 65_two_arms.py BIN_DIR
 """
@@ -45,7 +45,7 @@ def main():
             now = rt.status()
             parts.unhurt(now)
             assert rt.end() == 0
-    print(f"two arms held by one servo, a fault of either stops both: unplugs and an open safety chain; "
+    print(f"one servo with two arms: a fault of either stops both (unplugs, open safety chain); "
           f"{now['servo']['cycles']} cycles without an allocation, lock or page fault")
 
 

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """tact-rt with safety lines on an emulated CP2112: stops, broken wires, unplugged adapter, starved servo. 70_lines.py BIN
 
-The story is told by hil_lines_story; before it, tact-emu's own adapter is met once.
+First checks the adapter of tact-emu once, then runs hil_lines_story.
 """
 import os
 import subprocess
@@ -29,12 +29,12 @@ def emulators_adapter(bin_dir):
         return done.stdout if done.returncode == 0 else ""
 
     with parts.Emulator(bin_dir, "--lines") as emulator:
-        print(parts.wait_for(checked, "tact-emu's adapter taken by tact-rt"), end="")
+        print(parts.wait_for(checked, "tact-rt opens the adapter of tact-emu"), end="")
         emulator.order("lines unplug")
         emulator.order("lines stop")
         emulator.until("order", "lines stop")
         emulator.order("lines plug")
-        parts.wait_for(checked, "tact-emu's adapter plugged in again")
+        parts.wait_for(checked, "tact-rt opens the replugged adapter")
 
 
 def main():

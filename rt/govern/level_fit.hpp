@@ -1,0 +1,108 @@
+// Chooses the level of a haptic path: the smallest error among the levels whose predicted cost fits the period.
+//
+// Rows        candidate levels with the cost and error that the model predicts. Dry cycles measure the cost of each
+//             row (calibrate), so the first armed cycle already has its level.
+// Cost        the cost of a whole step: a step that was cut by its deadline counts as cost / work_done. Three
+//             statistics correct the prediction while the loop runs:
+//               speed      median of measured / predicted cost; follows within 0.1 s
+//               spread     p99.9 of measured / (speed x predicted) over some thousands of cycles
+//               interrupts p99.9 of the excess of steps that cost more than kInterrupted times the usual. A level
+//                          does not change the length of an interrupt, so the excess is added, not multiplied, and
+//                          takes at most kInterruptShare of the budget
+// Fits        speed x spread x predicted + interrupts + rest of the cycle <= kUse x period. The present row may
+//             use all of that, and falls after it exceeded that for kOver_s; a newly chosen row may use only kRise of
+//             it, so the level does not hunt
+// Deadline    about one miss in a thousand cycles is what the quantile permits; the third within as many lowers the
+//             level at once, to at most kMissRetreat of the present cost. An interrupted step counts less, since it
+//             would have missed at any level
+// Holds       the level rises kHold_s after a fall at the earliest; a fall after a rise doubles the hold, up to
+//             kHoldMost_s. A fall more than kHoldForgotten_s after the previous one restores kHold_s
+// Thread      servo; constant time, no allocation
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+#include "ipc/base/knob.hpp"
+#include "ipc/base/rt.hpp"
+#include "rt/govern/cost_spread.hpp"
+
+namespace tact {
+
+class LevelFit {
+public:
+    static constexpr std::size_t kRowsMax = 33;
+    static constexpr double kUse = 0.7, kRise = 0.88;
+    static constexpr double kInterruptShare = 0.3;
+    static constexpr double kHold_s = 0.5, kHoldMost_s = 8.0, kHoldForgotten_s = 10.0;
+    // Lower bound of the speed: steps in free space are cheaper than steps in contact.
+    static constexpr double kSpeedLeast = 0.7;
+    static constexpr std::uint32_t kTries = 3;  // dry steps per row
+    static constexpr double kOver_s = 0.1;
+    static constexpr double kMissRetreat = 0.85;  // cost limit after a miss, relative to the present cost
+
+    struct Row {
+        float level = 1.0F;
+        double cost_s = 0.0, error = 0.0;
+    };
+    // One cycle. recomputed: fraction of the work that was not reused from earlier steps.
+    struct Sample {
+        float level = 1.0F;
+        double model_s = 0.0;
+        double work_done = 1.0, recomputed = 1.0;
+        double rest_s = 0.0;  // cost of the previous cycle without the models
+        double dt_s = 0.0;
+        bool deadline_missed = false;
+    };
+    struct Limits {
+        double period_s = 1e-3;
+        double budget = 1.0;     // times kUse of the period; below 1 for a loop that shares its processor
+        float level_max = 1.0F;  // highest level at which the model's slow update keeps its period
+    };
+
+    // Levels must rise from row to row. Ignores impossible rows and those beyond kRowsMax. False: no row is left.
+    bool set_rows(std::span<const Row> rows) noexcept TACT_RT;
+    [[nodiscard]] std::span<const Row> rows() const noexcept { return {rows_.data(), count_}; }
+
+    // Dry cycles: the level to measure next; false when every row has been measured.
+    [[nodiscard]] bool calibrating(float& level) const noexcept TACT_RT;
+    void calibrate(double model_s, double rest_s) noexcept TACT_RT;
+    // Selects the best row that fits, whatever the present row.
+    float choose(const Limits& limits) noexcept TACT_RT;
+
+    // Call once a cycle. Returns the new level, whether it changed, and why.
+    struct Choice {
+        float level = 1.0F;
+        bool changed = false;
+        LevelReason reason = LevelReason::start;
+    };
+    Choice add(const Sample& sample, const Limits& limits) noexcept TACT_RT;
+    // Updates the statistics without choosing a level (the law "fixed").
+    CostSpread::Kind learn(const Sample& sample) noexcept TACT_RT;
+
+    // p99.9 cost of the model's step.
+    [[nodiscard]] double predicted_s(std::size_t row) const noexcept TACT_RT;
+    [[nodiscard]] std::size_t row() const noexcept TACT_RT { return row_; }
+
+private:
+    [[nodiscard]] double cost_at(float level) const noexcept;
+    [[nodiscard]] bool fits(std::size_t row, const Limits& limits, double part) const noexcept;
+    [[nodiscard]] std::size_t best(const Limits& limits, double part, double cost_s_most) const noexcept;
+    void follow_rest(double rest_s) noexcept;
+
+    std::array<Row, kRowsMax> rows_{};
+    std::array<double, kRowsMax> tried_s_{};  // smallest cost measured per row
+    std::size_t count_ = 0, row_ = 0;
+    std::uint32_t tries_ = 0;
+    CostSpread spread_;
+    double rest_s_ = 0.0;  // p99 cost of the rest of a cycle
+    double since_fall_s_ = 1e9, hold_s_ = kHold_s;
+    bool rose_ = false;    // the level rose since the last fall
+    double over_s_ = 0.0;  // time for which the present row has not fitted
+    double misses_ = 0.0;  // decaying count
+    std::uint32_t cycle_ = 0;
+};
+
+}  // namespace tact

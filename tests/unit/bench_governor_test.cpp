@@ -1,0 +1,46 @@
+// Pass and fail of the governor benchmark, for made-up runs.
+#include "tests/bench/bench_governor.hpp"
+
+#include <gtest/gtest.h>
+
+namespace tact {
+namespace {
+
+const GovernorRun kGood{
+    .miss_share = 0.0, .error_n = 0.11, .step_n = 0.004, .level = 0.8, .settled_s = 0.02, .rate_hz = 1000.0};
+// Levels 0.6, 0.8 and 1; the last misses a tenth of its deadlines.
+const std::vector<GovernorRun> kSweep{{.miss_share = 0.0, .error_n = 0.3, .step_n = 0.003, .level = 0.6},
+                                      {.miss_share = 5e-4, .error_n = 0.1, .step_n = 0.003, .level = 0.8},
+                                      {.miss_share = 0.1, .error_n = 0.0, .step_n = 0.2, .level = 1.0}};
+
+bool passes(GovernorRun run) { return governor_row(run, kSweep)["passed"].get<bool>(); }
+
+TEST(BenchGovernor, the_best_fixed_level_is_the_most_accurate_of_those_that_fit) {
+    const auto row = governor_row(kGood, kSweep);
+    EXPECT_EQ(row["best_fixed_level"].get<double>(), 0.8);
+    EXPECT_EQ(row["best_fixed_error_n_p50"].get<double>(), 0.1);
+    EXPECT_TRUE(row["passed"].get<bool>());
+}
+
+TEST(BenchGovernor, each_violated_limit_fails_the_run) {
+    const auto with = [](auto change) {
+        GovernorRun run = kGood;
+        change(run);
+        return run;
+    };
+    EXPECT_FALSE(passes(with([](auto& r) { r.fault = true; })));
+    EXPECT_FALSE(passes(with([](auto& r) { r.miss_share = 1e-3; })));
+    EXPECT_FALSE(passes(with([](auto& r) { r.error_n = 0.121; })));
+    EXPECT_TRUE(passes(with([](auto& r) { r.error_n = 0.12; })));
+    EXPECT_FALSE(passes(with([](auto& r) { r.step_n = 0.0061; })));
+    EXPECT_FALSE(passes(with([](auto& r) { r.settled_s = 0.11; })));
+}
+
+TEST(BenchGovernor, without_a_fitting_fixed_level_nothing_is_compared) {
+    const auto row = governor_row(kGood, {kSweep.back()});
+    EXPECT_TRUE(row["best_fixed_level"].is_null());
+    EXPECT_TRUE(row["passed"].get<bool>());
+}
+
+}  // namespace
+}  // namespace tact

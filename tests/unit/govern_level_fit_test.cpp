@@ -1,0 +1,250 @@
+// Choice of the haptic level: smallest error that fits, whole costs, misses, interrupts, no hunting.
+#include "rt/govern/level_fit.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <functional>
+#include <random>
+#include <vector>
+
+namespace tact {
+namespace {
+
+using Rows = std::vector<LevelFit::Row>;
+
+constexpr double kUs = 1e-6;
+
+// Costs double from level to level, errors halve; the last is exact.
+Rows doubling(std::size_t count, double first_us) {
+    Rows rows;
+    for (std::size_t i = 0; i < count; ++i)
+        rows.push_back({.level = static_cast<float>(i) / static_cast<float>(count - 1),
+                        .cost_s = kUs * first_us * std::exp2(static_cast<double>(i)),
+                        .error = i + 1 == count ? 0.0 : std::exp2(-static_cast<double>(i))});
+    return rows;
+}
+
+LevelFit with(const Rows& rows) {
+    LevelFit fit;
+    EXPECT_TRUE(fit.set_rows(rows));
+    return fit;
+}
+
+// A loop whose steps cost `cost_us` of their row. The deadline ends a step, which has then done a part of its work.
+class Loop {
+public:
+    Loop(LevelFit& fit, double period_us, double other_us = 10.0)
+        : fit_(fit), period_us_(period_us), other_us_(other_us) {
+        level_ = fit.choose(limits());
+    }
+    [[nodiscard]] LevelFit::Limits limits() const { return {.period_s = kUs * period_us_}; }
+    void run(int cycles, const std::function<double(std::size_t row)>& cost_us) {
+        const double deadline_us = 0.7 * period_us_;
+        for (int i = 0; i < cycles; ++i) {
+            const double whole_us = cost_us(fit_.row()), took_us = std::min(whole_us, deadline_us + 5.0);
+            cost_us_.push_back(whole_us + other_us_);
+            const bool missed = took_us > deadline_us;
+            misses += missed ? 1 : 0;
+            const LevelFit::Choice choice = fit_.add({.level = level_,
+                                                      .model_s = kUs * took_us,
+                                                      .work_done = took_us / whole_us,
+                                                      .rest_s = kUs * other_us_,
+                                                      .dt_s = kUs * period_us_,
+                                                      .deadline_missed = missed},
+                                                     limits());
+            changes += choice.changed ? 1 : 0;
+            level_ = choice.level;
+        }
+    }
+    [[nodiscard]] double p999_us(std::size_t last) const {
+        std::vector<double> costs(cost_us_.end() - static_cast<std::ptrdiff_t>(last), cost_us_.end());
+        std::sort(costs.begin(), costs.end());
+        return costs[static_cast<std::size_t>(std::ceil(0.999 * static_cast<double>(last))) - 1];
+    }
+    int misses = 0, changes = 0;
+
+private:
+    LevelFit& fit_;
+    double period_us_, other_us_;
+    float level_ = 0.0F;
+    std::vector<double> cost_us_;
+};
+
+TEST(LevelFit, the_first_choice_is_the_row_of_least_error_among_those_that_fit) {
+    std::mt19937 random(3);
+    std::uniform_real_distribution<double> cost_us(1.0, 1500.0), error(0.0, 1.0);
+    int compared = 0;
+    for (int n = 0; n < 500; ++n) {
+        Rows rows;
+        for (int i = 0; i < 12; ++i)
+            rows.push_back({.level = static_cast<float>(i) / 11.0F,
+                            .cost_s = kUs * cost_us(random),
+                            .error = error(random)});
+        LevelFit fit = with(rows);
+        const float chosen = fit.choose({.period_s = 1e-3});
+        // The spread starts at its prior, whose bin of 1.15 ends at 1.1582. A new row uses at most 90 % of the limit.
+        const double most_s = 0.88 * 0.7e-3 / 1.1582;
+        double best = 1e9;
+        float wanted = -1.0F;
+        bool at_the_edge = false;
+        for (const auto& row : rows) {
+            at_the_edge = at_the_edge || std::abs(row.cost_s / most_s - 1.0) < 0.01;
+            if (row.cost_s <= most_s && row.error < best) best = row.error, wanted = row.level;
+        }
+        if (wanted >= 0.0F && !at_the_edge) {
+            EXPECT_EQ(chosen, wanted);
+            ++compared;
+        }
+    }
+    EXPECT_GT(compared, 300);
+}
+
+TEST(LevelFit, a_costlier_row_with_a_larger_error_is_never_chosen) {
+    // A blend of two levels costs both and lies between their errors.
+    LevelFit fit = with({{0.0F, 50 * kUs, 1.0}, {0.5F, 250 * kUs, 0.5}, {1.0F, 200 * kUs, 0.1}});
+    EXPECT_EQ(fit.choose({.period_s = 1e-3}), 1.0F);
+}
+
+TEST(LevelFit, calibration_tries_each_row_and_measures_what_the_prediction_missed) {
+    LevelFit fit = with(doubling(5, 1.0));
+    float level = -1.0F;
+    int tries = 0;
+    while (fit.calibrating(level)) {
+        const std::size_t row = static_cast<std::size_t>(std::lround(level * 4.0F));
+        fit.calibrate(kUs * 100.0 * std::exp2(static_cast<double>(row)),
+                      5 * kUs);  // a hundred times the prediction
+        ++tries;
+    }
+    EXPECT_EQ(tries, 15);
+    for (std::size_t i = 0; i < 5; ++i)
+        EXPECT_NEAR(fit.rows()[i].cost_s, 100.0 * kUs * std::exp2(static_cast<double>(i)), 1e-12);
+    EXPECT_EQ(fit.choose({.period_s = 1e-3}), 0.5F);
+}
+
+TEST(LevelFit, the_tail_of_the_cycle_stays_within_seven_tenths_of_the_period_at_any_rate) {
+    for (const double period_us : {2000.0, 1000.0, 500.0, 250.0, 125.0}) {
+        LevelFit fit = with(doubling(9, 5.0));
+        Loop loop(fit, period_us);
+        std::mt19937 random(7);
+        std::lognormal_distribution<double> noise(0.0, 0.08);
+        loop.run(20000,
+                 [&](std::size_t row) { return 5.0 * std::exp2(static_cast<double>(row)) * noise(random); });
+        EXPECT_LE(loop.p999_us(10000), 0.7 * period_us * 1.02) << period_us;
+        EXPECT_EQ(loop.misses, 0) << period_us;
+        EXPECT_LE(loop.changes, 2) << period_us;
+        // No lower than necessary: the next row would not fit.
+        EXPECT_GT(2.0 * loop.p999_us(10000), 0.88 * 0.7 * period_us) << period_us;
+    }
+}
+
+TEST(LevelFit, a_step_cut_by_its_deadline_counts_as_the_whole_one) {
+    // The true cost is four times the prediction: at the first level the deadline cuts every step.
+    LevelFit fit = with(doubling(6, 20.0));
+    Loop loop(fit, 1000.0);
+    loop.run(2000, [](std::size_t row) { return 4.0 * 20.0 * std::exp2(static_cast<double>(row)); });
+    EXPECT_LT(loop.misses, 12);
+    EXPECT_LE(loop.p999_us(1000), 700.0);
+    const int before = loop.misses;
+    loop.run(20000, [](std::size_t row) { return 4.0 * 20.0 * std::exp2(static_cast<double>(row)); });
+    EXPECT_EQ(loop.misses, before);  // the level does not rise back into the deadline
+}
+
+TEST(LevelFit, one_interrupted_step_lowers_nothing_and_misses_close_together_do) {
+    LevelFit fit = with(doubling(6, 10.0));
+    Loop loop(fit, 1000.0);
+    const auto usual = [](std::size_t row) { return 10.0 * std::exp2(static_cast<double>(row)); };
+    const auto interrupted = [](std::size_t) { return 5000.0; };
+    const float before = fit.rows()[fit.row()].level;
+    for (int i = 0; i < 10; ++i) {
+        loop.run(2500, usual);
+        loop.run(1, interrupted);
+        EXPECT_EQ(fit.rows()[fit.row()].level, before);
+    }
+    loop.run(4, interrupted);
+    EXPECT_LT(fit.rows()[fit.row()].level, before);
+}
+
+TEST(LevelFit, the_third_miss_within_a_thousand_cycles_lowers_the_level_at_once) {
+    LevelFit fit = with(doubling(6, 10.0));
+    Loop loop(fit, 321.0);
+    const auto usual = [](std::size_t row) { return 10.0 * std::exp2(static_cast<double>(row)); };
+    const auto missed = [&](std::size_t row) { return 1.5 * usual(row); };  // no interrupt
+    loop.run(2500, usual);
+    const std::size_t before = fit.row();
+    ASSERT_GT(1.5 * usual(before), 0.7 * 321.0);
+    for (int i = 0; i < 3; ++i) {
+        loop.run(1, missed);
+        loop.run(3000, usual);
+        EXPECT_EQ(fit.row(), before);
+    }
+    for (int i = 0; i < 3; ++i) {
+        EXPECT_EQ(fit.row(), before);
+        loop.run(100, usual);
+        loop.run(1, missed);
+    }
+    EXPECT_LT(fit.row(), before);
+}
+
+TEST(LevelFit, a_processor_that_slows_by_half_is_followed_within_a_tenth_of_a_second_and_back) {
+    LevelFit fit = with(doubling(7, 8.0));
+    Loop loop(fit, 1000.0);
+    const auto at_speed = [](double factor) {
+        return [factor](std::size_t row) { return factor * 8.0 * std::exp2(static_cast<double>(row)); };
+    };
+    loop.run(3000, at_speed(1.0));
+    const std::size_t fast = fit.row();
+    loop.run(100, at_speed(1.45));
+    EXPECT_LE(8.0 * 1.45 * std::exp2(static_cast<double>(fit.row())), 700.0);
+    const int misses = loop.misses;
+    loop.run(3000, at_speed(1.45));
+    EXPECT_EQ(loop.misses, misses);
+    loop.run(20000, at_speed(1.0));
+    EXPECT_EQ(fit.row(), fast);
+}
+
+TEST(LevelFit, steps_in_free_space_do_not_raise_the_level_of_a_step_in_contact) {
+    LevelFit fit = with(doubling(7, 10.0));
+    Loop loop(fit, 1000.0);
+    const std::size_t before = fit.row();
+    loop.run(30000, [](std::size_t) { return 0.5; });
+    EXPECT_LE(fit.row(), before + 1);  // kSpeedLeast of the predicted cost
+    const int misses = loop.misses;
+    loop.run(1000, [](std::size_t row) { return 10.0 * std::exp2(static_cast<double>(row)); });
+    EXPECT_EQ(loop.misses, misses);
+}
+
+TEST(LevelFit, a_cost_at_the_edge_of_the_limit_does_not_make_the_level_hunt) {
+    LevelFit fit = with(doubling(6, 20.0));
+    Loop loop(fit, 1000.0);
+    std::mt19937 random(5);
+    std::normal_distribution<double> noise(1.0, 0.02);
+    double drift = 1.0;
+    loop.run(60000, [&](std::size_t row) {
+        drift = std::clamp(drift + 0.001 * (noise(random) - 1.0), 0.9, 1.1);
+        return 1.05 * drift * noise(random) * 20.0 * std::exp2(static_cast<double>(row));
+    });
+    EXPECT_LE(loop.changes, 6);
+}
+
+TEST(LevelFit, a_budget_and_a_highest_level_bound_the_choice) {
+    LevelFit fit = with(doubling(6, 10.0));
+    const float whole = fit.choose({.period_s = 1e-3});
+    EXPECT_LT(fit.choose({.period_s = 1e-3, .budget = 0.2}), whole);
+    EXPECT_LE(fit.choose({.period_s = 1e-3, .level_max = 0.3F}), 0.3F);
+    EXPECT_EQ(fit.choose({.period_s = 1e-6}), 0.0F);  // nothing fits: the floor
+}
+
+TEST(LevelFit, invalid_rows_are_ignored) {
+    LevelFit fit;
+    EXPECT_FALSE(fit.set_rows({}));
+    EXPECT_EQ(fit.add({.level = 0.4F}, {}).level, 0.4F);
+    const Rows bad{{0.5F, NAN, 0.0}, {0.2F, 1e-6, 1.0}, {0.1F, 1e-6, 0.5}, {2.0F, 1e-6, 0.0}};
+    EXPECT_TRUE(fit.set_rows(bad));
+    EXPECT_EQ(fit.rows().size(), 1U);
+}
+
+}  // namespace
+}  // namespace tact
