@@ -95,7 +95,9 @@ void describe(CLI::App& app, StartOptions& o, StartOverrides& v) {
     app.add_option("--friction", o.surface.friction, "Friction coefficient of the surface")
         ->check(CLI::Range(0.0, 2.0))
         ->capture_default_str();
-    app.add_option("--mode", v.surface_mode, "Contact search on the surface; chr: detailed around the tool")
+    app.add_option(
+           "--mode", v.surface_mode,
+           "Contact search on the surface; chr: refined around the tool, which saves the servo no time")
         ->check(CLI::IsMember({"off-brute", "off-tree", "chr"}));
     app.add_option("--seed", o.seed, "Random seed for the start direction and the emulated hand");
     app.add_option("--force-scale", v.force_scale, "Factor on the force gain of the scene")

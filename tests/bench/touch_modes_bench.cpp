@@ -1,10 +1,11 @@
-// A ball that slides over a rough sphere: time of the servo's step in the modes off-tree and chr, on one path.
+// A ball, or a block of 1000 points, that slides over a rough sphere: time of the servo's step in the modes off-tree and
+// chr, on one path.
 //
 // Case      once around and up and down, 1 mm deep, at 55 or 500 mm/s of the hand; 92,480 triangles, two million
-//           if the environment variable TACT_BENCH_LARGE is set, ten million if it is 10m. The slow update of chr runs after
-//           every fourth step on the same thread, or (Live) every 4 ms on a parallel thread beside 1 ms steps, as in tact-rt.
-// Metrics   servo_us: of a step, minimum of two passes; adaptive: fraction of the steps on the adaptive surface;
-//           slow_update_us: of one slow_update(); near: triangles predicted for this fidelity.
+//           where the environment variable TACT_BENCH_LARGE is set, ten where it is 10m. the slow update of chr runs every fourth step by the same
+//           thread, or (Live) steps are 1 ms apart and a thread beside it updates it every 4 ms, as in tact-rt.
+// Figures   servo_us: of a step, of the least of two passes; adaptive: share of the steps that were felt on the adaptive
+//           surface; tend_us: of one slow_update(); near: triangles in it, predicted for this fidelity.
 // Measured  see rt/force/surface/README.md.
 #include <benchmark/benchmark.h>
 
@@ -14,11 +15,13 @@
 #include <cstdlib>
 #include <string_view>
 #include <thread>
+#include <type_traits>
 #include <vector>
 
 #include "prep/surface/bake_surface.hpp"
+#include "prep/synthetic/made_tool.hpp"
 #include "prep/synthetic/rough_sphere.hpp"
-#include "rt/force/surface/surface_model.hpp"
+#include "rt/force/surface/tool_model.hpp"
 
 namespace tact {
 namespace {
@@ -35,6 +38,8 @@ struct Baked {
         SurfaceInput input;
         const char* const large = std::getenv("TACT_BENCH_LARGE");
         input.mesh = rough_sphere(large == nullptr ? 68 : std::string_view(large) == "10m" ? 707 : 316);
+        input.tool = made_tool("block");
+        input.tool_sampling.points = 1000;
         input.picture = false;
         ball_m *= bake_surface(std::move(input), out).meta.world_per_model;
         return out.to_bytes();
@@ -58,16 +63,34 @@ double percentile(std::vector<double> us, double part) {
     return us.empty() ? 0.0 : us[static_cast<std::size_t>(part * static_cast<double>(us.size() - 1))];
 }
 
+std::unique_ptr<SurfaceModel> load(const SurfaceModel* /*kind*/, const Baked& baked, double radius_m,
+                                   SurfaceMode mode) {
+    return load_surface_model(baked.file, {.radius_m = radius_m, .mode = mode});
+}
+std::unique_ptr<ToolModel> load(const ToolModel* /*kind*/, const Baked& baked, double /*radius_m*/,
+                                SurfaceMode mode) {
+    return load_tool_model(baked.file, {.mode = mode});
+}
+bool adaptive_step(const SurfaceModel& model) { return model.regime() == TouchRegime::adaptive; }
+bool adaptive_step(const ToolModel& model) { return model.regime() == TouchRegime::adaptive; }
+double predicted_triangles(const SurfaceModel& model) {
+    return model.adaptive() == nullptr ? 0.0 : model.adaptive()->predicted_triangles(1.0F);
+}
+double predicted_triangles(const ToolModel& /*model*/) { return 0.0; }
+
+template <class Model>
 void run(benchmark::State& state, SurfaceMode mode, double speed_m_s, bool live) {
     static const Baked baked;
-    const double radius_m = 1e-3 * static_cast<double>(state.range(0));
+    // Of the block: half its height.
+    const double radius_m =
+        std::is_same_v<Model, ToolModel> ? 4e-3 : 1e-3 * static_cast<double>(state.range(0));
     std::vector<double> servo_us(kSteps, 1e300), slow_update_us;
     double adaptive = 0.0, predicted = 0.0;
     const int passes = live ? 1 : 2;
     for (auto _ : state) {
         for (int pass = 0; pass < passes; ++pass) {
-            const auto model = load_surface_model(baked.file, {.radius_m = radius_m, .mode = mode});
-            const Vec3 middle = model->meta().to_world(Vec3::Zero());
+            const auto model = load(static_cast<const Model*>(nullptr), baked, radius_m, mode);
+            const Vec3 middle = read_meta(baked.file).to_world(Vec3::Zero());
             std::atomic<int> now{0}, stop{0};
             const auto slow_update = [&](int i) {
                 const Instant begin = Monotonic::now();
@@ -95,32 +118,76 @@ void run(benchmark::State& state, SurfaceMode mode, double speed_m_s, bool live)
                 (void)model->step(tool, {.fidelity = 1.0F});
                 auto& least = servo_us[static_cast<std::size_t>(i)];
                 least = std::min(least, to_us(Monotonic::now() - begin));
-                adaptive += model->regime() == TouchRegime::adaptive ? 1.0 / (kSteps * passes) : 0.0;
+                adaptive += adaptive_step(*model) ? 1.0 / (kSteps * passes) : 0.0;
                 next += std::chrono::milliseconds(1);
                 if (live) std::this_thread::sleep_until(next);
             }
             stop = 1;
             if (beside.joinable()) beside.join();
-            if (model->adaptive() != nullptr) predicted = model->adaptive()->predicted_triangles(1.0F);
+            predicted = predicted_triangles(*model);
         }
     }
     state.counters["servo_us_p50"] = percentile(servo_us, 0.5);
     state.counters["servo_us_p99"] = percentile(servo_us, 0.99);
     state.counters["servo_us_p999"] = percentile(servo_us, 0.999);
-    state.counters["slow_update_us_p50"] = percentile(slow_update_us, 0.5);
-    state.counters["slow_update_us_p99"] = percentile(slow_update_us, 0.99);
+    state.counters["tend_us_p50"] = percentile(slow_update_us, 0.5);
+    state.counters["tend_us_p99"] = percentile(slow_update_us, 0.99);
     state.counters["adaptive"] = adaptive;
     state.counters["near_predicted"] = predicted;
 }
 
-void Tree(benchmark::State& state) { run(state, SurfaceMode::off_tree, 0.055, false); }
-void Chr(benchmark::State& state) { run(state, SurfaceMode::chr, 0.055, false); }
-void ChrFast(benchmark::State& state) { run(state, SurfaceMode::chr, 0.5, false); }
-void ChrFastLive(benchmark::State& state) { run(state, SurfaceMode::chr, 0.5, true); }
-BENCHMARK(Tree)->Arg(0)->Arg(1)->Arg(3)->Iterations(1)->Unit(benchmark::kMillisecond);
-BENCHMARK(Chr)->Arg(0)->Arg(1)->Arg(3)->Iterations(1)->Unit(benchmark::kMillisecond);
-BENCHMARK(ChrFast)->Arg(0)->Arg(1)->Arg(3)->Iterations(1)->Unit(benchmark::kMillisecond);
+void Tree(benchmark::State& state) { run<SurfaceModel>(state, SurfaceMode::off_tree, 0.055, false); }
+void Chr(benchmark::State& state) { run<SurfaceModel>(state, SurfaceMode::chr, 0.055, false); }
+void TreeFast(benchmark::State& state) { run<SurfaceModel>(state, SurfaceMode::off_tree, 0.5, false); }
+void ChrFast(benchmark::State& state) { run<SurfaceModel>(state, SurfaceMode::chr, 0.5, false); }
+void ChrFastLive(benchmark::State& state) { run<SurfaceModel>(state, SurfaceMode::chr, 0.5, true); }
+void ToolTree(benchmark::State& state) { run<ToolModel>(state, SurfaceMode::off_tree, 0.055, false); }
+void ToolChr(benchmark::State& state) { run<ToolModel>(state, SurfaceMode::chr, 0.055, false); }
+BENCHMARK(Tree)->Arg(0)->Arg(1)->Arg(3)->Arg(20)->Iterations(1)->Unit(benchmark::kMillisecond);
+BENCHMARK(Chr)->Arg(0)->Arg(1)->Arg(3)->Arg(20)->Iterations(1)->Unit(benchmark::kMillisecond);
+BENCHMARK(TreeFast)->Arg(0)->Arg(1)->Arg(3)->Arg(20)->Iterations(1)->Unit(benchmark::kMillisecond);
+BENCHMARK(ChrFast)->Arg(0)->Arg(1)->Arg(3)->Arg(20)->Iterations(1)->Unit(benchmark::kMillisecond);
 BENCHMARK(ChrFastLive)->Arg(1)->Arg(3)->Iterations(1)->Unit(benchmark::kMillisecond);
+BENCHMARK(ToolTree)->Iterations(1)->Unit(benchmark::kMillisecond);
+BENCHMARK(ToolChr)->Iterations(1)->Unit(benchmark::kMillisecond);
+
+// What the knob buys: the fewest moves of each level on the same fast path, and how far its force is from that of all.
+void Level(benchmark::State& state) {
+    static const Baked baked;
+    const double radius_m = 1e-3 * static_cast<double>(state.range(0));
+    const auto fidelity = 0.01F * static_cast<float>(state.range(1));
+    std::vector<double> us, off_n, error_n, predicted_n;
+    double short_of = 0.0;
+    for (auto _ : state) {
+        const auto model = load_surface_model(baked.file, {.radius_m = radius_m}),
+                   whole = load_surface_model(baked.file, {.radius_m = radius_m});
+        const Vec3 middle = read_meta(baked.file).to_world(Vec3::Zero());
+        for (int i = 0; i < kSteps; ++i) {
+            const ToolState tool = tool_at(baked, middle, radius_m, 0.5, i);
+            if (i == 0) {
+                model->reset(tool);
+                whole->reset(tool);
+            }
+            predicted_n.push_back(whole->predict(fidelity).error);
+            const StepResult full = whole->step(tool, {.fidelity = 1.0F});
+            const Instant begin = Monotonic::now();
+            const StepResult now = model->step(tool, {.fidelity = fidelity});
+            us.push_back(to_us(Monotonic::now() - begin));
+            off_n.push_back((now.wrench_world.force_n - full.wrench_world.force_n).norm());
+            error_n.push_back(now.load.error);
+            short_of += model->contact().state == ContactState::lagging ? 1.0 / kSteps : 0.0;
+        }
+    }
+    state.counters["us_p50"] = percentile(us, 0.5);
+    state.counters["us_p999"] = percentile(us, 0.999);
+    state.counters["n_off_p50"] = percentile(off_n, 0.5);
+    state.counters["n_off_p99"] = percentile(off_n, 0.99);
+    state.counters["n_off_max"] = percentile(off_n, 1.0);
+    state.counters["error_n_p99"] = percentile(error_n, 0.99);
+    state.counters["predicted_n_p99"] = percentile(predicted_n, 0.99);
+    state.counters["lagging"] = short_of;
+}
+BENCHMARK(Level)->ArgsProduct({{0, 3, 20}, {5, 25, 50, 100}})->Iterations(1)->Unit(benchmark::kMillisecond);
 
 }  // namespace
 }  // namespace tact

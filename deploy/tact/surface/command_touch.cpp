@@ -21,7 +21,8 @@ constexpr PassedOption kTouchController[] = {
     {"--tool-radius-mm", "MM", "Radius of the ball that touches the surface (mm); 0: a point"},
     {"--stiffness", "N/M", "Stiffness of the surface (N/m)"},
     {"--friction", "MU", "Friction coefficient of the surface"},
-    {"--mode", "off-brute|off-tree|chr", "Contact search on the surface; chr: detailed around the tool"},
+    {"--mode", "off-brute|off-tree|chr",
+     "Contact search on the surface; chr: refined around the tool, which saves the servo no time"},
 };
 
 struct TouchOptions {

@@ -23,7 +23,8 @@ namespace {
 
 // A larger level is preceded by the sum of one of at most 1/kSafeShare of its size, as a fallback.
 constexpr std::size_t kSafeShare = 16;
-constexpr double kOnLevel = 1e-5;  // fraction of the distance between levels
+constexpr float kPartLeast = 0.01F;  // work of a late step that recomputed nothing
+constexpr double kOnLevel = 1e-5;    // fraction of the distance between levels
 
 }  // namespace
 
@@ -102,7 +103,7 @@ StepResult LevelBlend::evaluate(const Pose& T_model_body, const Budget& budget,
     const PartialSums::Result lower = sum_level(p.lower, T_model_body, budget, kept);
     if (!lower.complete) {
         result.status = StepStatus::out_of_time;
-        result.load.work_done = lower.recomputed_fraction;
+        result.load.work_done = std::max(lower.recomputed_fraction, kPartLeast);
     } else {
         use(p.lower, lower);
         bool late = lower.late;
@@ -123,7 +124,7 @@ StepResult LevelBlend::evaluate(const Pose& T_model_body, const Budget& budget,
             }
         }
         if (late || budget.deadline.passed()) result.status = StepStatus::out_of_time;
-        if (late) result.load.work_done = result.load.recomputed_fraction;
+        if (late) result.load.work_done = std::max(result.load.recomputed_fraction, kPartLeast);
     }
     result.load.cost = Monotonic::now() - begin;
     return result;
