@@ -10,6 +10,7 @@
 namespace tact {
 namespace {
 
+constexpr double kShaftBeyondHeadM = 10e-3;
 constexpr double kTubeM = 40e-3;     // length of the tube in the force model, if it is thick enough
 constexpr double kTubeBalls = 28.0;  // longest tube in diameters; DrillTool::kMax minus tip and rounding
 
@@ -46,6 +47,9 @@ DrillSettings burr_settings(const RtConfig& config, std::uint64_t seed) {
     s.tool.tip_radius_m = std::min(s.tool.tip_radius_m, s.tool.radius_m);
     s.tool.length_m = 1e-3 * d.burr_length_mm;
     s.tool.shaft_radius_m = 0.5e-3 * d.shaft_diameter_mm;
+    // A large head has a longer shaft, so that every diameter that the configuration allows is a tool.
+    s.tool.shaft_length_m =
+        std::max(s.tool.shaft_length_m, s.tool.radius_m + s.tool.length_m + kShaftBeyondHeadM);
     s.burr_rad_s = burr_rad_s(config);
     s.rate_per_s = d.rate_per_s;
     s.vibration = d.vibration;

@@ -46,6 +46,15 @@ TEST(StartDrill, every_allowed_suction_tube_diameter_makes_a_tool) {
     }
 }
 
+TEST(StartDrill, burrs_up_to_the_largest_allowed_diameter_make_a_tool) {
+    for (double mm = 4.0; mm <= 40.0; mm += 0.5) {
+        RtConfig c;
+        c.drilling.burr_diameter_mm = mm;
+        c.drilling.shaft_diameter_mm = std::min(c.drilling.shaft_diameter_mm, mm);
+        EXPECT_GT(make_drill_tool(burr_settings(c, 1).tool).count, 1U) << mm;
+    }
+}
+
 TEST(StartDrill, a_tool_thinner_than_a_voxel_is_thickened_to_a_voxel) {
     SceneMeta meta{};
     meta.world_per_model = 1.0;
