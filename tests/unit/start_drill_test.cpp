@@ -1,6 +1,8 @@
 // The tools with which tact-rt starts.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "rt/start/start_drill.hpp"
 
 namespace tact {
