@@ -51,10 +51,11 @@ struct SharedCore::Parts {
           core(s.core >= 0 ? s.core : last_core()),
           x(scratch.path(), 640, 480),
           tick_source(core) {
-        write_whole(scratch.path() / "tact.toml",
-                    // No limit on a step's time; the device's watchdog tolerates a loop that waits for the
-                    // processor.
-                    "[servo]\nmodel_us_max = 100000\n[device]\nhand = \"wander\"\nwatchdog_us = 1e6\n");
+        // The device's watchdog tolerates a loop that waits for the processor.
+        const std::string device = "[device]\nhand = \"wander\"\nwatchdog_us = 1e6\n";
+        write_whole(scratch.path() / "fifo.toml", device);
+        // Free running: no limit on a step's time.
+        write_whole(scratch.path() / "tact.toml", "[servo]\nmodel_us_max = 100000\n" + device);
         log = FileDescriptor(
             open((scratch.path() / "log").c_str(), O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC, 0600));
         environment = x.environment();
@@ -77,7 +78,7 @@ struct SharedCore::Parts {
                                    "--session",
                                    kSession,
                                    "--config",
-                                   (scratch.path() / "tact.toml").string(),
+                                   (scratch.path() / (run.fifo ? "fifo.toml" : "tact.toml")).string(),
                                    "--core",
                                    "-2",
                                    "--arm",
