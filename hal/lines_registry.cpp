@@ -21,7 +21,7 @@ std::unique_ptr<Lines> make_gpio(const LinesSettings& s) {
 }
 
 constexpr std::array kLines{
-    LinesEntry{"none", "no safety lines are monitored", &make_none},
+    LinesEntry{"none", "no safety inputs are monitored", &make_none},
     LinesEntry{"sim", "emulated lines: SIGUSR1 presses the emergency stop, SIGUSR2 releases it", &make_sim},
     LinesEntry{"gpio", "lines of a GPIO chip, such as a USB adapter", &make_gpio},
 };
@@ -36,7 +36,7 @@ std::unique_ptr<Lines> make_lines(const LinesSettings& settings) {
         if (settings.driver == t.name) return t.make(settings);
         known += (known.empty() ? "" : ", ") + std::string(t.name);
     }
-    throw StartupError("safety lines \"" + settings.driver + "\"", "no driver has this name",
+    throw StartupError("safety inputs \"" + settings.driver + "\"", "no driver has this name",
                        "set lines.driver to one of: " + known);
 }
 

@@ -132,7 +132,7 @@ int run(std::span<char* const> arguments, const StartOptions& o, const StartOver
         head.emplace(head_settings_from(config), std::move(tracker), region->head, region->tracker);
     const std::string head_on = head ? head->open().name : "no head tracker";
     const std::unique_ptr<Lines> lines = make_lines(lines_settings_from(config));
-    const std::string lines_on = lines ? lines->open().name : "no safety lines";
+    const std::string lines_on = lines ? lines->open().name : "no safety inputs";
     ServoSettings settings = settings_from(config, emulated);
     settings.visual_paths = system.visual_paths();
     const std::array hands{HandParts{device.get(), model.get(), info, system.drive(0)},

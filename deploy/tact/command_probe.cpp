@@ -21,7 +21,7 @@ nlohmann::json node_json(const probe::Node& n) {
 nlohmann::json buses_json(const probe::Buses& b) {
     nlohmann::json usb = nlohmann::json::array(), can = nlohmann::json::array(),
                    gpio = nlohmann::json::array();
-    for (const probe::UsbDevice& d : b.usb.there) {
+    for (const probe::UsbDevice& d : b.usb.entries) {
         nlohmann::json nodes = nlohmann::json::array();
         for (const probe::Node& n : d.nodes) nodes.push_back(node_json(n));
         usb.push_back({{"vendor", d.vendor},
@@ -35,9 +35,9 @@ nlohmann::json buses_json(const probe::Buses& b) {
                        {"driver", d.known != nullptr ? d.known->driver : ""},
                        {"known_as", d.known != nullptr ? d.known->what : ""}});
     }
-    for (const probe::CanInterface& c : b.can.there)
+    for (const probe::CanInterface& c : b.can.entries)
         can.push_back({{"name", c.name}, {"up", c.up}, {"fd", c.fd}});
-    for (const probe::GpioChip& c : b.gpio.there)
+    for (const probe::GpioChip& c : b.gpio.entries)
         gpio.push_back({{"name", c.name}, {"label", c.label}, {"node", node_json(c.node)}});
     return {{"usb", {{"visible", b.usb.visible}, {"devices", usb}}},
             {"can", {{"visible", b.can.visible}, {"interfaces", can}}},

@@ -44,7 +44,7 @@ void show(const Observer& observer, bool as_json) {
                 report["reason"].get<std::string>().c_str(),
                 report["scene"]["path"].get<std::string>().c_str());
     if (report.contains("lines")) {
-        std::printf("safety lines %s: %s\n", report["lines"]["state"].get<std::string>().c_str(),
+        std::printf("safety inputs %s: %s\n", report["lines"]["state"].get<std::string>().c_str(),
                     report["lines"]["reason"].get<std::string>().c_str());
     }
     for (const nlohmann::json& device : report["devices"]) {

@@ -136,7 +136,7 @@ void devices(Page& page, const DevicesTopic& d) {
                           const auto& has) {
         page.about(name, type, help);
         for (std::size_t hand = 0; hand < kHandsMax; ++hand)
-            if (d.hand[hand].there != 0 && has(d.hand[hand]))
+            if (d.hand[hand].valid != 0 && has(d.hand[hand]))
                 page.value(of(d.hand[hand]), label("hand", std::to_string(hand + 1)));
     };
     const auto always = [](const DeviceHand&) { return true; };

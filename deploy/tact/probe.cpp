@@ -58,18 +58,18 @@ Finding usb(const Buses& b) {
         return {"usb", FindingLevel::warn,
                 "this kernel or container has no USB (no /sys/bus/usb): no device can be detected",
                 "run tact probe on the machine with the devices; in a container mount /sys and /dev/bus/usb"};
-    const auto arms = std::count_if(b.usb.there.begin(), b.usb.there.end(), [](const UsbDevice& d) {
+    const auto arms = std::count_if(b.usb.entries.begin(), b.usb.entries.end(), [](const UsbDevice& d) {
         return d.known != nullptr && d.known->use == probe::Use::arm;
     });
     return {"usb", FindingLevel::ok,
-            number_of(b.usb.there.size(), b.usb.more, "device", "devices") + " on USB, " +
+            number_of(b.usb.entries.size(), b.usb.more, "device", "devices") + " on USB, " +
                 number_of(static_cast<std::size_t>(arms), false, "arm", "arms") + " among them",
             ""};
 }
 
 // One row per known device.
 void known_devices(const Buses& b, const DeviceRequest& request, std::vector<Finding>& out) {
-    for (const UsbDevice& d : b.usb.there) {
+    for (const UsbDevice& d : b.usb.entries) {
         if (d.known == nullptr) continue;
         const bool arm = d.known->use == probe::Use::arm;
         const std::string driver = d.known->driver;
@@ -116,7 +116,7 @@ Finding driver_arm(const Buses& b, const std::string& section, const std::string
     std::vector<std::string> serials;
     bool known = false;
     for (const auto& k : probe::kKnownDevices) known = known || driver == k.driver;
-    for (const UsbDevice& d : b.usb.there) {
+    for (const UsbDevice& d : b.usb.entries) {
         if (d.known != nullptr && d.known->use == probe::Use::arm && driver == d.known->driver &&
             (serial.empty() || serial == d.serial))
             serials.push_back(d.serial.empty() ? "without serial" : d.serial);
@@ -163,7 +163,7 @@ Finding can(const Buses& b, const DeviceRequest& request) {
                 wanted ? "sudo modprobe can_raw; in a container use the host's network" : ""};
     std::vector<std::string> names;
     const CanInterface* mine = nullptr;
-    for (const CanInterface& c : b.can.there) {
+    for (const CanInterface& c : b.can.entries) {
         names.push_back(c.name + (c.up ? " (up" : " (down") + (c.fd ? ", FD)" : ")"));
         if (c.name == request.tracker_interface) mine = &c;
     }
@@ -189,7 +189,7 @@ Finding gpio(const Buses& b, const DeviceRequest& request) {
                 wanted ? "run tact probe on the machine with the adapter" : ""};
     std::vector<std::string> names;
     std::vector<const GpioChip*> mine;
-    for (const GpioChip& c : b.gpio.there) {
+    for (const GpioChip& c : b.gpio.entries) {
         names.push_back(c.name + (c.label.empty() ? "" : " \"" + c.label + "\""));
         if (c.label == request.lines_chip || c.name == request.lines_chip ||
             c.node.path == request.lines_chip)

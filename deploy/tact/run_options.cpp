@@ -16,7 +16,7 @@ constexpr PassedOption kController[] = {
     {"--rate", "HZ", "Servo rate (Hz)"},
     {"--law", "elastic|sensitus|fixed", "Law of the governor, which trades accuracy for rate"},
     {"--goal", "HZ", "Force rate that the governor holds (Hz)"},
-    {"--picture-goal", "FPS",
+    {"--display-goal", "FPS",
      "Frame rate below which the governor draws a coarser surface (frames/s); 0: none"},
     {"--level", "PATH=VALUE",
      "Fixed level of one path, from 0 to 1, such as docking.force=1; sets the law to fixed"},

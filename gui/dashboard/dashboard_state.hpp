@@ -41,13 +41,9 @@ struct SceneState {
     bool loaded = false;
     std::string status;  // "loading ...", or why no scene is loaded
     std::string title, file;
-    double contour = 0.0, contour_sigma = 0.0, map_sigma = 0.0, resolution_m = 0.0;
     std::uint32_t vertices_max = 0;
     double mesh_error_m = 0.0;
-    std::size_t bodies = 0, atoms = 0;
-    std::array<std::uint32_t, 3> voxels{};  // of a map, or of bone
-    double voxel_m = 0.0;                   // edge, of bone
-    std::string warning;                    // for example: the controller runs another scene
+    std::string warning;  // for example: the controller runs another scene
 };
 
 struct EventLine {

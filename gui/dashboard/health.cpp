@@ -101,7 +101,7 @@ void hero(const Theme& theme, const DashboardState& state) {
     if (lines == LinesShown::stopped || (lines == LinesShown::waiting && run_state != RunState::armed)) {
         const std::string why = run_reason_text(static_cast<RunReason>(h.lines_reason));
         text_small(theme, lines == LinesShown::stopped ? colour::kBad : colour::kDim,
-                   std::string("safety lines ") + lines_text(lines) + (why.empty() ? "" : ": " + why));
+                   std::string("safety inputs ") + lines_text(lines) + (why.empty() ? "" : ": " + why));
     }
     const StatusText rate = rate_status(h.force_rate_hz, h.goal_hz);
     ImGui::PushFont(theme.large);

@@ -36,7 +36,7 @@ void device_row(const Theme& theme, const DashboardState& state, std::size_t han
 void motor_row(const Theme& theme, const DashboardState& state) {
     const DeviceHand* shown = &state.devices.hand[0];
     for (const DeviceHand& d : state.devices.hand)
-        if (d.there != 0 && motor_status(d).grade > motor_status(*shown).grade) shown = &d;
+        if (d.valid != 0 && motor_status(d).grade > motor_status(*shown).grade) shown = &d;
     const bool celsius = shown->winding_c_max > 0.0F;
     const bool counted = celsius || shown->force_n_continuous > 0.0F;
     row(theme, "Motors",
@@ -59,7 +59,7 @@ void tracker_row(const Theme& theme, const DashboardState& state) {
 
 void draw_device_rows(const Theme& theme, const DashboardState& state) {
     if (state.have_devices) {
-        const bool two = state.devices.hand[1].there != 0;
+        const bool two = state.devices.hand[1].valid != 0;
         device_row(theme, state, 0, two ? "Device 1" : "Device");
         if (two) device_row(theme, state, 1, "Device 2");
         motor_row(theme, state);

@@ -136,7 +136,7 @@ const char* fix_of(RunReason reason) {
         case RunReason::amplifier_readback:
             return "Check the amplifier's switch, fuse and cable.";
         case RunReason::lines_lost:
-            return "Connect the adapter of the safety lines; tact probe lists the adapters.";
+            return "Connect the adapter of the safety inputs; tact probe lists the adapters.";
         case RunReason::device_lost:
         case RunReason::sample_stale:
             return "Check the device's cable and power; tact probe lists the devices.";
@@ -223,7 +223,7 @@ Grade device_grade(std::uint8_t device_state) noexcept {
 }
 
 StatusText device_status(const DeviceHand& device, const BusCounts& bus, DeviceNotice notice) {
-    if (device.there == 0) return {Grade::unknown, "none"};
+    if (device.valid == 0) return {Grade::unknown, "none"};
     static constexpr const char* kReads[] = {"", "position outdated", "lost", "fault"};
     if (device.read > 3) return {Grade::unknown, "unknown"};
     if (device.read >= 2) return {Grade::bad, kReads[device.read]};

@@ -10,8 +10,7 @@
 namespace tact {
 namespace {
 
-void scene_rows(const Theme& theme, const DashboardState& state) {
-    const SceneState& s = state.scene;
+void scene_rows(const Theme& theme, const DashboardState& state, const DockingSummary& s) {
     row(theme, "Contour", format("%.4g", s.contour), format("map units, %.2f σ", s.contour_sigma));
     row(theme, "Map", format("%u × %u × %u", s.voxels[0], s.voxels[1], s.voxels[2]),
         s.resolution_m > 0.0 ? format("%.1f Å", s.resolution_m / kAngstromM)
@@ -19,10 +18,10 @@ void scene_rows(const Theme& theme, const DashboardState& state) {
     row(theme, "Structure", grouped(s.atoms),
         s.bodies == 1 ? std::string("atoms, 1 body") : format("atoms, %zu bodies", s.bodies));
     row(theme, "Surface", grouped(state.load.vertices_drawn),
-        format("of %s vertices", grouped(s.vertices_max).c_str()));
-    if (s.mesh_error_m > 0.0) {
+        format("of %s vertices", grouped(state.scene.vertices_max).c_str()));
+    if (state.scene.mesh_error_m > 0.0) {
         ImGui::SameLine();
-        text_coloured(colour::kDim, format("±%.2g Å", s.mesh_error_m / kAngstromM));
+        text_coloured(colour::kDim, format("±%.2g Å", state.scene.mesh_error_m / kAngstromM));
     }
 }
 
@@ -70,7 +69,7 @@ void DockingPanels::draw_in_scene_card(const Theme& theme, DashboardState& state
     } else if (state.tab == 1) {
         draw_contours_tab(theme, contours);
     } else {
-        scene_rows(theme, state);
+        scene_rows(theme, state, scene);
         toggles(theme, state.toggles);
     }
     ImGui::PopStyleVar();

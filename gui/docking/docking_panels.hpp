@@ -3,6 +3,7 @@
 // Thread   frame thread, inside an ImGui frame.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <string>
 #include <utility>
@@ -84,8 +85,17 @@ struct ContourRowState {
     std::size_t dragged = kNone, removed = kNone;
 };
 
+// The scene's map and structures, as loaded.
+struct DockingSummary {
+    double contour = 0.0, contour_sigma = 0.0;  // of the scene, in the map's unit
+    double resolution_m = 0.0;                  // 0: unknown
+    std::array<std::uint32_t, 3> voxels{};
+    std::size_t bodies = 0, atoms = 0;
+};
+
 class DockingPanels : public SystemPanels {
 public:
+    DockingSummary scene;
     FitState fit;
     FittingState fitting;
     ContourRowState contours;

@@ -14,6 +14,19 @@ namespace {
 // (tests/bench/draw_bench.cpp).
 constexpr std::size_t kShapesMaxInSoftware = 8000;
 
+DockingSummary summary_of(const SceneContent& content) {
+    const SceneMeta& meta = content.meta;
+    DockingSummary s{.contour = meta.contour,
+                     .contour_sigma = (meta.contour - meta.map_mean) / meta.map_sigma,
+                     .resolution_m = meta.resolution_m,
+                     .voxels = content.grid.size};
+    for (const Structure& structure : docking_of(content).bodies) {
+        ++s.bodies;
+        s.atoms += structure.size();
+    }
+    return s;
+}
+
 }  // namespace
 
 void DockingSystem::use(const std::shared_ptr<const SceneContent>& content, std::unique_ptr<SceneStart> start,
@@ -26,6 +39,7 @@ void DockingSystem::use(const std::shared_ptr<const SceneContent>& content, std:
     if (!options_.empty()) view.contours().set(contours_of(options_, content->scale));
     if (context.software) layer_->molecules().set_shapes_max(kShapesMaxInSoftware);
     begin_contours(view.contours(), content->scale, panels_.contours);
+    panels_.scene = summary_of(*content);
     std::vector<Pose> homes;
     for (const Structure& structure : docking_of(*content).bodies) homes.push_back(structure.home());
     list_.start(homes);
@@ -40,12 +54,6 @@ void DockingSystem::close() {
     content_.reset();
     list_.start({});
     fit_controller_.use(nullptr);
-}
-
-void DockingSystem::describe(const SceneContent& content, SceneState& scene) const {
-    const DockingContent& docking = docking_of(content);
-    scene.bodies = docking.bodies.size();
-    for (const Structure& s : docking.bodies) scene.atoms += s.size();
 }
 
 void DockingSystem::attach(const SystemContext& context) {

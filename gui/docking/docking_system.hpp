@@ -25,7 +25,6 @@ public:
     void use(const std::shared_ptr<const SceneContent>& content, std::unique_ptr<SceneStart> start,
              SceneView& view, const SystemContext& context) override;
     void close() override;
-    void describe(const SceneContent& content, SceneState& scene) const override;
     void attach(const SystemContext& context) override;
     void read(const Controller::Fresh& fresh, const SystemContext& context) override;
     bool perform(KeyAction what, std::size_t place, const SystemContext& context) override;

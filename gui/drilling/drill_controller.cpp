@@ -23,7 +23,7 @@ std::string near_text(const std::string& name, double distance_m) {
 
 ToolDescription describe_tool(const DrillHand& hand) {
     ToolDescription t;
-    t.there = hand.kind != DrillKind::none;
+    t.valid = hand.kind != DrillKind::none;
     t.shape = static_cast<int>(hand.shape);
     t.diameter_m = 2.0 * static_cast<double>(hand.radius_m);
     t.length_m = static_cast<double>(hand.length_m);

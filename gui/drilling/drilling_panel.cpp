@@ -17,7 +17,7 @@ void tools(const Theme& theme, const DrillingState& d) {
         d.burr.rpm > 0.0 ? grouped(static_cast<std::uint64_t>(std::llround(d.burr.rpm))) + " rpm" : "stopped";
     if (d.burr.water) does += ", water";
     row(theme, "Burr", size, does);
-    if (d.suction_tube.there)
+    if (d.suction_tube.valid)
         row(theme, "Suction tube", mm_text(d.suction_tube.diameter_m),
             d.suction_tube.suction ? "suction on" : "suction off");
 }
@@ -50,7 +50,7 @@ void structure(const Theme& theme, const DrillingState& d, const DrillingState::
 void tip(const DrillingState& d) {
     if (!ImGui::IsItemHovered()) return;
     std::string text = "Distance from the burr surface to each critical structure; negative inside it.";
-    if (d.suction_tube.there)
+    if (d.suction_tube.valid)
         for (const auto& s : d.structures)
             if (s.suction_tube_m < 2e-3)
                 text += "\nsuction tube: " + mm_text(s.suction_tube_m) + " from the " + s.name;
@@ -85,10 +85,9 @@ void DrillingPanels::draw_card(const Theme& theme, const PixelRect& card) const 
 }
 
 void DrillingPanels::draw_in_scene_card(const Theme& theme, DashboardState& state) {
-    const SceneState& s = state.scene;
-    row(theme, "Voxels", format("%u × %u × %u", s.voxels[0], s.voxels[1], s.voxels[2]),
-        format("of %.3g mm", 1e3 * s.voxel_m));
-    row(theme, "File", s.file, "");
+    row(theme, "Voxels", format("%u × %u × %u", voxels[0], voxels[1], voxels[2]),
+        format("of %.3g mm", 1e3 * voxel_m));
+    row(theme, "File", state.scene.file, "");
     ImGui::Checkbox("Frame times", &state.toggles.frame_times);
     ImGui::SameLine(theme.px(130.0F));
     ImGui::Checkbox("Smooth edges", &state.toggles.smooth_edges);

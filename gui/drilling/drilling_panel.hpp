@@ -3,6 +3,7 @@
 // Thread   frame thread, inside an ImGui frame.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -15,7 +16,7 @@ namespace tact {
 
 // A burr or suction tube, in the hand's space.
 struct ToolDescription {
-    bool there = false;
+    bool valid = false;
     int shape = 0;  // ball, cylinder, cone
     double diameter_m = 0.0, length_m = 0.0;
     double rpm = 0.0;  // 0: stopped
@@ -42,6 +43,8 @@ class DrillingPanels : public SystemPanels {
 public:
     DrillingState drilling;
     float bone_shown = 1.0F;  // fraction of the bone in graphics memory
+    std::array<std::uint32_t, 3> voxels{};
+    double voxel_m = 0.0;  // edge
 
     [[nodiscard]] CardSize card_size() const override { return {300.0F, 0.37F}; }
     void draw_card(const Theme& theme, const PixelRect& card) const override;

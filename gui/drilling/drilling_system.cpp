@@ -33,6 +33,8 @@ void DrillingSystem::use(const std::shared_ptr<const SceneContent>& content,
     bone_.meet(context.controller);
     const BoneContent* const bone = content->of<BoneContent>();
     if (bone == nullptr || made == nullptr) return;
+    panels_.voxels = bone->volume.bricks.size;
+    panels_.voxel_m = bone->volume.bricks.voxel_m;
     site_ = std::move(made->site);
     site_->keep(options_.particles);
     layer_->show_bone(*bone, *bone_.volume());
@@ -50,13 +52,6 @@ void DrillingSystem::close() {
     reach_a_ = 0.0F;
     panels_.drilling = {};
     panels_.bone_shown = 1.0F;
-}
-
-void DrillingSystem::describe(const SceneContent& content, SceneState& scene) const {
-    const BoneContent* const bone = content.of<BoneContent>();
-    if (bone == nullptr) return;
-    scene.voxels = bone->volume.bricks.size;
-    scene.voxel_m = bone->volume.bricks.voxel_m;
 }
 
 void DrillingSystem::attach(const SystemContext& context) {

@@ -37,7 +37,6 @@ public:
     void use(const std::shared_ptr<const SceneContent>& content, std::unique_ptr<SceneStart> start,
              SceneView& view, const SystemContext& context) override;
     void close() override;
-    void describe(const SceneContent& content, SceneState& scene) const override;
     [[nodiscard]] float home_reach_a() const override { return reach_a_; }
     void attach(const SystemContext& context) override;
     void detach() override { bone_.leave(); }

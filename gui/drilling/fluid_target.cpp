@@ -22,8 +22,8 @@ GLuint make_texture(GLint inside, GLenum format, int width_px, int height_px, GL
 
 }  // namespace
 
-FluidTarget::FluidTarget(int picture_width_px, int picture_height_px, int coarser)
-    : width_px_(picture_width_px), height_px_(picture_height_px), coarser_(coarser) {
+FluidTarget::FluidTarget(int frame_width_px, int frame_height_px, int coarser)
+    : width_px_(frame_width_px), height_px_(frame_height_px), coarser_(coarser) {
     // 32-bit floats: sums of depths must distinguish a puddle's surface from its bed.
     sums_ = make_texture(GL_RGBA32F, GL_RGBA, width_px(), height_px(), GL_LINEAR);
     depth_ = make_texture(GL_DEPTH_COMPONENT24, GL_DEPTH_COMPONENT, width_px_, height_px_, GL_NEAREST);

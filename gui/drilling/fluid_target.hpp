@@ -12,7 +12,7 @@ namespace tact {
 class FluidTarget {
 public:
     // coarser: edge of one pixel here, in pixels of the frame.
-    FluidTarget(int picture_width_px, int picture_height_px, int coarser);
+    FluidTarget(int frame_width_px, int frame_height_px, int coarser);
     ~FluidTarget();
     FluidTarget(const FluidTarget&) = delete;
     FluidTarget& operator=(const FluidTarget&) = delete;
@@ -22,8 +22,8 @@ public:
     void bind() const { glBindFramebuffer(GL_FRAMEBUFFER, frame_); }  // to draw sums into
     void bind_sums(GLenum unit) const;                                // to read from
     void bind_depth(GLenum unit) const;
-    [[nodiscard]] bool fits(int picture_width_px, int picture_height_px, int coarser) const {
-        return picture_width_px == width_px_ && picture_height_px == height_px_ && coarser == coarser_;
+    [[nodiscard]] bool fits(int frame_width_px, int frame_height_px, int coarser) const {
+        return frame_width_px == width_px_ && frame_height_px == height_px_ && coarser == coarser_;
     }
     [[nodiscard]] int width_px() const { return (width_px_ + coarser_ - 1) / coarser_; }
     [[nodiscard]] int height_px() const { return (height_px_ + coarser_ - 1) / coarser_; }

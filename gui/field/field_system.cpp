@@ -37,10 +37,6 @@ void FieldSystem::close() {
     panels_.field = {};
 }
 
-void FieldSystem::describe(const SceneContent& content, SceneState& scene) const {
-    static_cast<void>(content), static_cast<void>(scene);
-}
-
 void FieldSystem::follow(const SystemContext& context) {
     FieldState& f = panels_.field;
     const FieldContent* const own = content_ ? content_->of<FieldContent>() : nullptr;

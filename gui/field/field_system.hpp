@@ -17,7 +17,6 @@ public:
     void use(const std::shared_ptr<const SceneContent>& content, std::unique_ptr<SceneStart> start,
              SceneView& view, const SystemContext& context) override;
     void close() override;
-    void describe(const SceneContent& content, SceneState& scene) const override;
     void follow(const SystemContext& context) override;
     void prepare(std::int64_t now_ns, bool sharp, ViewFrame& frame, const SystemContext& context) override;
 

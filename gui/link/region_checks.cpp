@@ -92,7 +92,7 @@ bool sensible(const DevicesTopic& t) noexcept {
         const auto within = [](float v, float most) { return v >= 0.0F && v <= most; };
         return duration(d.age_ns) && duration(d.age_ns_most) && within(d.heat, 1e9F) &&
                within(d.force_n_max, 1e6F) && within(d.force_n_continuous, 1e6F) &&
-               std::fabs(d.winding_c) <= 1e4F && within(d.winding_c_max, 1e4F) && d.there <= 1 && d.read <= 3;
+               std::fabs(d.winding_c) <= 1e4F && within(d.winding_c_max, 1e4F) && d.valid <= 1 && d.read <= 3;
     });
 }
 

@@ -25,10 +25,6 @@ void SurfaceSystem::close() {
     panels_.detail = {};
 }
 
-void SurfaceSystem::describe(const SceneContent& content, SceneState& scene) const {
-    static_cast<void>(content), static_cast<void>(scene);
-}
-
 void SurfaceSystem::prepare(std::int64_t now_ns, bool sharp, ViewFrame& frame, const SystemContext& context) {
     static_cast<void>(now_ns), static_cast<void>(sharp);
     const Controller& controller = context.controller;

@@ -51,7 +51,7 @@ constexpr auto kKeyRows = [] {
         {named_key(KeyCode::escape), 0, calibrating, KeyAction::leave_calibration, "Esc",
          "leave the calibration"},
         {typed_key('o'), 0, always, KeyAction::open_browser, "O", "open another scene"},
-        {typed_key('p'), 0, always, KeyAction::picture, "P", "save a screenshot"},
+        {typed_key('p'), 0, always, KeyAction::screenshot, "P", "save a screenshot"},
         {typed_key('m'), 0, controller, KeyAction::mark, "M", "mark this moment for the flight recorder"},
         {typed_key('?'), 0, always, KeyAction::help, "?", "this table"},
     });

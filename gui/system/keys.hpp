@@ -41,7 +41,7 @@ enum class KeyAction : std::uint8_t {
     revert,
     arm,
     disarm,
-    picture,
+    screenshot,
     mark,
     help,
     calibrate,

@@ -55,7 +55,6 @@ public:
                      SceneView& view, const SystemContext& context) = 0;
     // Another scene replaces this one.
     virtual void close() = 0;
-    virtual void describe(const SceneContent& content, SceneState& scene) const = 0;
     // Radius about the centre that the home view shows, ångström; 0: the whole scene.
     [[nodiscard]] virtual float home_reach_a() const { return 0.0F; }
 

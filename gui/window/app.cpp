@@ -71,9 +71,9 @@ int GuiApp::run() {
     for (bool last = false; !last;) {
         const Instant now = Monotonic::now();
         // A screenshot must show the scene, so the run does not end before the scene is loaded.
-        const bool picture_waits = pictures_.wanted_at_end() && loader_.running();
+        const bool screenshot_pending = pictures_.wanted_at_end() && loader_.running();
         last = stop_signal != 0 || window_.close_wanted() || (stage_ && stage_->close_wanted()) ||
-               (options_.seconds > 0.0 && to_s(now - begun) >= options_.seconds && !picture_waits);
+               (options_.seconds > 0.0 && to_s(now - begun) >= options_.seconds && !screenshot_pending);
         frame(now, last && pictures_.wanted_at_end());
         if (!last) clock_.pace(fps_max_);
     }
@@ -123,7 +123,7 @@ void GuiApp::frame(Instant now, bool take_picture) {
         pictures_.save_at_end(window_.picture());
         if (stage_ && (view_ || calibration_.open())) pictures_.save_stage(stage_->pictures());
     }
-    if (std::exchange(picture_wanted_, false)) pictures_.save_now(window_.picture());
+    if (std::exchange(screenshot_requested_, false)) pictures_.save_now(window_.picture());
     {
         const PassClock::Scope scope(&passes_, Pass::swap);
         window_.show();

@@ -53,8 +53,8 @@ void GuiApp::perform(KeyAction what, std::size_t place) {
             return;
         case KeyAction::disarm:  // in any state: disarming is always safe, and the controller answers
             return command(CommandKind::disarm);
-        case KeyAction::picture:
-            picture_wanted_ = true;
+        case KeyAction::screenshot:
+            screenshot_requested_ = true;
             return;
         case KeyAction::mark:
             return command(CommandKind::mark);

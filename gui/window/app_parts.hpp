@@ -25,8 +25,8 @@
 #include "gui/window/frame_report.hpp"
 #include "gui/window/layout.hpp"
 #include "gui/window/options.hpp"
-#include "gui/window/picture_files.hpp"
 #include "gui/window/scene_loader.hpp"
+#include "gui/window/screenshots.hpp"
 #include "gui/window/second_hand.hpp"
 #include "gui/window/systems.hpp"
 #include "gui/window/window.hpp"
@@ -96,9 +96,9 @@ private:
     Camera camera_;
     SceneLoader loader_;
     std::string next_scene_;  // requested while another one was being read
-    PictureFiles pictures_{options_.screenshot, options_.every_s, options_.stage_screenshot};
-    PictureFiles::View drawn_view_;
-    bool picture_wanted_ = false;
+    Screenshots pictures_{options_.screenshot, options_.every_s, options_.stage_screenshot};
+    Screenshots::View drawn_view_;
+    bool screenshot_requested_ = false;
     bool sharp_ = false;  // this frame is saved: with all its rays
 };
 

@@ -55,7 +55,6 @@ void GuiApp::use_scene(std::unique_ptr<SceneStart> start) {
                                         row.refine != nullptr ? row.refine(content_) : RefineContour{});
     shown_ = static_cast<std::size_t>(&row - system_rows().data());
     state_.scene = describe(*content_);
-    system().describe(*content_, state_.scene);
     try {
         system().use(content_, std::move(start), *view_, context());
     } catch (const StartupError& e) {
@@ -72,8 +71,7 @@ void GuiApp::use_scene(std::unique_ptr<SceneStart> start) {
     browser_.used(content_->path, state_.browser);
     if (system().home_reach_a() > 0.0F) home_view();
     window_.set_title(std::string("Tact: ") + state_.scene.title);
-    spdlog::info("showing {}: {} vertices, {} bodies, {} atoms", content_->path.string(),
-                 view_->vertices_max(), state_.scene.bodies, state_.scene.atoms);
+    spdlog::info("showing {}: {} vertices", content_->path.string(), view_->vertices_max());
 }
 
 void GuiApp::home_view() {

@@ -9,12 +9,7 @@ SceneState describe(const SceneContent& content) {
     state.loaded = true;
     state.file = content.path.filename().string();
     state.title = content.meta.title[0] != '\0' ? content.meta.title : state.file;
-    state.contour = content.meta.contour;
-    state.map_sigma = content.meta.map_sigma;
-    state.contour_sigma = (content.meta.contour - content.meta.map_mean) / content.meta.map_sigma;
-    state.resolution_m = content.meta.resolution_m;
     state.vertices_max = content.mesh ? content.mesh->vertices() : 0;
-    state.voxels = content.grid.size;
     return state;
 }
 

@@ -1,4 +1,4 @@
-// The safety lines on a GPIO chip: assigns each function to a line of the chip.
+// The safety inputs on a GPIO chip: assigns each function to a line of the chip.
 //
 // Identity  each reading checks the opened device node: an unplugged adapter may still acknowledge every
 //           write, and another chip may get its number

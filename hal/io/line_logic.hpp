@@ -1,4 +1,4 @@
-// Evaluates the safety lines: a function of the reading, the operator's requests and the time.
+// Evaluates the safety inputs: a function of the reading, the operator's requests and the time.
 //
 // Trips     at the first reading that does not permit, also when the chip reports an edge between two
 //           readings

@@ -1,4 +1,4 @@
-// The port of the safety lines: an adapter, or an emulated one. Used by a LineWorker only.
+// The port of the safety inputs: an adapter, or an emulated one. Used by a LineWorker only.
 #pragma once
 
 #include <string>

@@ -1,4 +1,4 @@
-// The safety lines of the controller: a LineWorker on its own thread.
+// The safety inputs of the controller: a LineWorker on its own thread.
 //
 // Thread   "lines", FIFO 90 where permitted, else ordinary: above the servo, so that a thread that occupies
 //          the servo's priority cannot keep the enable line high. It polls every `every` or at an edge, and

@@ -31,7 +31,7 @@ BusFinding find_board(const probe::Bus<probe::UsbDevice>& usb, const std::string
     std::string all;
     const probe::UsbDevice* found = nullptr;
     std::size_t fitting = 0;
-    for (const probe::UsbDevice& d : usb.there) {
+    for (const probe::UsbDevice& d : usb.entries) {
         if (d.vendor != kVendor || d.product != kProduct) continue;
         all += (all.empty() ? "" : ", ") + serial_of(d);
         if (!serial.empty() && serial_of(d) != serial.substr(0, 16)) continue;

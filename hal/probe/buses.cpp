@@ -176,7 +176,7 @@ Bus<UsbDevice> usb_devices(const fs::path& root) {
             if (other.starts_with(name + ":")) add_interface(root, folder / other, d);
         }
         d.known = known(d);
-        bus.there.push_back(std::move(d));
+        bus.entries.push_back(std::move(d));
     }
     return bus;
 }
@@ -193,10 +193,10 @@ Bus<CanInterface> can_interfaces(const fs::path& root) {
         if (hex.starts_with("0x")) hex.erase(0, 2);
         const bool up = number(hex, 16, 0xFFFFFFFF, flags) && (flags & 1U) != 0;
         const bool fd = number(text_of(at / "mtu"), 10, 65535, mtu) && mtu >= 72;
-        bus.there.push_back({plain(name), up, fd});
+        bus.entries.push_back({plain(name), up, fd});
     }
     std::error_code error;
-    bus.visible = !bus.there.empty() || fs::exists(root / "proc/net/can", error);
+    bus.visible = !bus.entries.empty() || fs::exists(root / "proc/net/can", error);
     return bus;
 }
 
@@ -208,7 +208,7 @@ Bus<GpioChip> gpio_chips(const fs::path& root) {
     for (const std::string& name : names) {
         if (!name.starts_with("gpiochip")) continue;
         const fs::path node = root / "dev" / name;
-        bus.there.push_back({plain(name), chip_label(folder / name, node), node_at(node)});
+        bus.entries.push_back({plain(name), chip_label(folder / name, node), node_at(node)});
     }
     return bus;
 }

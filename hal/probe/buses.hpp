@@ -58,7 +58,7 @@ template <class T>
 struct Bus {
     bool visible = false;
     bool more = false;  // more than kEntriesMax: the rest is ignored
-    std::vector<T> there;
+    std::vector<T> entries;
 };
 
 struct Buses {

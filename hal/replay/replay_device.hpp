@@ -40,12 +40,12 @@ private:
     DeviceCommand sent_;
 };
 
-// Recorded safety lines. Outputs are discarded.
+// Recorded safety inputs. Outputs are discarded.
 class ReplayLines final : public Lines {
 public:
     void give(const LinesSample& sample) noexcept { sample_ = sample; }
 
-    LinesInfo open() override { return {.name = "recorded safety lines"}; }
+    LinesInfo open() override { return {.name = "recorded safety inputs"}; }
     bool read(LinesSample& newest, Instant /*now*/) noexcept TACT_RT override {
         newest = sample_;
         return sample_.sequence != 0;

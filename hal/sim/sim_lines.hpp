@@ -1,4 +1,4 @@
-// Emulated safety lines: contacts that tests can open, an amplifier whose read-back follows the enable
+// Emulated safety inputs: contacts that tests can open, an amplifier whose read-back follows the enable
 // line.
 //
 // SimBoard  the adapter with its wiring; faults may come from any thread, and an emergency stop from

@@ -32,8 +32,8 @@ enum class LevelReason : std::uint8_t {
     at_floor,
     at_top,
     by_command,
-    picture_low,  // the frame rate's own target, not the force rate's
-    picture_high,
+    display_low,  // the frame rate's own target, not the force rate's
+    display_high,
     cost_high,        // the cost of a step no longer fits the period
     cost_low,         // a level with a smaller error fits
     deadline_missed,  // a step ended after its deadline

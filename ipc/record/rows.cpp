@@ -60,7 +60,7 @@ constexpr std::array kCycle{
     TACT_COLUMN(CycleTopic, lines_outputs, ""),
     TACT_COLUMN(CycleTopic, run_state, "0 off, 1 ready, 2 armed, 3 active, 4 fault"),
     TACT_COLUMN(CycleTopic, run_reason, "reason of a fault"),
-    TACT_COLUMN(CycleTopic, flags, "1: dry, before the start; 2: safety lines were read"),
+    TACT_COLUMN(CycleTopic, flags, "1: dry, before the start; 2: safety inputs were read"),
     Column{"timestamps", Number::u8, offsetof(CycleTopic, timestamps), 1, "number of values in clock_ns",
            "looks"},
 };

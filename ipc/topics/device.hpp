@@ -24,7 +24,7 @@ struct DeviceHand {
     // Temperature of the hottest winding in degrees C from the driver's thermal model; winding_c_max 0: no model.
     float winding_c, winding_c_max;
     std::uint8_t motor;  // index of the hottest motor
-    std::uint8_t there;  // 0 or 1
+    std::uint8_t valid;  // 0 or 1
     std::uint8_t state;  // DeviceState
     std::uint8_t read;   // IoStatus of its last read: ok, stale, lost, fault
 };

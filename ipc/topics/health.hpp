@@ -20,7 +20,7 @@ enum ScheduleFlag : std::uint32_t {
     kScheduleDmaLatency = 1U << 4,  // /dev/cpu_dma_latency held at 0
 };
 
-// Safety lines: LinesState of hal/api/lines.hpp, or none.
+// Safety inputs: LinesState of hal/api/lines.hpp, or none.
 enum class LinesShown : std::uint8_t { none, stopped, waiting, permitted };
 
 struct alignas(64) HealthTopic {

@@ -26,8 +26,8 @@ std::string limit_text(const PathLevel& p) {
         case LevelReason::rate_low:
         case LevelReason::rate_high:
             return "force rate limit";
-        case LevelReason::picture_low:
-        case LevelReason::picture_high:
+        case LevelReason::display_low:
+        case LevelReason::display_high:
             return "frame rate limit";
         default:
             return level_reason_text(reason);

@@ -48,7 +48,7 @@ struct HousekeepingReport {
 
 enum CycleFlag : std::uint8_t {
     kCycleDry = 1U << 0,    // before the start, with zero force
-    kCycleLines = 1U << 1,  // safety lines were read
+    kCycleLines = 1U << 1,  // safety inputs were read
 };
 
 struct CycleTopic {
@@ -63,7 +63,7 @@ struct CycleTopic {
     std::int64_t model_ns;                  // the force models' steps
     float level;                            // of the haptic path
     float work_fraction;                    // of the level's work to recompute
-    std::int64_t lines_taken_at_ns;         // safety lines as read, with kCycleLines
+    std::int64_t lines_taken_at_ns;         // safety inputs as read, with kCycleLines
     std::uint64_t lines_sequence, lines_trips;
     std::uint8_t lines_state, lines_cause, lines_inputs, lines_outputs;
     std::uint8_t run_state, run_reason;  // RunState, RunReason, at the end of the cycle
@@ -130,7 +130,7 @@ static_assert(std::is_trivially_copyable_v<ReportTopic> && sizeof(ReportTopic) =
 
 enum StartFlag : std::uint32_t {
     kStartEmulated = 1U << 0,  // no real device
-    kStartLines = 1U << 1,     // safety lines are fitted
+    kStartLines = 1U << 1,     // safety inputs are fitted
 };
 
 // A device, with the data from its open().

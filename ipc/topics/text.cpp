@@ -94,7 +94,7 @@ const char* run_reason_text(RunReason reason) noexcept {
         case RunReason::amplifier_readback:
             return "the amplifier's power does not follow its enable line";
         case RunReason::lines_lost:
-            return "the safety lines cannot be read";
+            return "the safety inputs cannot be read";
         case RunReason::supervisor:
             return "the supervisor lowered the enable line: the servo stopped";
     }
@@ -162,7 +162,7 @@ const char* event_code_text(EventCode code) noexcept {
         case EventCode::bodies_changed:
             return "bodies changed";
         case EventCode::lines_changed:
-            return "safety lines";
+            return "safety inputs";
         case EventCode::device_notice:
             return "device";
     }
@@ -185,9 +185,9 @@ const char* level_reason_text(LevelReason reason) noexcept {
             return "full detail";
         case LevelReason::by_command:
             return "by command";
-        case LevelReason::picture_low:
+        case LevelReason::display_low:
             return "frame rate below goal";
-        case LevelReason::picture_high:
+        case LevelReason::display_high:
             return "frame rate above goal";
         case LevelReason::cost_high:
             return "limited by step cost";

@@ -13,7 +13,7 @@ constexpr double kTimesUneven = 5.0;  // extra distance accepted per unit of mea
 }  // namespace
 
 BoneHeights::BoneHeights(const BoneBricks& bricks)
-    : bricks_(bricks), felt_(std::size_t{bricks.size[0]} * bricks.size[1], kNone), any_(felt_) {}
+    : bricks_(bricks), solid_(std::size_t{bricks.size[0]} * bricks.size[1], kNone), any_(solid_) {}
 
 void BoneHeights::add_row(std::uint32_t y, std::uint32_t z, std::span<const std::uint8_t> row) {
     const std::size_t first = std::size_t{y} * bricks_.size[0];
@@ -21,16 +21,16 @@ void BoneHeights::add_row(std::uint32_t y, std::uint32_t z, std::span<const std:
     for (std::uint32_t x = 0; x < bricks_.size[0]; ++x) {
         if (row[x] == 0) continue;
         any_[first + x] = std::max(any_[first + x], height);
-        if (row[x] < kFelt) continue;
-        felt_[first + x] = std::max(felt_[first + x], height);
-        some_felt_ = true;
+        if (row[x] < kSolid) continue;
+        solid_[first + x] = std::max(solid_[first + x], height);
+        some_solid_ = true;
     }
 }
 
 std::int32_t BoneHeights::top(std::int64_t x, std::int64_t y) const {
     if (x < 0 || y < 0 || x >= bricks_.size[0] || y >= bricks_.size[1]) return kNone;
     const auto at = static_cast<std::size_t>(y) * bricks_.size[0] + static_cast<std::size_t>(x);
-    return some_felt_ ? felt_[at] : any_[at];
+    return some_solid_ ? solid_[at] : any_[at];
 }
 
 // Calls column(x, y) for all columns within a radius, including columns outside the volume.
@@ -44,7 +44,7 @@ void BoneHeights::around(std::uint32_t x, std::uint32_t y, double radius_m, F co
 }
 
 BoneHeights::Place BoneHeights::place(const Vec3& middle_m) const {
-    const auto& heights = some_felt_ ? felt_ : any_;
+    const auto& heights = some_solid_ ? solid_ : any_;
     const std::int32_t highest = *std::max_element(heights.begin(), heights.end());
     const auto every = std::max<std::uint32_t>(1, static_cast<std::uint32_t>(kEveryM / bricks_.voxel_m));
     const Vec3 from(middle_m.x(), middle_m.y(), bricks_.to_model(Vec3(0.0, 0.0, highest)).z());

@@ -1,6 +1,6 @@
 // Start position of the hand: in front of bone that it meets when it moves straight ahead, away from the user (-z).
 //
-// Height    of a column of voxels along z: the outermost voxel that is solid enough for a burr (density >= kFelt).
+// Height    of a column of voxels along z: the outermost voxel that is solid enough for a burr (density >= kSolid).
 //           Lower densities count only if the volume has no such voxel.
 // Choice    the place nearest to the middle of the bone's outermost plane, in all three directions, around which most
 //           columns hold bone at about the same height; even patches are preferred. A burr can be set on such a patch,
@@ -18,7 +18,7 @@ namespace tact {
 
 class BoneHeights {
 public:
-    static constexpr std::uint8_t kFelt = 77;
+    static constexpr std::uint8_t kSolid = 77;
     static constexpr double kPatchM = 3e-3;    // radius of the patch
     static constexpr double kFlatM = 5e-3;     // columns of the patch lie within this height of its middle
     static constexpr double kCovered = 0.75;   // fraction of the patch's columns that must do so
@@ -42,8 +42,8 @@ private:
     void around(std::uint32_t x, std::uint32_t y, double radius_m, F column) const;
 
     BoneBricks bricks_;
-    std::vector<std::int32_t> felt_, any_;  // z of the outermost voxel, x fastest
-    bool some_felt_ = false;
+    std::vector<std::int32_t> solid_, any_;  // z of the outermost voxel, x fastest
+    bool some_solid_ = false;
 };
 
 }  // namespace tact

@@ -85,7 +85,7 @@ void bake(const FieldSettings& o, bool made) {
                          {"force_n_max", baked.field.force_n_max},
                          {"stiffness_n_m", baked.field.stiffness_n_m},
                          {"world_per_model", baked.meta.world_per_model},
-                         {"picture_vertices", baked.vertices}});
+                         {"display_vertices", baked.vertices}});
 }
 
 }  // namespace

@@ -24,7 +24,7 @@
 
 namespace tact {
 
-inline constexpr double kSeedBoundaryWeight = 1000.0;  // f of the published method
+inline constexpr double kPublishedBoundaryWeight = 1000.0;  // f of the published method
 
 struct SimplifySettings {
     std::uint32_t vertices_min = 4;  // stops there, or earlier if no further contraction is possible

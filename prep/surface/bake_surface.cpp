@@ -155,7 +155,7 @@ BakedSurface bake_surface(SurfaceInput&& input, SceneWriter& out, const Progress
         from = 0.85;
     }
     const ProgressiveMeshData picture = make_progressive(drawn, {}, part(progress, from, 1.0));
-    baked.picture_vertices = static_cast<std::uint32_t>(picture.vertex.size());
+    baked.display_vertices = static_cast<std::uint32_t>(picture.vertex.size());
     write_mesh(out, 0, picture);
     return baked;
 }

@@ -42,7 +42,7 @@ struct BakedSurface {
     SceneMeta meta{};
     std::string note;
     std::size_t vertices = 0, triangles = 0;
-    std::uint32_t picture_vertices = 0;
+    std::uint32_t display_vertices = 0;
     std::size_t tool_points = 0;
     bool closed = false;
     double build_s = 0.0;             // time for surface and tree

@@ -52,30 +52,30 @@ std::span<const std::uint32_t> needs_of(std::uint32_t n, std::span<const ForestN
 
 // Removes needs that another need implies, so that every step of refinement checks fewer. The cut is the same, because
 // splits and merges follow whole chains. Implied needs beyond the search limit stay.
-std::vector<std::uint32_t> without_brought(std::span<ForestNode> node,
+std::vector<std::uint32_t> without_implied(std::span<ForestNode> node,
                                            const std::vector<std::uint32_t>& need) {
-    constexpr std::size_t kTimestampsMax = 64;
-    std::vector<std::uint32_t> kept, first(node.size()), brought;
+    constexpr std::size_t kImpliedMax = 64;
+    std::vector<std::uint32_t> kept, first(node.size()), implied;
     std::uint32_t last = 0;  // highest number among the needs
-    const auto bring = [&](std::uint32_t n) {
-        if (n == kNoForestNode || node[n].number > last || brought.size() == kTimestampsMax) return;
-        if (std::find(brought.begin(), brought.end(), n) == brought.end()) brought.push_back(n);
+    const auto imply = [&](std::uint32_t n) {
+        if (n == kNoForestNode || node[n].number > last || implied.size() == kImpliedMax) return;
+        if (std::find(implied.begin(), implied.end(), n) == implied.end()) implied.push_back(n);
     };
-    const auto look_past = [&](std::uint32_t n) {
-        bring(node[n].parent);
-        for (const std::uint32_t m : needs_of(n, node, need)) bring(m);
+    const auto imply_needs_of = [&](std::uint32_t n) {
+        imply(node[n].parent);
+        for (const std::uint32_t m : needs_of(n, node, need)) imply(m);
     };
     for (std::uint32_t n = 0; n < node.size(); ++n) {
         const auto own = needs_of(n, node, need);
         first[n] = static_cast<std::uint32_t>(kept.size());
         last = 0;
         for (const std::uint32_t m : own) last = std::max(last, node[m].number);
-        brought.clear();
-        if (node[n].parent != kNoForestNode) look_past(node[n].parent);
-        for (const std::uint32_t m : own) look_past(m);
-        for (std::size_t i = 0; i < brought.size(); ++i) look_past(brought[i]);
+        implied.clear();
+        if (node[n].parent != kNoForestNode) imply_needs_of(node[n].parent);
+        for (const std::uint32_t m : own) imply_needs_of(m);
+        for (std::size_t i = 0; i < implied.size(); ++i) imply_needs_of(implied[i]);
         for (const std::uint32_t m : own)
-            if (std::find(brought.begin(), brought.end(), m) == brought.end()) kept.push_back(m);
+            if (std::find(implied.begin(), implied.end(), m) == implied.end()) kept.push_back(m);
     }
     for (std::uint32_t n = 0; n < node.size(); ++n) node[n].first_need = first[n];
     return kept;
@@ -114,7 +114,7 @@ std::vector<std::uint32_t> forest_needs(std::span<const std::uint32_t> corner, s
             need.insert(need.end(), own.begin(), own.end());
         }
     }
-    return without_brought(node, need);
+    return without_implied(node, need);
 }
 
 }  // namespace tact

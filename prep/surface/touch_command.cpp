@@ -143,7 +143,7 @@ void touch(const TouchSettings& o, bool made) {
                          {"triangles", baked.triangles},
                          {"closed", baked.closed},
                          {"tool_points", baked.tool_points},
-                         {"picture_vertices", baked.picture_vertices},
+                         {"display_vertices", baked.display_vertices},
                          {"world_per_model", baked.meta.world_per_model},
                          {"bytes_per_triangle", baked.bytes_per_triangle},
                          {"build_s", baked.build_s},

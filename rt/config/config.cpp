@@ -93,7 +93,7 @@ std::vector<ConfigKey> keys_of(RtConfig& c) {
         {"lines.lamp", &c.lines.lamp, 0, 0, {}},
         {"lines.bias", &c.lines.bias, 0, 0, {"none", "up", "down"}},
         {"lines.edges", &c.lines.edges, 0, 0, {}},
-        {"lines.look_us", &c.lines.look_us, 100, 10000, {}},
+        {"lines.sample_us", &c.lines.sample_us, 100, 10000, {}},
         {"lines.release_ms", &c.lines.release_ms, 20, 50, {}},
         {"lines.discrepancy_ms", &c.lines.discrepancy_ms, 1, 500, {}},
         {"lines.follow_ms", &c.lines.follow_ms, 1, 5000, {}},

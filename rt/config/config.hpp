@@ -77,7 +77,7 @@ struct RtConfig {
         std::string enable, watchdog, lamp;
         std::string bias = "none";  // input bias, if the chip supports one: "up", "down"
         bool edges = false;         // the chip has interrupts
-        double look_us = 1000.0;    // sampling period; a slow adapter takes longer
+        double sample_us = 1000.0;  // sampling period; a slow adapter takes longer
         double release_ms = 30.0;
         double discrepancy_ms = 20.0;
         double follow_ms = 100.0;
@@ -123,7 +123,7 @@ struct RtConfig {
         double late_us_max = 5000.0;
         std::int64_t overruns_max = 5;
         std::string timing_latches = "real";  // "real": on real devices only; "always"; "never"
-        double supervisor_us_max = 5000.0;    // longest gap between servo heartbeats; with safety lines
+        double supervisor_us_max = 5000.0;    // longest gap between servo heartbeats; with safety inputs
         double gui_silent_ms = 500.0;
         std::string on_gui_silent = "continue";  // or "ramp"
     } safety;

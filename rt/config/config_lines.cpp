@@ -23,7 +23,7 @@ LinesSettings lines_settings_from(const RtConfig& c) {
     l.logic.release = duration_us(c.lines.release_ms * 1e3);
     l.logic.discrepancy = duration_us(c.lines.discrepancy_ms * 1e3);
     l.logic.follow = duration_us(c.lines.follow_ms * 1e3);
-    l.every = duration_us(c.lines.look_us);
+    l.every = duration_us(c.lines.sample_us);
     return l;
 }
 

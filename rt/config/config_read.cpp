@@ -26,7 +26,8 @@ constexpr const char* kSections =
 // Key names in files and recordings made before 2026-11-25.
 constexpr std::pair<std::string_view, std::string_view> kFormerKeys[] = {
     {"drilling.sucker_diameter_mm", "drilling.suction_tube_diameter_mm"},
-    {"governor.picture_goal_hz", "governor.display_goal_hz"},
+    {"governor.picture_goal_hz", "governor.display_goal_hz"},  // former name
+    {"lines.look_us", "lines.sample_us"},
 };
 
 std::string current_key(const std::string& name) {

@@ -17,7 +17,7 @@
 
 namespace tact {
 
-struct PictureWord {
+struct DisplayReport {
     std::uint64_t frame = 0;
     std::uint64_t levels_sequence = 0;  // sequence of the levels that this frame applied
     std::int64_t taken_at_ns = 0;
@@ -38,7 +38,7 @@ public:
     [[nodiscard]] bool pending(Instant now) const noexcept TACT_RT {
         return !applied_ && to_s(now - asked_at_) < kAnswerMax_s;
     }
-    [[nodiscard]] std::optional<DisplaySample> take(const PictureWord& w) noexcept TACT_RT {
+    [[nodiscard]] std::optional<DisplaySample> take(const DisplayReport& w) noexcept TACT_RT {
         if (w.frame == last_.frame) return std::nullopt;
         const bool first = w.frame < last_.frame || last_.frame == 0;  // first report of this visual process
         const bool applied_before = applied_;
@@ -57,7 +57,7 @@ public:
     }
 
 private:
-    PictureWord last_{};
+    DisplayReport last_{};
     std::uint64_t from_ = 0;
     Instant asked_at_{};
     bool applied_ = true;

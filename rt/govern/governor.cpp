@@ -118,7 +118,7 @@ double Governor::visual_level() const noexcept {
 }
 
 // Factor by which visual levels may rise before a frame takes too long; unlimited without a display goal.
-double Governor::picture_room() const noexcept {
+double Governor::display_margin() const noexcept {
     if (settings_.display_goal_hz <= 0.0) return 1e9;
     if (frame_s_ <= 0.0) return 1.0;  // the cost of the present levels is not known yet
     const double spare = kPictureRoom / (settings_.display_goal_hz * frame_s_);
@@ -141,9 +141,9 @@ bool Governor::step(double rate_hz, Duration dt) noexcept {
         if (moved) since_down_s_ = 0.0;
     } else {
         moved = scale(true, by.haptic, dt_s, LevelReason::rate_high, LevelReason::at_top);
-        const double room = picture_room();
+        const double room = display_margin();
         if (!moved && room > 1.0) {
-            const LevelReason up = display_binds_ ? LevelReason::picture_high : LevelReason::rate_high;
+            const LevelReason up = display_binds_ ? LevelReason::display_high : LevelReason::rate_high;
             moved = scale(false, std::min(by.visual, room), dt_s, up, LevelReason::at_top);
         }
     }
@@ -181,7 +181,7 @@ bool Governor::update(const DisplaySample& picture) noexcept {
         if (n < kWorthwhile) return false;
         factor = std::exp(std::max(-std::log(believed / goal_s) / n, -kDownMost));
     }
-    if (!scale(false, factor, 0.0, LevelReason::picture_low, LevelReason::at_floor)) return false;
+    if (!scale(false, factor, 0.0, LevelReason::display_low, LevelReason::at_floor)) return false;
     display_binds_ = true;
     since_down_s_ = 0.0;
     rate_.restart();

@@ -91,7 +91,7 @@ private:
     [[nodiscard]] bool apply_requests(double dt_s) noexcept;
     [[nodiscard]] RateIs judge(double rate_hz, double dt_s) noexcept;
     [[nodiscard]] Factors factors(double rate_hz, RateIs rate) const noexcept;
-    [[nodiscard]] double picture_room() const noexcept;
+    [[nodiscard]] double display_margin() const noexcept;
     [[nodiscard]] double visual_level() const noexcept;
     [[nodiscard]] bool say_hold() noexcept;
     bool scale(bool haptic, double factor, double dt_s, LevelReason moved, LevelReason stuck) noexcept;

@@ -89,11 +89,11 @@ bool same_bits(const double (&a)[3], const Vec3& b) {
 
 }  // namespace
 
-void ReplayClock::give(std::span<const std::int64_t> looks_ns, Duration shift) noexcept {
+void ReplayClock::give(std::span<const std::int64_t> timestamps_ns, Duration shift) noexcept {
     at_ = 0;
-    count_ = std::clamp<std::size_t>(looks_ns.size(), 1, looks_.size());
-    for (std::size_t i = 0; i < std::min(looks_ns.size(), looks_.size()); ++i)
-        looks_[i] = instant_from_ns(looks_ns[i]) + shift;
+    count_ = std::clamp<std::size_t>(timestamps_ns.size(), 1, timestamps_.size());
+    for (std::size_t i = 0; i < std::min(timestamps_ns.size(), timestamps_.size()); ++i)
+        timestamps_[i] = instant_from_ns(timestamps_ns[i]) + shift;
 }
 
 Replay::Replay(const ReplaySettings& settings)

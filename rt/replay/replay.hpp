@@ -30,14 +30,14 @@ namespace tact {
 // The clock of a replayed cycle: returns the recorded readings in order.
 class ReplayClock final : public Clock {
 public:
-    void give(std::span<const std::int64_t> looks_ns, Duration shift) noexcept;
-    Instant now() noexcept TACT_RT override { return looks_[std::min(at_++, count_ - 1)]; }
+    void give(std::span<const std::int64_t> timestamps_ns, Duration shift) noexcept;
+    Instant now() noexcept TACT_RT override { return timestamps_[std::min(at_++, count_ - 1)]; }
     void wait_until(Instant /*t*/) noexcept TACT_RT override {}
     // True if each reading was used exactly once.
     [[nodiscard]] bool used_up() const noexcept { return at_ == count_; }
 
 private:
-    std::array<Instant, CycleTopic::kTimestampsMax> looks_{};
+    std::array<Instant, CycleTopic::kTimestampsMax> timestamps_{};
     std::size_t at_ = 0, count_ = 1;
 };
 

@@ -52,7 +52,7 @@ struct HandCycle {
     DeviceNotice reported = DeviceNotice::none;
 };
 
-// Safety lines, where fitted.
+// Safety inputs, where fitted.
 struct LinesCycle {
     bool fitted = false;
     LinesSample sample;

@@ -1,4 +1,4 @@
-// Maps causes and states of the safety lines to those of the state machine and of the topics.
+// Maps causes and states of the safety inputs to those of the state machine and of the topics.
 #pragma once
 
 #include "hal/api/lines.hpp"

@@ -77,7 +77,7 @@ void publish_devices(CycleState& c, Latest<DevicesTopic>& topic) noexcept {
         HandCycle& h = c.hand[i];
         const DeviceSample& s = h.sample;
         DeviceHand& d = t.hand[i];
-        d.there = 1;
+        d.valid = 1;
         d.samples = s.sequence;
         d.age_ns = s.sequence > 0 ? std::max<std::int64_t>((c.now - s.taken_at).count(), 0) : -1;
         d.age_ns_most = std::max(h.age_most.count(), d.age_ns);

@@ -20,7 +20,7 @@ struct ServoParts {
     std::span<const HandParts> hands;  // 1 or 2
     RtRegion& region;
     ServoMailbox& mailbox;
-    Lines* lines = nullptr;               // null: no safety lines
+    Lines* lines = nullptr;               // null: no safety inputs
     const CycleScript* script = nullptr;  // replay only; read in every cycle
 };
 

@@ -13,7 +13,7 @@ struct ServoIo {
     Clock& clock;
     RtRegion& region;
     ServoMailbox& mailbox;
-    Lines* lines = nullptr;               // null: no safety lines
+    Lines* lines = nullptr;               // null: no safety inputs
     const CycleScript* script = nullptr;  // replay only; read in every cycle
 };
 

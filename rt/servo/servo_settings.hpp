@@ -29,7 +29,7 @@ struct VisualPath {
 // Selects the switch that turns a hand's tool on.
 enum class DriveSwitch : std::uint8_t {
     button,  // kDriveButton of the hand's device
-    line,    // an input of the safety lines' adapter (hal/api/lines.hpp): on or off
+    line,    // an input of the safety inputs' adapter (hal/api/lines.hpp): on or off
     always,  // while the force is on
 };
 
@@ -57,7 +57,7 @@ struct ServoSettings {
     bool gui_silent_ramps = false;  // true: a silent GUI ramps the force out; false: it is only reported
     std::uint32_t dry_cycles = 1000;
     bool emulated = false;                                   // the device is emulated: no person holds it
-    Duration lines_age_max = std::chrono::milliseconds(20);  // oldest valid sample of the safety lines
+    Duration lines_age_max = std::chrono::milliseconds(20);  // oldest valid sample of the safety inputs
 };
 
 struct HandParts {

@@ -1,4 +1,4 @@
-// Stages 3 and 11: read the safety lines, re-arm them, drive their outputs.
+// Stages 3 and 11: read the safety inputs, re-arm them, drive their outputs.
 //
 // Thread    servo; TACT_RT
 #pragma once

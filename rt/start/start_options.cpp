@@ -40,7 +40,7 @@ void describe(CLI::App& app, StartOptions& o, StartOverrides& v) {
     app.add_option("--goal", v.goal_hz, "Force rate that the governor holds (Hz)")
         ->type_name("HZ")
         ->check(CLI::Range(1.0, 1e7));
-    app.add_option("--picture-goal", v.display_goal_hz,
+    app.add_option("--display-goal", v.display_goal_hz,
                    "Frame rate below which the governor draws a coarser surface (frames/s); 0: none")
         ->type_name("FPS")
         ->check(CLI::Range(0.0, 1000.0));

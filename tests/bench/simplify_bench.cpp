@@ -138,7 +138,7 @@ BENCHMARK_CAPTURE(simplify_to, sheet_f_10, sheet, 10.0)->Arg(100)->Arg(8);
 BENCHMARK_CAPTURE(simplify_to, sheet_f_10_relaxed, sheet, 10.0, 1)->Arg(100)->Arg(8);
 BENCHMARK_CAPTURE(simplify_to, sheet_f_100, sheet, 100.0)->Arg(100)->Arg(8);
 BENCHMARK_CAPTURE(simplify_to, sheet_f_100_relaxed, sheet, 100.0, 1)->Arg(100)->Arg(8);
-BENCHMARK_CAPTURE(simplify_to, sheet_f_published, sheet, kSeedBoundaryWeight)->Arg(100)->Arg(8);
+BENCHMARK_CAPTURE(simplify_to, sheet_f_published, sheet, kPublishedBoundaryWeight)->Arg(100)->Arg(8);
 BENCHMARK(bake)->Unit(benchmark::kMillisecond);
 BENCHMARK_CAPTURE(jump, rings, walked_rings)->Args({1000, 280})->Unit(benchmark::kMillisecond);
 

@@ -212,6 +212,14 @@ TEST_P(ForceModelContract, predicted_cost_and_items_rise_and_the_predicted_error
         EXPECT_NEAR(now.items_predicted, now.items, GetParam().items_tolerance * now.items)
             << "at " << fidelity;
     }
+    // At rest, the predicted error of a level is the one that its steps report once a change of level has faded.
+    for (const float fidelity : {0.0F, 0.3F, 0.5F, 1.0F}) {
+        if (GetParam().path || GetParam().items_tolerance > 0.0) continue;
+        StepResult result;
+        for (int i = 0; i < 1000; ++i) result = model_->step(at(GetParam().touch), budget(fidelity));
+        const double expected = model_->predict(fidelity).error;
+        EXPECT_NEAR(result.load.error, expected, 1e-9 + 1e-3 * expected) << "at " << fidelity;
+    }
     // The predicted error of the floor bounds the difference.
     const KnobRun coarse = run(0.0F);
     double most_n = 0.0;

@@ -1,4 +1,4 @@
-// The contract of all safety lines, emulated or real. A driver's test gives a rig and inherits:
+// The contract of all safety inputs, emulated or real. A driver's test gives a rig and inherits:
 //
 //     INSTANTIATE_TEST_SUITE_P(Sim, LinesContract, testing::Values(LinesCase{...}));
 //
@@ -15,7 +15,7 @@
 
 namespace tact {
 
-// Safety lines with all inputs and outputs fitted, whose wiring can be made to fail.
+// Safety inputs with all inputs and outputs fitted, whose wiring can be made to fail.
 class LinesRig {
 public:
     virtual ~LinesRig() = default;

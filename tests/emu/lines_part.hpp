@@ -1,4 +1,4 @@
-// Safety lines as a part of tact-emu: an emulated CP2112, wired as in a lab, that executes orders.
+// Safety inputs as a part of tact-emu: an emulated CP2112, wired as in a lab, that executes orders.
 //
 // Wiring   0, 1 the emergency stop's contacts, closed is high; 2 dead-man, pressed is high; 3 read-back of the
 //          amplifier, wired to 4; 4 enable; 5 watchdog; 6 lamp

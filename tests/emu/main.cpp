@@ -46,7 +46,7 @@ void describe(CLI::App& app, Options& o) {
     app.add_option("--arm", o.arms, "Arm on USB (dummy_hcd), as SERIAL[:MODEL]; repeat for more arms");
     app.add_option("--tracker", o.tracker,
                    "Head tracker on CAN, as INTERFACE[:classic|fd[:RATE_HZ[:SENSORS]]]");
-    app.add_flag("--lines", o.lines, "Safety lines on a CP2112 adapter (uhid, hid-cp2112)");
+    app.add_flag("--lines", o.lines, "Safety inputs on a CP2112 adapter (uhid, hid-cp2112)");
     app.add_option("--faults", o.faults, "File with faults and their times; the orders are listed below");
     app.add_flag("--orders", o.orders, "Read the same orders from standard input, one per line");
     app.add_option("--seconds", o.seconds, "Length of the run (s); 0: until a signal or the order \"leave\"")

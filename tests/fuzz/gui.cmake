@@ -2,7 +2,7 @@
 find_package(nlohmann_json REQUIRED)
 find_package(tomlplusplus REQUIRED)
 # The installed toml++ library: with its headers alone the undefined-behaviour sanitizer stops at white space beyond Latin-1.
-tact_fuzz(desk_fuzz SOURCES fuzz/desk_fuzz.cpp ${CMAKE_SOURCE_DIR}/gui/window/window_state.cpp
+tact_fuzz(window_state_fuzz SOURCES fuzz/window_state_fuzz.cpp ${CMAKE_SOURCE_DIR}/gui/window/window_state.cpp
         ${CMAKE_SOURCE_DIR}/gui/base/toml_keys.cpp
     USES base SYSTEM tomlplusplus::tomlplusplus)
 tact_fuzz(recents_fuzz SOURCES fuzz/recents_fuzz.cpp ${CMAKE_SOURCE_DIR}/gui/window/recent_scenes.cpp

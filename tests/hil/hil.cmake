@@ -2,6 +2,6 @@
 tact_program(hil_lines_story SOURCES hil/lines_story.cpp scenario/rig.cpp USES base shm topics scene launch emu_lines)
 target_compile_definitions(hil_lines_story PRIVATE TACT_RT_PROGRAM="$<TARGET_FILE:tact-rt>")
 add_dependencies(hil_lines_story tact-rt)
-tact_program(hil_give_way SOURCES hil/give_way.cpp USES base)
-set_target_properties(hil_lines_story hil_give_way PROPERTIES
+tact_program(hil_pause_loop SOURCES hil/pause_loop.cpp USES base)
+set_target_properties(hil_lines_story hil_pause_loop PROPERTIES
     RUNTIME_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/tests)

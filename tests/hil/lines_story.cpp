@@ -1,4 +1,4 @@
-// tact-rt as shipped, with safety lines on a CP2112 adapter through the kernel's own driver and libgpiod: every stop leads
+// tact-rt as shipped, with safety inputs on a CP2112 adapter through the kernel's own driver and libgpiod: every stop leads
 // to zero force, latched with its cause, cleared only by a person; a stopped servo loses its enable line.
 //
 // usage: hil_lines_story [FIFO_PRIORITY CORE [counted]]. As root, on a kernel with uhid and hid-cp2112. "counted": the
@@ -43,7 +43,7 @@ sample_age_us_max = 1e6
 )";
 constexpr double kEnableLowMs = 10.0;  // after the busy thread started
 constexpr const char* kLines = R"([lines]
-look_us = 2000.0
+sample_us = 2000.0
 driver = "gpio"
 chip = "cp2112_gpio"
 emergency_stop_a = "0"

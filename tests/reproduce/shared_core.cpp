@@ -89,7 +89,7 @@ struct SharedCore::Parts {
             add({"--rate", std::to_string(run.goal_hz), "--priority", std::to_string(kPriority)});
         else
             add({"--free-run", "--priority", "0"});
-        add({"--picture-goal", std::to_string(run.display_goal_hz)});
+        add({"--display-goal", std::to_string(run.display_goal_hz)});
         if (run.goal_hz > 0.0) add({"--goal", std::to_string(run.goal_hz)});
         if (run.law == "fixed") add({"--level", "docking.force=1"});
         if (run.mesh_level >= 0.0) add({"--level", "gui.mesh=" + std::to_string(run.mesh_level)});

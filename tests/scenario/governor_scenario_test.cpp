@@ -52,7 +52,7 @@ TEST(GovernorScenario, a_map_too_big_for_the_renderer_becomes_usable_with_the_sa
         int frames = 0;
         for (; frames < 40 && (frames < 2 || picture.level() > 0.07F); ++frames) picture.frame();
         EXPECT_LT(frames, 20);
-        EXPECT_EQ(picture.reason(), LevelReason::picture_low);
+        EXPECT_EQ(picture.reason(), LevelReason::display_low);
         for (int i = 0; i < 100; ++i) picture.frame();
         EXPECT_LT(0.004 + 0.496 * static_cast<double>(picture.level()), 1.1 / 30.0);
         EXPECT_GT(picture.level(), 0.02F);

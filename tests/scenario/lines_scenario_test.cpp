@@ -1,4 +1,4 @@
-// The whole loop with emulated safety lines, in lockstep: zero force in the cycle that detects a stop, latched with its
+// The whole loop with emulated safety inputs, in lockstep: zero force in the cycle that detects a stop, latched with its
 // cause, cleared only by a person.
 #include <gtest/gtest.h>
 

@@ -121,8 +121,8 @@ TEST(ServoScenario, devices_report_samples_their_age_and_motor_heat) {
     Lockstep loop;
     loop.cycles(200);
     const DevicesTopic cool = loop.devices();
-    ASSERT_EQ(cool.hand[0].there, 1);
-    EXPECT_EQ(cool.hand[1].there, 0);
+    ASSERT_EQ(cool.hand[0].valid, 1);
+    EXPECT_EQ(cool.hand[1].valid, 0);
     EXPECT_GT(cool.hand[0].samples, 100U);
     EXPECT_GE(cool.hand[0].age_ns, 0);
     EXPECT_GE(cool.hand[0].age_ns_most, cool.hand[0].age_ns);

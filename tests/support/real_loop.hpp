@@ -1,4 +1,4 @@
-// The servo loop on the machine's own clock, with its thread and the threads of supervisor and safety lines; only
+// The servo loop on the machine's own clock, with its thread and the threads of supervisor and safety inputs; only
 // device and adapter are emulated. A test can stop its servo in the middle of a cycle.
 //
 // Limits   that a busy host could exceed are large (the device's watchdog, the age of the lines' sample, lateness),

@@ -16,7 +16,7 @@ import tree_check
 BANNED = {
     r"wish(es|ed)?": ("request", "a program requests, it does not wish"),
     r"mend(s|ed|ing)?": ("fix, repair", "known from every issue tracker"),
-    r"felt_\w+": ("force map, summed", "only a person feels; a map that makes the force is the force map"),
+    r"felt_\w*": ("force map, summed", "only a person feels; a map that makes the force is the force map"),
     r"desk": ("controller (logic of a panel), window state (the file)", "a metaphor that nobody knows"),
     r"verdicts?": ("status, grade", "programs do not judge"),
     r"house": ("housekeeping thread", "known from real-time code"),
@@ -27,6 +27,8 @@ BANNED = {
     r"deeds?": ("action", "every toolkit says action"),
     r"suckers?": ("suction tube", "the surgical term is suction tube or suction irrigator"),
     r"metronome": ("tick source", "it is a source of timer ticks"),
+    r"(hil_)?giv(e|es|ing)[ _-]way": ("yield, limit", "machines do not give way"),
+    r"picture_(goal|low|high|rate)\w*|--picture-goal": ("display goal, frame rate", "a rate is that of the display"),
     r"hand-over|handed over": ("scene switch, passed on", "scenes are switched"),
     r"seeds?'s? (figures?|table|equations?|experiments?)|the (docking|surface|drilling) seed": ("the paper by its authors", "readers know the authors"),
 }
@@ -67,8 +69,8 @@ def check(root):
 
 def self_test():
     bad = 0
-    samples = ["a wish", "mended", "felt_grid", "the desk file", "verdict", "house thread", "mail", "obeyed", "heeds", "tended", "posture", "deed",
-               "sucker", "metronome", "hand-over", "the docking seed"]
+    samples = ["a wish", "mended", "felt_grid", "felt_", "the desk file", "verdict", "house thread", "mail", "obeyed", "heeds", "tended", "posture", "deed",
+               "sucker", "metronome", "gives way", "picture_goal_hz", "hand-over", "the docking seed"]
     with tempfile.TemporaryDirectory() as root:
         for sample, wanted in [(s, 1) for s in samples] + [("a suction tube; e-mail is kept: former name", 0), ("random seed", 0)]:
             with open(os.path.join(root, "a.md"), "w", encoding="utf-8") as f:

@@ -91,7 +91,7 @@ TEST(Config, the_documented_file_has_the_defaults_and_every_key) {
     EXPECT_EQ(config.lines.lamp, defaults.lines.lamp);
     EXPECT_EQ(config.lines.bias, defaults.lines.bias);
     EXPECT_EQ(config.lines.edges, defaults.lines.edges);
-    EXPECT_EQ(config.lines.look_us, defaults.lines.look_us);
+    EXPECT_EQ(config.lines.sample_us, defaults.lines.sample_us);
     EXPECT_EQ(config.lines.release_ms, defaults.lines.release_ms);
     EXPECT_EQ(config.lines.discrepancy_ms, defaults.lines.discrepancy_ms);
     EXPECT_EQ(config.lines.follow_ms, defaults.lines.follow_ms);
@@ -161,12 +161,13 @@ TEST(Config, an_unknown_key_is_refused_with_line_and_a_suggestion) {
 TEST(Config, keys_and_names_of_older_files_are_read) {
     const TempFile file(
         "[device2]\nhand = \"sucker\"\n[drilling]\nsucker_diameter_mm = 3\n[governor]\npicture_goal_hz = "  // former names
-        "20\n");
+        "20\n[lines]\nlook_us = 2000\n");
     RtConfig config;
     read_config(file.path(), config);
     EXPECT_EQ(config.device2.hand, "suction-tube");
     EXPECT_EQ(config.drilling.suction_tube_diameter_mm, 3.0);
     EXPECT_EQ(config.governor.display_goal_hz, 20.0);
+    EXPECT_EQ(config.lines.sample_us, 2000.0);
 }
 
 TEST(Config, an_impossible_value_is_refused_with_its_range) {

@@ -34,10 +34,10 @@ inline std::unique_ptr<RtRegion> a_region() {
     levels.path[0].level = 0.25F;
     region->levels.publish(levels);
     DevicesTopic devices{};
-    devices.hand[0].there = 1;
+    devices.hand[0].valid = 1;
     devices.hand[0].heat = 0.5F;
     devices.hand[0].force_n_continuous = 1.4F;
-    devices.hand[1].there = 1;
+    devices.hand[1].valid = 1;
     devices.hand[1].winding_c = 60.0F;
     devices.hand[1].winding_c_max = 120.0F;
     devices.hand[1].age_ns_most = 1000;

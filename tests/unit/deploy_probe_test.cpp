@@ -148,7 +148,7 @@ TEST(Probe, a_node_without_rights_fails_for_the_configured_arm_and_warns_for_ano
     const Tree tree;
     tree.phantom("1-1", "P", 4);
     probe::Buses buses = probe::read_buses(tree.root());
-    probe::Node& node = buses.usb.there.at(0).node;
+    probe::Node& node = buses.usb.entries.at(0).node;
     EXPECT_TRUE(node.usable);
     node.usable = false;
     node.group = "root";
@@ -199,19 +199,19 @@ TEST(Probe, hidraw_nodes_and_serial_ports_of_a_device_are_found) {
     tree.interface("1-4:1.0", "ff\n", "ff\n", "ff\n");
     fs::create_directories(tree.root() / "sys/bus/usb/devices/1-4:1.0/ttyUSB5");
     const auto usb = probe::usb_devices(tree.root());
-    ASSERT_EQ(usb.there.size(), 2U);
-    ASSERT_EQ(usb.there[0].nodes.size(), 1U);
-    EXPECT_EQ(usb.there[0].nodes[0].path, (tree.root() / "dev/hidraw2").string());
-    EXPECT_TRUE(usb.there[0].nodes[0].usable);
+    ASSERT_EQ(usb.entries.size(), 2U);
+    ASSERT_EQ(usb.entries[0].nodes.size(), 1U);
+    EXPECT_EQ(usb.entries[0].nodes[0].path, (tree.root() / "dev/hidraw2").string());
+    EXPECT_TRUE(usb.entries[0].nodes[0].usable);
     DeviceRequest request;
     request.driver = "polhem";
     EXPECT_FALSE(ask(tree, request).fails());
     EXPECT_TRUE(says(ask(tree, request).one("arm").says, {"driver polhem, accessible"}));
     fs::remove(tree.root() / "dev/hidraw2");
     EXPECT_TRUE(says(ask(tree, request).one("arm").says, {"hidraw2 does not exist"}));
-    ASSERT_EQ(usb.there[1].nodes.size(), 1U);
-    EXPECT_EQ(usb.there[1].nodes[0].path, (tree.root() / "dev/ttyUSB5").string());
-    EXPECT_FALSE(usb.there[1].nodes[0].usable);
+    ASSERT_EQ(usb.entries[1].nodes.size(), 1U);
+    EXPECT_EQ(usb.entries[1].nodes[0].path, (tree.root() / "dev/ttyUSB5").string());
+    EXPECT_FALSE(usb.entries[1].nodes[0].usable);
 }
 
 TEST(Probe, a_falcon_is_reported_with_the_firmware_that_it_needs) {
@@ -326,24 +326,24 @@ TEST(Probe, hostile_texts_numbers_and_long_lists_are_bounded) {
     tree.usb("1-5", "1209", "0001", "", 7);
     tree.file("sys/bus/usb/devices/1-5/busnum", "../../../etc\n");
     const auto usb = probe::usb_devices(tree.root());
-    ASSERT_EQ(usb.there.size(), 2U);
-    EXPECT_LE(usb.there[0].serial.size(), probe::kTextMax);
-    for (const char c : usb.there[0].name + usb.there[0].serial) EXPECT_TRUE(c >= ' ' && c <= '~');
-    EXPECT_EQ(usb.there[1].node.path, "");
+    ASSERT_EQ(usb.entries.size(), 2U);
+    EXPECT_LE(usb.entries[0].serial.size(), probe::kTextMax);
+    for (const char c : usb.entries[0].name + usb.entries[0].serial) EXPECT_TRUE(c >= ' ' && c <= '~');
+    EXPECT_EQ(usb.entries[1].node.path, "");
     EXPECT_FALSE(ask(tree, {}).findings.empty());
 
     const Tree crowd;
     for (std::size_t i = 0; i < probe::kEntriesMax + 20; ++i)
         fs::create_directories(crowd.root() / ("sys/bus/gpio/devices/gpiochip" + std::to_string(i)));
     const auto gpio = probe::gpio_chips(crowd.root());
-    EXPECT_EQ(gpio.there.size(), probe::kEntriesMax);
+    EXPECT_EQ(gpio.entries.size(), probe::kEntriesMax);
     EXPECT_TRUE(gpio.more);
 
     // A pipe in place of a file does not block.
     const Tree pipes;
     fs::create_directories(pipes.root() / "sys/class/net/can0");
     ASSERT_EQ(mkfifo((pipes.root() / "sys/class/net/can0/type").c_str(), 0600), 0);
-    EXPECT_TRUE(probe::can_interfaces(pipes.root()).there.empty());
+    EXPECT_TRUE(probe::can_interfaces(pipes.root()).entries.empty());
 }
 
 TEST(Probe, the_second_device_is_probed_too) {
@@ -365,7 +365,7 @@ TEST(Probe, the_second_device_is_probed_too) {
     EXPECT_FALSE(ask(tree, request).fails());
     // The second arm's node counts as configured.
     probe::Buses buses = probe::read_buses(tree.root());
-    for (probe::UsbDevice& d : buses.usb.there) d.node.usable = d.serial != "RIGHT";
+    for (probe::UsbDevice& d : buses.usb.entries) d.node.usable = d.serial != "RIGHT";
     const Answer refused{judge_devices(buses, request, kMember, "")};
     EXPECT_TRUE(refused.fails());
     request.driver2 = "falcon";

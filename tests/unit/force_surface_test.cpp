@@ -147,25 +147,53 @@ struct Hand {
     [[nodiscard]] Vec3 proxy() const { return kWorldPerModel * model->contact().proxy_m; }
 };
 
-// At rest. The lag of a fast proxy at a low level has no proven bound yet, so the surface predicts nothing.
-ForceModelCase at_rest(const char* name, std::function<std::unique_ptr<ForceModel>()> make, double grip_y_m,
-                       const Vec3& touch_m) {
+// Around the sphere's axis at 0.5 m/s: at rest a step needs one move, so the knob matters only while the proxy moves.
+ForceModelCase moving(const char* name, std::function<std::unique_ptr<ForceModel>()> make, double grip_y_m,
+                      const Vec3& touch_m) {
     ForceModelCase c;
     c.name = name;
     c.make = std::move(make);
     c.grip = {Vec3(0.0, grip_y_m, 0.0), Quat::Identity()};
     c.touch = {touch_m, Quat::Identity()};
-    c.predicts = false;
-    c.error_free = "a proxy at rest needs at most the moves of the lowest level";
+    c.path = [touch_m](int i) {
+        return Pose{Eigen::AngleAxisd(0.01 * i, Vec3::UnitZ()) * touch_m, Quat::Identity()};
+    };
+    c.path_steps = 200;
+    c.items_tolerance = 0.2;
     return c;
 }
 
 INSTANTIATE_TEST_SUITE_P(Surface, ForceModelContract,
-                         testing::Values(at_rest("point", [] { return smooth().model({}); }, 0.056,
-                                                 {0.004, 0.048, 0.003}),
-                                         at_rest("ball", [] { return rough().model({.radius_m = 0.003}); },
-                                                 0.066, {0.004, 0.05, 0.003})),
+                         testing::Values(moving("point", [] { return smooth().model({}); }, 0.056,
+                                                {0.004, 0.048, 0.003}),
+                                         moving("ball", [] { return rough().model({.radius_m = 0.003}); },
+                                                0.066, {0.004, 0.05, 0.003})),
                          [](const auto& tested) { return tested.param.name; });
+
+TEST(Surface, a_step_with_few_moves_that_is_settled_ends_where_more_moves_would) {
+    const double radius_m = 1e-4 / kWorldPerModel, margin_m = 1e-3 * radius_m;
+    int settled = 0, lagging = 0;
+    for (const std::uint32_t moves : {4U, 6U, 9U}) {
+        SurfaceContact contact(rough().mesh, {radius_m, margin_m, 0.0, 1e-4 / kWorldPerModel});
+        const auto goal = [](double angle_rad) {
+            return Vec3(0.048 / kWorldPerModel *
+                        Vec3(std::sin(angle_rad), std::cos(angle_rad), 0.1 * std::sin(3.0 * angle_rad)));
+        };
+        contact.seat(1.4 * goal(0.0));
+        for (int i = 0; i < 200; ++i) (void)contact.follow((1.4 - 0.002 * i) * goal(0.0), 24);
+        for (int i = 0; i < 600; ++i) {
+            const Contact few = contact.follow(goal(0.01 * i), moves);
+            lagging += few.state == ContactState::lagging ? 1 : 0;
+            if (few.state != ContactState::settled) continue;
+            ++settled;
+            SurfaceContact more = contact;
+            const Contact all = more.follow(goal(0.01 * i), SurfaceContact::kMovesMost);
+            EXPECT_LT((all.proxy_m - few.proxy_m).norm(), 20.0 * margin_m) << moves << " moves, step " << i;
+        }
+    }
+    EXPECT_GT(settled, 100);
+    EXPECT_GT(lagging, 100);
+}
 
 TEST(Surface, a_plane_pushes_back_by_stiffness_times_depth) {
     for (const double radius_m : {0.0, 0.001, 0.003}) {

@@ -210,7 +210,7 @@ TEST(Governor, one_slow_frame_changes_no_level_and_two_lower_it) {
     EXPECT_FALSE(frame(0.02));
     EXPECT_FALSE(frame(0.05));
     EXPECT_TRUE(frame(0.05));
-    EXPECT_EQ(governor.paths()[0].reason, LevelReason::picture_low);
+    EXPECT_EQ(governor.paths()[0].reason, LevelReason::display_low);
     EXPECT_LT(governor.level(0), 0.7F);
 }
 
@@ -259,12 +259,12 @@ TEST(CostFit, finds_the_elasticity_of_a_line_and_keeps_its_prior_where_nothing_m
 TEST(DisplayWatch, returns_each_frame_that_applied_the_levels_once) {
     DisplayWatch watch;
     const Instant t = Instant{} + std::chrono::hours(1);
-    PictureWord w{.frame = 5,
-                  .levels_sequence = 1,
-                  .taken_at_ns = 1'000'000'000,
-                  .work_s = 0.01,
-                  .cpu_s = 1.0,
-                  .drawn = true};
+    DisplayReport w{.frame = 5,
+                    .levels_sequence = 1,
+                    .taken_at_ns = 1'000'000'000,
+                    .work_s = 0.01,
+                    .cpu_s = 1.0,
+                    .drawn = true};
     EXPECT_FALSE(watch.take(w));  // the first frame of a process has no predecessor
     watch.asked(7, t);
     EXPECT_TRUE(watch.pending(t));

@@ -136,7 +136,7 @@ TEST_F(DrillControllerTest, shows_tools_and_distances_in_world_units) {
     EXPECT_NEAR(d.burr.diameter_m, 4e-3, 1e-8);
     EXPECT_NEAR(d.burr.rpm, 60000.0, 0.1);
     EXPECT_TRUE(d.burr.water && !d.burr.suction);
-    EXPECT_TRUE(d.suction_tube.there && d.suction_tube.suction && !d.suction_tube.water);
+    EXPECT_TRUE(d.suction_tube.valid && d.suction_tube.suction && !d.suction_tube.water);
     EXPECT_NEAR(d.removed_m3, 10.0 * std::pow(kVoxelM, 3), 1e-15);
     ASSERT_EQ(d.structures.size(), 1U);
     EXPECT_EQ(d.structures[0].name, "facial nerve");

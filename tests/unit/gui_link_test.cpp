@@ -112,7 +112,7 @@ TEST(RegionChecks, refuse_impossible_devices_trackers_and_lateness) {
     EXPECT_TRUE(sensible(LatenessTopic{}));
     const auto device = [](const auto& spoil) {
         DevicesTopic t{};
-        t.hand[1].there = 1;
+        t.hand[1].valid = 1;
         spoil(t.hand[1]);
         return sensible(t);
     };
@@ -122,7 +122,7 @@ TEST(RegionChecks, refuse_impossible_devices_trackers_and_lateness) {
     EXPECT_FALSE(device([](DeviceHand& d) { d.force_n_continuous = -1.0F; }));
     EXPECT_FALSE(device([](DeviceHand& d) { d.age_ns = -2; }));
     EXPECT_FALSE(device([](DeviceHand& d) { d.read = 4; }));
-    EXPECT_FALSE(device([](DeviceHand& d) { d.there = 2; }));
+    EXPECT_FALSE(device([](DeviceHand& d) { d.valid = 2; }));
     TrackerTopic tracker{};
     tracker.link = 5;
     EXPECT_FALSE(sensible(tracker));
@@ -329,7 +329,7 @@ TEST(StatusText, grades_the_rate_against_its_goal) {
 TEST(StatusTexts, of_devices_motors_and_trackers_show_the_worst_known_state) {
     DeviceHand d{};
     EXPECT_EQ(device_status(d, {}, DeviceNotice::none).grade, Grade::unknown);
-    d.there = 1;
+    d.valid = 1;
     d.state = 2;
     EXPECT_EQ(device_status(d, {}, DeviceNotice::none).grade, Grade::good);
     EXPECT_EQ(device_status(d, {}, DeviceNotice::none).text, "powered");

@@ -166,7 +166,7 @@ TEST_F(FalconKinematics, an_invalid_configuration_is_refused_and_gives_no_force)
     EXPECT_FALSE(k_.drive(k_.configuration(Vec3(0.3, 0.0, 0.0)), Vec3(1.0, 0.0, 0.0)).valid);
 }
 
-// The axis towards the user has both singularities: the grip gives way far out, the shins are stretched far in.
+// The axis towards the user has both singularities: the grip folds outwards far out, the shins are stretched far in.
 TEST_F(FalconKinematics, near_a_singularity_the_configuration_is_flagged_before_numbers_degrade) {
     bool was_good = false, turned_bad_near = false, turned_bad_far = false;
     for (double z = -0.07; z < 0.08; z += 1e-4) {

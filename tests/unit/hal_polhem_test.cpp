@@ -191,22 +191,22 @@ TEST(PolhemHidraw, the_board_is_found_by_usb_ids_and_serial_on_its_first_interfa
     EXPECT_EQ(polhem::find_board(usb, "", node).fault, BusFault::missing);
     EXPECT_NE(polhem::find_board(usb, "", node).detail.find("no USB"), std::string::npos);
     usb.visible = true;
-    usb.there = {board_of("A"), probe::UsbDevice{}};
+    usb.entries = {board_of("A"), probe::UsbDevice{}};
     const usb::BusFinding one = polhem::find_board(usb, "", node);
     EXPECT_EQ(one.fault, BusFault::none);
     EXPECT_EQ(one.serial, "A");
     EXPECT_EQ(node, "/dev/hidraw3");
-    usb.there.push_back(board_of("B"));
+    usb.entries.push_back(board_of("B"));
     EXPECT_EQ(polhem::find_board(usb, "", node).fault, BusFault::several);
     EXPECT_EQ(polhem::find_board(usb, "B", node).serial, "B");
     EXPECT_EQ(polhem::find_board(usb, "C", node).fault, BusFault::missing);
     EXPECT_EQ(polhem::find_board(usb, "C", node).detail, "A, B");
-    usb.there.push_back(board_of("B"));
+    usb.entries.push_back(board_of("B"));
     EXPECT_EQ(polhem::find_board(usb, "B", node).fault, BusFault::twins);
-    usb.there = {board_of("")};
-    usb.there[0].nodes.clear();
+    usb.entries = {board_of("")};
+    usb.entries[0].nodes.clear();
     EXPECT_EQ(polhem::find_board(usb, "", node).fault, BusFault::not_ready);
-    usb.there = {board_of("")};
+    usb.entries = {board_of("")};
     EXPECT_EQ(polhem::find_board(usb, "", node).serial, "no serial");
 }
 

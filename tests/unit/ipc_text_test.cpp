@@ -42,7 +42,7 @@ TEST(LevelText, gives_limit_duration_and_error) {
     EXPECT_EQ(level_status_text(p, 13'000'000'000), "full detail");
     p.haptic = 0;
     p.level = 0.3F;
-    p.reason = static_cast<std::uint8_t>(LevelReason::picture_low);
+    p.reason = static_cast<std::uint8_t>(LevelReason::display_low);
     EXPECT_EQ(level_status_text(p, 1'801'000'000'000), "frame rate limit, 30 min");
     // A time from another clock and a non-finite error are omitted.
     p.haptic = 1;
@@ -90,8 +90,8 @@ TEST(Text, events_carry_their_numbers_and_units) {
     EXPECT_EQ(text(EventCode::state_changed, 1, 4), "state changed: ready to fault");
     EXPECT_EQ(text(EventCode::force_limited, 5.50321, 3.3), "force limited: 5.5 N requested, 3.3 N allowed");
     EXPECT_EQ(text(EventCode::command_done, 1, 2), "command arm: refused: not in this state");
-    EXPECT_EQ(text(EventCode::lines_changed, 1, 15), "safety lines: stop: the dead-man switch is released");
-    EXPECT_EQ(text(EventCode::lines_changed, 3, 0), "safety lines: permit");
+    EXPECT_EQ(text(EventCode::lines_changed, 1, 15), "safety inputs: stop: the dead-man switch is released");
+    EXPECT_EQ(text(EventCode::lines_changed, 3, 0), "safety inputs: permit");
     EXPECT_EQ(text(EventCode::level_changed, kDisplayPathIndex, 0.5), "level changed: display to 0.5, start");
     EXPECT_EQ(text(EventCode::level_changed, kForcePathIndex, 0.25,
                    static_cast<std::uint16_t>(LevelReason::rate_low)),

@@ -80,7 +80,7 @@ TEST(Simplify, border_planes_keep_the_border) {
     const auto coarse = [&](double f, std::uint32_t n) {
         return simplify(hill, {.vertices_min = n, .boundary_weight = f}).mesh;
     };
-    for (const double f : {SimplifySettings{}.boundary_weight, kSeedBoundaryWeight}) {
+    for (const double f : {SimplifySettings{}.boundary_weight, kPublishedBoundaryWeight}) {
         const TriangleMesh kept = coarse(f, 30);
         expect_sound(kept);
         EXPECT_EQ(topology(kept).euler, 1);
@@ -88,8 +88,8 @@ TEST(Simplify, border_planes_keep_the_border) {
         EXPECT_GT(flat_area(kept), 0.97) << f;
     }
     const TriangleMesh lost = coarse(0.0, 30);
-    EXPECT_GT(corner_loss(lost), 2.0 * corner_loss(coarse(kSeedBoundaryWeight, 30)));
-    EXPECT_LT(flat_area(lost), flat_area(coarse(kSeedBoundaryWeight, 30)));
+    EXPECT_GT(corner_loss(lost), 2.0 * corner_loss(coarse(kPublishedBoundaryWeight, 30)));
+    EXPECT_LT(flat_area(lost), flat_area(coarse(kPublishedBoundaryWeight, 30)));
 }
 
 TEST(Simplify, topology_never_changes_at_any_level) {

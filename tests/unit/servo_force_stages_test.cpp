@@ -100,7 +100,7 @@ TEST(StageModel, a_line_that_cannot_be_read_switches_nothing_on) {
         servo::step_models(f.c, f.settings, f.io);
         return model.driven.on;
     };
-    EXPECT_FALSE(on());  // no safety lines
+    EXPECT_FALSE(on());  // no safety inputs
     f.c.lines.fitted = true;
     EXPECT_TRUE(on());
     f.c.lines.age = f.settings.lines_age_max + microseconds(1);

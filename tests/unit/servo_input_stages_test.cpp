@@ -171,7 +171,7 @@ TEST(StageOrders, a_visual_process_that_falls_silent_is_reported_once_and_ramps_
 
 TEST(StageLines, a_stop_bars_arming_and_old_samples_are_lost_lines) {
     CycleFixture f;
-    servo::check_lines(f.c, f.settings, f.io);  // no safety lines
+    servo::check_lines(f.c, f.settings, f.io);  // no safety inputs
     EXPECT_EQ(f.c.lines.stops, RunReason::none);
     f.fit_lines();
     servo::check_lines(f.c, f.settings, f.io);

@@ -68,7 +68,7 @@ json surface_info(const SceneFile& file) {
         {"tree", {{"bytes", mesh.bytes() - std::min(arrays, mesh.bytes())}}},
         {"forest", forest},
         {"bytes_per_triangle", static_cast<double>(bytes) / triangles},
-        {"picture_vertices", file.count(kPicture) > 0 ? json(read_mesh(file, 0).vertices()) : json(nullptr)},
+        {"display_vertices", file.count(kPicture) > 0 ? json(read_mesh(file, 0).vertices()) : json(nullptr)},
         {"tool", tool},
         {"formulas", kFormulas}};
 }

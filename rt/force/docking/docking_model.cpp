@@ -43,7 +43,7 @@ DockingModel::DockingModel(const SceneMeta& meta, const DensityGrid& grid,
       energy_j_per_sigma_(start_energy_j_per_sigma(meta, settings)),
       whole_(make_force_map(*parts_, newtons_per_gradient(), 0, {})),
       built_(whole_),
-      felt_(whole_.get()),
+      force_map_(whole_.get()),
       bodies_(start_bodies(*parts_, settings), static_cast<std::uint32_t>(parts_->structures.size())) {
     clash_gains_ = parts_->clash_gains;
     clash_gains_.force_n *= settings.force_scale;
@@ -62,16 +62,16 @@ DockingModel::DockingModel(const DockingModel& like, const ModelBodies& bodies)
                  ? like.whole_
                  : make_force_map(*parts_, newtons_per_gradient(), asked_whole, bodies);
     built_ = asked == asked_whole ? whole_ : make_force_map(*parts_, newtons_per_gradient(), asked, bodies);
-    felt_ = built_.get();
+    force_map_ = built_.get();
     bodies_.list() = bodies;
     error_scale_.fill(1.0);
 }
 
 LevelBlend DockingModel::blend() const noexcept {
     const std::size_t structure = bodies_.structure();
-    return {.map = felt_->map,
+    return {.map = force_map_->map,
             .levels = parts_->levels[structure],
-            .metrics = felt_->metrics[structure],
+            .metrics = force_map_->metrics[structure],
             .error_scale = error_scale_[structure],
             .energy_j_per_sigma = energy_j_per_sigma_,
             .newtons_per_gradient = newtons_per_gradient()};
@@ -207,7 +207,7 @@ void DockingModel::audit(const StepResult& result, const Pose& T_model_body) noe
     if (result.status != StepStatus::ok || result.load.recomputed_fraction < 1.0F) return;
     double& scale = error_scale_[bodies_.structure()];
     const double per_newton = 1.0 / std::max(newtons_per_gradient(), 1e-300);
-    if (!audit_.step(felt_->map, parts_->levels[bodies_.structure()].back(), T_model_body,
+    if (!audit_.step(force_map_->map, parts_->levels[bodies_.structure()].back(), T_model_body,
                      per_newton * result.wrench_world.force_n, per_newton * result.load.error / scale,
                      result.load.items))
         return;
@@ -230,21 +230,21 @@ void DockingModel::let_go() noexcept {
 // Selects the map with the requested options, if it exists. A map made with another body in the hand has the present
 // body subtracted, so it must not be used. True: the map changed.
 bool DockingModel::choose_density() noexcept {
-    const ForceMap* const before = felt_;
+    const ForceMap* const before = force_map_;
     const std::uint32_t asked = bodies_.list().options_asked & kForceMapOptions;
     const bool fits =
         (built_->options & kDockingSubtraction) == 0 || built_->active_id == bodies_.active_id();
     if (fits && built_->options == asked) {
-        felt_ = built_.get();
+        force_map_ = built_.get();
     } else if (!fits || whole_->options == asked) {
-        felt_ = whole_.get();
+        force_map_ = whole_.get();
     }
     show_options();
-    return felt_ != before;
+    return force_map_ != before;
 }
 
 void DockingModel::show_options() noexcept {
-    bodies_.list().options = felt_->options | (bodies_.list().options_asked & kDockingClash);
+    bodies_.list().options = force_map_->options | (bodies_.list().options_asked & kDockingClash);
 }
 
 bool DockingModel::set_options(std::uint32_t options, bool on) noexcept {
@@ -286,8 +286,8 @@ bool DockingModel::order(const ModelOrder& order) noexcept {
 bool DockingModel::stale() const noexcept {
     if (!bodies_.in_hand()) return false;
     const std::uint32_t asked = bodies_.list().options_asked & kForceMapOptions;
-    if (asked != felt_->options) return true;
-    return (asked & kDockingSubtraction) != 0 && felt_->others != bodies_.list().others;
+    if (asked != force_map_->options) return true;
+    return (asked & kDockingSubtraction) != 0 && force_map_->others != bodies_.list().others;
 }
 
 std::unique_ptr<ForceModel> DockingModel::rebuild(const ModelBodies& bodies) const {
@@ -310,9 +310,10 @@ bool DockingModel::adopt(const ForceModel& old) noexcept {
 
 void DockingModel::give_up() noexcept {
     // The present map stays, unless it was made for another body in the hand or for other bodies around it.
-    const bool stays = (felt_->options & kDockingSubtraction) == 0 ||
-                       (felt_->active_id == bodies_.active_id() && felt_->others == bodies_.list().others);
-    const std::uint32_t felt = stays ? felt_->options : whole_->options;
+    const bool stays =
+        (force_map_->options & kDockingSubtraction) == 0 ||
+        (force_map_->active_id == bodies_.active_id() && force_map_->others == bodies_.list().others);
+    const std::uint32_t felt = stays ? force_map_->options : whole_->options;
     bodies_.list().options_asked = felt | (bodies_.list().options_asked & kDockingClash);
     if (choose_density()) fade(fade_);
 }

@@ -68,7 +68,7 @@ public:
     // Turns options (DockingOption) on or off; constant time, as order(). False: unknown options.
     bool set_options(std::uint32_t options, bool on) noexcept TACT_RT;
 
-    [[nodiscard]] const DensityMap& map() const { return felt_->map; }
+    [[nodiscard]] const DensityMap& map() const { return force_map_->map; }
     [[nodiscard]] const SceneMeta& meta() const { return parts_->meta; }
     [[nodiscard]] double energy_j_per_sigma() const { return energy_j_per_sigma_; }
     [[nodiscard]] Pose home() const { return parts_->structures[bodies_.structure()].home(); }
@@ -98,9 +98,9 @@ private:
     double energy_j_per_sigma_;
     ClashGains clash_gains_;
     // Map without subtraction, and map with the options requested when this model was built (may be the same map).
-    // felt_ points to one of them, so a step can switch between them.
+    // force_map_ points to one of them, so a step can switch between them.
     std::shared_ptr<const ForceMap> whole_, built_;
-    const ForceMap* felt_;
+    const ForceMap* force_map_;
     DockingBodies bodies_;
     // The grip: translation from tool to centre of mass (constant in world axes), and rotation from tool to body.
     Vec3 com_from_tool_world_m_ = Vec3::Zero();

@@ -104,7 +104,7 @@ double DrillModel::rate_per_s() const noexcept {
 }
 
 DrillWork DrillModel::expected(float fidelity) const noexcept {
-    DrillWork work = expected_work(felt_.work, felt_.look, block_of(fidelity) * felt_.look.radius);
+    DrillWork work = expected_work(last_.work, last_.look, block_of(fidelity) * last_.look.radius);
     if (led_) work.cut = turns_.bricks() * turns_.groups_at(fidelity, drive_.step_s) / turns_.groups();
     return work;
 }
@@ -119,8 +119,8 @@ PathLoad DrillModel::predict(float fidelity) const noexcept {
     const double pending = 0.5 * (steps - 1.0) * rate_per_s() * drive_.step_s;
     const double voxel = per_voxel_m_ / head_radius_m_;
     load.error = block_error_share(block_of(fidelity), voxel, false) *
-                     std::min(felt_.elastic_n, settings_.force_n_max) +
-                 std::min(felt_.pending_n * pending, 2.0 * settings_.force_n_max);
+                     std::min(last_.elastic_n, settings_.force_n_max) +
+                 std::min(last_.pending_n * pending, 2.0 * settings_.force_n_max);
     return load;
 }
 
@@ -153,10 +153,10 @@ void DrillModel::publish(const ModelCycle& cycle) noexcept {
     if (publisher_ != nullptr) publisher_->add(*this, cycle);
 }
 
-DrillModel::Felt DrillModel::feel(const ToolState& tool, double block, bool hurried,
-                                  const Deadline& deadline) noexcept {
-    Felt felt;
-    felt.late = hurried;
+DrillModel::BallForces DrillModel::ball_forces(const ToolState& tool, double block, bool hurried,
+                                               const Deadline& deadline) noexcept {
+    BallForces sum;
+    sum.late = hurried;
     depth_ = 0.0;
     head_ = {};
     const Quat q = tool.T_world_tool.q.normalized();
@@ -168,11 +168,11 @@ DrillModel::Felt DrillModel::feel(const ToolState& tool, double block, bool hurr
     const double volume = per_voxel_m_ * per_voxel_m_ * per_voxel_m_ / 255.0;
     for (std::uint32_t i = 0; i < tool_.count; ++i) {
         const ToolBall& ball = tool_.ball[i];
-        if (!felt.late && i > 0) felt.late = deadline.passed();
+        if (!sum.late && i > 0) sum.late = deadline.passed();
         const double radius = ball.radius_m / per_voxel_m_;
-        const double used = (felt.late ? kBlockCoarse : block) * radius, depth = felt.late ? 1.0 : depths_[i];
+        const double used = (sum.late ? kBlockCoarse : block) * radius, depth = sum.late ? 1.0 : depths_[i];
         const BallMoments m = ball_moments(bone_.octree, kernels_, now_voxels_[i], radius, used, depth);
-        felt.work.add(m);
+        sum.work.add(m);
         depths_[i] = 0.0;
         if (!(m.m0 > 0.0)) {
             ways_out_[i].setZero();
@@ -191,23 +191,23 @@ DrillModel::Felt DrillModel::feel(const ToolState& tool, double block, bool hurr
             most_blocks = m.blocks;
             // As if it had been asked for at this depth.
             const double part = depth_part(depth < 0.0 ? f.depth : depth);
-            felt.look = {radius, f.depth, used * part / depth_part(f.depth)};
+            sum.look = {radius, f.depth, used * part / depth_part(f.depth)};
         }
         if (ball.cuts)
-            felt.pending_n += ball.weight * ball.weight *
-                              pending_error_n(law, ball.radius_m, settings_.soft, f, volume * m.m0,
-                                              volume * per_voxel_m_ * m.m1.norm(), velocity_m_s.norm());
+            sum.pending_n += ball.weight * ball.weight *
+                             pending_error_n(law, ball.radius_m, settings_.soft, f, volume * m.m0,
+                                             volume * per_voxel_m_ * m.m1.norm(), velocity_m_s.norm());
         const Vec3 force_n = ball.weight * f.wrench.force_n;
-        felt.wrench.force_n += force_n;
-        felt.wrench.torque_n_m += ball.weight * f.wrench.torque_n_m + arm_m.cross(force_n);
-        felt.elastic_n +=
+        sum.wrench.force_n += force_n;
+        sum.wrench.torque_n_m += ball.weight * f.wrench.torque_n_m + arm_m.cross(force_n);
+        sum.elastic_n +=
             ball.weight * law.elastic_pa * ball.radius_m * ball.radius_m * f.depth * std::sqrt(f.depth);
         if ((ball.cuts || i == 0) && f.depth > depth_) {
             depth_ = f.depth;
             head_ = f;
         }
     }
-    return felt;
+    return sum;
 }
 
 // Across the shaft, turning with the burr; never faster than a tenth of the servo's rate, which a hand still feels as
@@ -225,7 +225,7 @@ StepResult DrillModel::step(const ToolState& tool, const Budget& budget) noexcep
     StepResult result;
     const DrillWork planned = expected(budget.fidelity);
     result.load.cost_predicted = drill_cost(planned);
-    felt_ = {};
+    last_ = {};
     fade_.begin_step(drive_.step_s);
     if (asked_) erosion_.begin();
     if (!hand_is_there(tool.T_world_tool)) {
@@ -255,23 +255,23 @@ StepResult DrillModel::step(const ToolState& tool, const Budget& budget) noexcep
         const bool hurried = budget.deadline.passed();
         const double block = block_of(budget.fidelity);
         const double pending = turns_.pending();
-        felt_ = feel(tool, block, hurried, budget.deadline);
-        Felt& felt = felt_;
-        elastic_n_ = felt.elastic_n;
-        Wrench wrench = felt.wrench;
-        wrench.force_n += shaken_n(tool, felt.elastic_n);
+        last_ = ball_forces(tool, block, hurried, budget.deadline);
+        BallForces& sum = last_;
+        elastic_n_ = sum.elastic_n;
+        Wrench wrench = sum.wrench;
+        wrench.force_n += shaken_n(tool, sum.elastic_n);
         const double size_n = wrench.force_n.norm(),
                      scale = size_n > settings_.force_n_max ? settings_.force_n_max / size_n : 1.0;
-        felt.pending_n *= scale;
+        sum.pending_n *= scale;
         const double gain = fade_.gain() * scale;
         result.wrench_world = fade_.show({gain * wrench.force_n, gain * wrench.torque_n_m});
         const double share =
-            block_error_share(felt.late ? kBlockCoarse : block, per_voxel_m_ / head_radius_m_, felt.late);
-        result.load.error = share * std::min(felt.elastic_n, settings_.force_n_max) +
-                            std::min(felt.pending_n * pending, 2.0 * settings_.force_n_max);
+            block_error_share(sum.late ? kBlockCoarse : block, per_voxel_m_ / head_radius_m_, sum.late);
+        result.load.error = share * std::min(sum.elastic_n, settings_.force_n_max) +
+                            std::min(sum.pending_n * pending, 2.0 * settings_.force_n_max);
 
         cuts_ = !clutch && drive_.burr_rad_s > 0.0;
-        bool late = felt.late || budget.deadline.passed();
+        bool late = sum.late || budget.deadline.passed();
         if (!led_) {
             turns_.forget(now_voxels_);
             led_ = true;
@@ -296,10 +296,10 @@ StepResult DrillModel::step(const ToolState& tool, const Budget& budget) noexcep
             }
         }
         if (late) result.status = StepStatus::out_of_time;
-        felt_.work.cut = erosion_.pass().visited;
-        result.load.items = felt_.work.items();
+        last_.work.cut = erosion_.pass().visited;
+        result.load.items = last_.work.items();
         if (late) {
-            const auto done = static_cast<double>(drill_cost(felt_.work).count()),
+            const auto done = static_cast<double>(drill_cost(last_.work).count()),
                        whole = static_cast<double>(std::max(drill_cost(planned).count(), Duration::rep{1}));
             result.load.work_done = static_cast<float>(std::clamp(done / whole, 0.01, 1.0));
         }

@@ -135,7 +135,7 @@ public:
     [[nodiscard]] static double block_of(float fidelity) noexcept TACT_RT;
 
 private:
-    struct Felt {
+    struct BallForces {
         Wrench wrench;           // at the tool's origin, world, before limits
         double elastic_n = 0.0;  // sum of sizes
         bool late = false;
@@ -143,8 +143,8 @@ private:
         BallLook look;           // at the ball with most work
         double pending_n = 0.0;  // error per exposure that waits
     };
-    [[nodiscard]] Felt feel(const ToolState& tool, double block, bool hurried,
-                            const Deadline& deadline) noexcept TACT_RT;
+    [[nodiscard]] BallForces ball_forces(const ToolState& tool, double block, bool hurried,
+                                         const Deadline& deadline) noexcept TACT_RT;
     [[nodiscard]] double rate_per_s() const noexcept TACT_RT;
     [[nodiscard]] DrillWork expected(float fidelity) const noexcept TACT_RT;
     [[nodiscard]] Vec3 shaken_n(const ToolState& tool, double elastic_n) noexcept TACT_RT;
@@ -163,7 +163,7 @@ private:
     double head_radius_m_ = 0.0;
     std::array<Vec3, DrillTool::kMax> now_voxels_{};  // centres
     ErosionTurns turns_{1.0};
-    Felt felt_;           // of the last step
+    BallForces last_;     // of the last step
     bool cuts_ = false;   // the clutch is open
     bool asked_ = false;  // reset() was called
     bool led_ = false;    // now_voxels_ are of a tool that was led here

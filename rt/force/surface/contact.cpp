@@ -197,11 +197,13 @@ Contact SurfaceContact::follow(const Vec3& goal_m, std::uint32_t moves_max,
     // Expect the slide to continue at its speed; a second move covers the rest.
     double reach = std::max(std::min(step, kSlidesOn * moved_m_), settings_.margin_m);
     contact.state = ContactState::lagging;
+    moves_max = std::min(moves_max, kMovesMost);
     while (contact.moves < moves_max && contact.triangles < kTrianglesMost) {
         if (contact.moves > 0 && deadline.passed()) {
             contact.late = true;
             break;
         }
+        if (contact.moves > 0) after_m_[contact.moves - 1] = proxy_m_;
         ++contact.moves;
         const Vec3 request = goal_m - proxy_m_;
         double reach_now = std::min({reach, left, std::max(request.norm(), settings_.margin_m)});
@@ -261,11 +263,14 @@ Contact SurfaceContact::follow(const Vec3& goal_m, std::uint32_t moves_max,
                          settings_.margin_m);
         cut_before = cut;
     }
-    // Moves spent on a ring do not count as lag: the proxy is at its goal within a margin.
-    if (contact.state == ContactState::lagging && rounds > 0 && !contact.late)
+    // Moves spent on a ring do not count as lag: the proxy is at its goal within a margin. Below the maximum number of moves
+    // only a full count of rounds proves a ring.
+    const bool ring = rounds == kRounds || (rounds > 0 && contact.moves == kMovesMost);
+    if (contact.state == ContactState::lagging && ring && !contact.late)
         contact.state = ContactState::settled;
     moved_m_ = (proxy_m_ - begin_m).norm();
     contact.proxy_m = proxy_m_;
+    contact.after_m = {after_m_.data(), std::max(contact.moves, 1U) - 1};
     return contact;
 }
 

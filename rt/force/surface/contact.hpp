@@ -20,6 +20,7 @@
 
 #include <array>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "ipc/base/knob.hpp"
@@ -60,10 +61,13 @@ struct Contact {
     std::uint32_t triangles = 0;  // queried
     ContactState state = ContactState::settled;
     bool late = false;  // ended by the deadline
+    // Position of the proxy after each move but the last; valid until the next step.
+    std::span<const Vec3> after_m;
 };
 
 class SurfaceContact {
 public:
+    static constexpr std::uint32_t kMovesMost = 24;  // of a step
     static constexpr std::size_t kLeavesMax = 4096;
     // A step starts no further move after this many queries, about 100 us.
     static constexpr std::uint32_t kTrianglesMost = 8192;
@@ -111,6 +115,7 @@ private:
     double way_m_ = 0.0;         // path length since the collection
     Vec3 proxy_m_ = Vec3::Zero(), goal_m_ = Vec3::Zero();
     double moved_m_ = 0.0;  // displacement in the last step
+    std::array<Vec3, kMovesMost> after_m_;
 };
 
 }  // namespace tact

@@ -10,7 +10,11 @@
 // Limit    force_n_max. A proxy that cannot keep up gives k times the current way, limited; the step is out_of_time and
 //          counted, and its error bound is twice that force. If it lags by more than kLostLimits times the way at the
 //          limit, it is released: the force fades out, the proxy is seated as after a reset, the force fades in.
-// Knob     "surface.force": maximum number of proxy moves per step, 4 to 24. A proxy that needs more lags.
+// Knob     "surface.force": maximum number of proxy moves per step, 4 to 24. A proxy that needs more lags and catches up in
+//          later steps. Most steps need two (README.md), so usually all levels are equal. predict() uses the moves of
+//          the last half second and the levels that would have lagged in it (lag_record.hpp).
+// Error    of a step that lagged: twice the force. It fades with the tool's displacement and ends when the proxy is free,
+//          because until then the proxy may be held elsewhere than without the lag.
 // Modes    off_brute: every triangle in every step; off_tree: search in the tree over the full mesh; chr: search in the
 //          surface that slow_update() refines around the tool (adaptive_surface.hpp), or in the full tree if that
 //          surface does not contain the search radius. The force is the same; regime() tells which one was used. In
@@ -33,6 +37,7 @@
 #include "rt/force/force_model.hpp"
 #include "rt/force/surface/adaptive_tool_surface.hpp"
 #include "rt/force/surface/contact.hpp"
+#include "rt/force/surface/lag_record.hpp"
 #include "rt/force/surface/shading.hpp"
 #include "rt/force/surface/surface_touch.hpp"
 #include "rt/force/surface/triple_buffer.hpp"
@@ -65,7 +70,7 @@ public:
     static constexpr double kLagN =
         0.05;  // allowed change of the force per step beyond that caused by the hand
     static constexpr double kLostLimits = 2.0;
-    static constexpr std::uint32_t kMovesLeast = 4, kMovesMost = 24;
+    static constexpr std::uint32_t kMovesLeast = 4, kMovesMost = SurfaceContact::kMovesMost;
 
     // The memory behind mesh and forest must outlive the model. Only mode chr needs the forest.
     SurfaceModel(const SceneMeta& meta, const SurfaceMesh& mesh, const SurfaceSettings& settings,
@@ -74,6 +79,7 @@ public:
     [[nodiscard]] KnobSpec knob() const noexcept TACT_RT override;
     // Triangles expected around the tool in mode chr, else moves.
     [[nodiscard]] std::uint32_t items(float fidelity) const noexcept TACT_RT override;
+    [[nodiscard]] PathLoad predict(float fidelity) const noexcept TACT_RT override;
     [[nodiscard]] static std::uint32_t moves(float fidelity) noexcept TACT_RT;
     [[nodiscard]] double stiffness_n_m() const noexcept TACT_RT override { return settings_.stiffness_n_m; }
     void reset(const ToolState& tool) noexcept TACT_RT override;
@@ -112,6 +118,7 @@ private:
                                double gone_m) noexcept TACT_RT;
     void choose_surface(const Vec3& goal_m, float fidelity) noexcept TACT_RT;
     void use_full_surface() noexcept TACT_RT;
+    void forget_lag(double gone_m) noexcept TACT_RT;
 
     SceneMeta meta_;
     SurfaceSettings settings_;
@@ -119,6 +126,9 @@ private:
     Contact contact_;
     ForceFade fade_;
     PacedTurn<Vec3> turn_;  // by shading
+    LagRecord lag_;
+    double depth_m_ = 0.0;  // from the tool to the proxy in the last step, model metres
+    double lagged_ = 0.0;   // remaining weight of the last lag, 1 to 0
     bool asked_ = false;    // reset() was called
     bool seated_ = false;   // the proxy has a valid position
     std::uint64_t grips_ = 0;

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""tact-rt with safety lines on an emulated CP2112: stops, broken wires, unplugged adapter, starved servo. 70_lines.py BIN
+"""tact-rt with safety inputs on an emulated CP2112: stops, broken wires, unplugged adapter, starved servo. 70_lines.py BIN
 
 First checks the adapter of tact-emu once, then runs hil_lines_story.
 """

@@ -13,11 +13,11 @@
 
 namespace tact {
 
-class PictureFiles {
+class Screenshots {
 public:
     // path: of the screenshot at the end; empty: neither that nor a series. every_s: interval of the series; 0: none.
     // stage: of the stereo display at the end; empty: none.
-    PictureFiles(std::string path, double every_s, std::string stage)
+    Screenshots(std::string path, double every_s, std::string stage)
         : path_(std::move(path)), stage_(std::move(stage)), every_s_(every_s) {}
 
     [[nodiscard]] bool wanted_at_end() const { return !path_.empty() || !stage_.empty(); }

@@ -1,4 +1,4 @@
-#include "gui/window/picture_files.hpp"
+#include "gui/window/screenshots.hpp"
 
 #include <chrono>
 
@@ -14,13 +14,13 @@ constexpr std::uint32_t kSeriesMost = 9999;
 
 }  // namespace
 
-bool PictureFiles::series_due(Instant now, bool something_to_see) {
+bool Screenshots::series_due(Instant now, bool something_to_see) {
     if (!(every_s_ > 0.0) || path_.empty() || !something_to_see || series_ >= kSeriesMost) return false;
     if (series_ == 0) series_from_ = now;
     return to_s(now - series_from_) >= every_s_ * series_;
 }
 
-void PictureFiles::save_of_series(const Image& window, const View& view) {
+void Screenshots::save_of_series(const Image& window, const View& view) {
     Image part{static_cast<std::uint32_t>(view.width_px), static_cast<std::uint32_t>(view.height_px), {}};
     const auto top = window.height_px - static_cast<std::uint32_t>(view.y_px) - part.height_px;
     for (std::uint32_t y = 0; y < part.height_px; ++y) {
@@ -35,7 +35,7 @@ void PictureFiles::save_of_series(const Image& window, const View& view) {
     write(path, part);
 }
 
-void PictureFiles::save_stage(const std::vector<Image>& eyes) {
+void Screenshots::save_stage(const std::vector<Image>& eyes) {
     if (stage_.empty()) return;
     if (eyes.size() == 1) return write(stage_, eyes[0]);
     for (std::size_t eye = 0; eye < eyes.size(); ++eye) {
@@ -46,13 +46,13 @@ void PictureFiles::save_stage(const std::vector<Image>& eyes) {
     }
 }
 
-void PictureFiles::save_now(const Image& window) {
+void Screenshots::save_now(const Image& window) {
     const auto moment = std::chrono::duration_cast<std::chrono::milliseconds>(
         std::chrono::system_clock::now().time_since_epoch());
     write("tact-" + std::to_string(moment.count()) + ".png", window);
 }
 
-void PictureFiles::write(const std::filesystem::path& path, const Image& image) {
+void Screenshots::write(const std::filesystem::path& path, const Image& image) {
     try {
         write_png(path, image.width_px, image.height_px, image.rgb);
         spdlog::info("wrote {}", path.string());
