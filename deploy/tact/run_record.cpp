@@ -43,7 +43,8 @@ std::optional<Sample> take_sample(const RtRegion& region, const SystemRun* syste
             s.level_force = force->level;
             s.points = force->items;
         }
-        if (const auto particles = level_at(*levels, kParticlesPathIndex))
+        const auto particles = level_at(*levels, kParticlesPathIndex);
+        if (particles && std::string_view(particles->path) == kParticlesPath)
             s.level_particles = particles->level;
     }
     if (system != nullptr) system->sample(region, s);

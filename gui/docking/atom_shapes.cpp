@@ -1,5 +1,9 @@
 #include "gui/docking/atom_shapes.hpp"
 
+#include <algorithm>
+#include <numeric>
+#include <random>
+
 #include "gui/render/elements.hpp"
 #include "gui/render/tube.hpp"
 #include "ipc/base/units.hpp"
@@ -46,15 +50,61 @@ std::vector<Stick> sticks_of(const Structure& s, std::span<const Bond> bonds) {
     return sticks;
 }
 
-std::vector<Stick> trace_of(const Structure& s) {
+std::vector<Stick> trace_of(const Structure& s, std::size_t atoms_per_point) {
     std::vector<Stick> sticks;
-    for (const auto& strand : strands_of(s))
-        for (std::size_t k = 0; k + 1 < strand.size(); ++k) {
-            sticks.push_back(stick(s, strand[k], strand[k + 1], kTraceRadiusA));
+    for (const auto& strand : strands_of(s)) {
+        const auto points = thinned_strand_a(s, strand, atoms_per_point);
+        for (std::size_t k = 0; k + 1 < points.size(); ++k) {
+            const auto atom = [&](std::size_t point) {
+                return strand[point * strand.size() / points.size()];
+            };
+            Stick made = stick(s, atom(k), atom(k + 1), kTraceRadiusA);
+            made.from_a = {points[k].x(), points[k].y(), points[k].z()};
+            made.to_a = {points[k + 1].x(), points[k + 1].y(), points[k + 1].z()};
             // One colour per chain: the element of a trace atom carries no information.
-            sticks.back().from.element = sticks.back().to.element = sticks.back().from.chain;
+            made.from.element = made.to.element = made.from.chain;
+            sticks.push_back(made);
         }
+    }
     return sticks;
+}
+
+void order_by_level(std::vector<Sphere>& spheres) {
+    std::mt19937 random(1);
+    std::shuffle(spheres.begin(), spheres.end(), random);
+}
+
+std::size_t order_by_level(std::vector<Stick>& sticks, const Structure& s, std::span<const Bond> bonds) {
+    constexpr std::uint32_t kFar = 1U << 30U;
+    std::vector<std::vector<std::uint32_t>> bonded(s.size());
+    for (const auto& [i, j] : bonds) {
+        bonded[i].push_back(j);
+        bonded[j].push_back(i);
+    }
+    std::vector<std::uint32_t> distance(s.size(), kFar), queue;
+    for (std::uint32_t i = 0; i < s.size(); ++i)
+        if (s.trace[i] != 0) distance[i] = 0, queue.push_back(i);
+    for (std::size_t at = 0; at < queue.size(); ++at)
+        for (const std::uint32_t next : bonded[queue[at]])
+            if (distance[next] == kFar) distance[next] = distance[queue[at]] + 1, queue.push_back(next);
+    // Both ends of a backbone bond are at most one bond from a trace atom; so is the first of a side chain.
+    const auto rank = [&](std::size_t i) -> std::uint32_t {
+        if (i >= bonds.size()) return 0;  // an atom without bonds
+        return std::max(distance[bonds[i][0]], distance[bonds[i][1]]);
+    };
+    std::vector<std::size_t> order(sticks.size());
+    std::iota(order.begin(), order.end(), std::size_t{0});
+    std::stable_sort(order.begin(), order.end(),
+                     [&](std::size_t a, std::size_t b) { return rank(a) < rank(b); });
+    std::vector<Stick> sorted;
+    sorted.reserve(sticks.size());
+    std::size_t always = 0;
+    for (const std::size_t i : order) {
+        sorted.push_back(sticks[i]);
+        always += rank(i) <= 1 ? 1 : 0;
+    }
+    sticks = std::move(sorted);
+    return always;
 }
 
 }  // namespace tact

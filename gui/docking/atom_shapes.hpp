@@ -44,7 +44,15 @@ inline constexpr float kStickRadiusA = 0.25F, kTraceRadiusA = 0.35F;
 [[nodiscard]] std::vector<Sphere> spheres_of(const Structure& structure);
 // One per bond. An atom without bonds (an ion) is a stick of zero length with half its van der Waals radius.
 [[nodiscard]] std::vector<Stick> sticks_of(const Structure& structure, std::span<const Bond> bonds);
-// Straight sticks from trace atom to trace atom.
-[[nodiscard]] std::vector<Stick> trace_of(const Structure& structure);
+// Straight sticks from trace atom to trace atom, or between means of as many successive ones.
+[[nodiscard]] std::vector<Stick> trace_of(const Structure& structure, std::size_t atoms_per_point = 1);
+
+// For levels of detail, the order in which shapes are drawn: the first n of them represent all.
+// Spheres in random order, the same in every run.
+void order_by_level(std::vector<Sphere>& spheres);
+// Sticks by their distance from the trace in bonds, so that side chains become shorter. Returns the number of sticks that must always be
+// drawn: the backbone, and atoms without bonds.
+[[nodiscard]] std::size_t order_by_level(std::vector<Stick>& sticks, const Structure& structure,
+                                         std::span<const Bond> bonds);
 
 }  // namespace tact

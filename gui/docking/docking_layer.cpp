@@ -59,7 +59,8 @@ DockingLayer::Points DockingLayer::make_points(const Codebook::Level& level) {
 }
 
 void DockingLayer::draw_structures(const LayerPass& pass) {
-    if (frame.backbone) molecules_.draw(frame.bodies, pass.eye_from_scene, pass.projection, pass.haze);
+    const std::span<const DrawnBody> bodies = frame.backbone ? frame.bodies : std::span<const DrawnBody>{};
+    molecules_.draw(bodies, pass.eye_from_scene, pass.projection, pass.haze);
 }
 
 void DockingLayer::draw_marks(const LayerPass& pass) {

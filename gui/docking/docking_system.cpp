@@ -2,6 +2,7 @@
 
 #include <spdlog/spdlog.h>
 
+#include <algorithm>
 #include <chrono>
 
 #include "gui/docking/contour_rows.hpp"
@@ -132,7 +133,6 @@ void DockingSystem::follow_bodies(std::int64_t now_ns, const SystemContext& cont
 }
 
 void DockingSystem::prepare(std::int64_t now_ns, bool sharp, ViewFrame& frame, const SystemContext& context) {
-    static_cast<void>(sharp);
     follow_bodies(now_ns, context);
     drawn_.clear();
     for (const ShownBody& b : list_.bodies()) drawn_.push_back({b.T_model_body, b.structure, b.id, b.hidden});
@@ -141,8 +141,26 @@ void DockingSystem::prepare(std::int64_t now_ns, bool sharp, ViewFrame& frame, c
     const Controller& c = context.controller;
     const PathLevel* const force = c.have_levels ? find_path(c.levels, kDockingPath) : nullptr;
     layer_->frame = {t.backbone, t.codebook, t.graph, drawn_, force != nullptr ? force->items : 0};
+    if (const PathLevel* const path = c.level(kMoleculesPath)) molecules_level_ = path->level;
+    layer_->molecules().set_level(sharp ? 1.0F : molecules_level_);
     layer_->molecules().set_look(
         {static_cast<MoleculeStyle>(t.molecule), static_cast<Colouring>(t.colouring)});
+}
+
+bool DockingSystem::add_to_key(ContentKey& key) const {
+    const DockingLayer::Frame& f = layer_->frame;
+    for (const bool shown : {f.backbone, f.codebook, f.graph}) key.add(shown);
+    if (f.codebook || f.graph) key.add(f.points_summed);
+    const MoleculeLook look = layer_->molecules().look();
+    key.add(look.style);
+    key.add(look.colouring);
+    for (const DrawnBody& body : f.bodies) {
+        key.add(body.id);
+        key.add(body.structure);
+        key.add(body.hidden);
+        if (!body.hidden) key.add(body.T_model_body);
+    }
+    return true;
 }
 
 void DockingSystem::drawn(const SystemContext& context) {
@@ -155,6 +173,12 @@ void DockingSystem::drawn(const SystemContext& context) {
             "bodies drawn as tubes, because this renderer is too slow for "
             "their atoms: {}",
             left_out);
+}
+
+void DockingSystem::add_to(LoadTopic& load) const {
+    if (!layer_) return;
+    load.molecule_triangles_max = layer_->molecules().triangles_max();
+    load.molecule_triangles = std::min(layer_->molecules().triangles(), load.molecule_triangles_max);
 }
 
 void DockingSystem::finish(const SystemContext& context) {

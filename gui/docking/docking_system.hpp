@@ -29,8 +29,11 @@ public:
     void read(const Controller::Fresh& fresh, const SystemContext& context) override;
     bool perform(KeyAction what, std::size_t place, const SystemContext& context) override;
     void turn_wheel(double steps) override;
+    void add_to(LoadTopic& load) const override;
     void adapt() override;
     void prepare(std::int64_t now_ns, bool sharp, ViewFrame& frame, const SystemContext& context) override;
+    void refine() override { layer_->molecules().set_level(1.0F); }
+    [[nodiscard]] bool add_to_key(ContentKey& key) const override;
     void drawn(const SystemContext& context) override;
     void finish(const SystemContext& context) override;
 
@@ -46,6 +49,7 @@ private:
     BodyList list_;
     std::vector<DrawnBody> drawn_;
     std::size_t left_out_ = 0;
+    float molecules_level_ = 1.0F;  // keeps the controller's newest value
 };
 
 }  // namespace tact

@@ -4,12 +4,15 @@
 // even from far away, where the usual b^2 - ac has lost it (0.25 ångström at 1000).
 #include "gui/docking/impostors.hpp"
 
+#include <algorithm>
+
 namespace tact {
 namespace {
 
 constexpr char kCommon[] = R"(
 uniform int u_pick;    // 0 chain, 1 element, 2 body
 uniform vec3 u_body;
+uniform float u_grow;
 vec3 picked(vec4 element, vec4 chain) { return u_pick == 2 ? u_body : u_pick == 1 ? element.rgb : chain.rgb; }
 // At the shape's nearest point, but not in front of the near plane.
 vec4 on_quad(vec2 slope, float nearest) {
@@ -35,7 +38,7 @@ flat out vec4 v_sphere;
 flat out vec3 v_colour;
 void main() {
     vec3 c = (u_eye * vec4(sphere.xyz, 1.0)).xyz;
-    float r = sphere.w, z = -c.z, d = z * z - r * r;
+    float r = u_grow * sphere.w, z = -c.z, d = z * z - r * r;
     v_colour = picked(element, chain);
     v_sphere = vec4(c, r);
     if (z < 1.05 * r) { v_slope = vec2(0.0); gl_Position = nowhere; return; }
@@ -198,21 +201,23 @@ void ImpostorShapes::send(std::span<const Shape> shapes) {
 void ImpostorShapes::fill(std::span<const Sphere> spheres) { send(spheres); }
 void ImpostorShapes::fill(std::span<const Stick> sticks) { send(sticks); }
 
-void ImpostorShapes::draw() {
+void ImpostorShapes::draw(std::size_t first) {
     glBindVertexArray(array_.get());
-    glDrawElements(GL_TRIANGLES, static_cast<GLsizei>(6 * count_), GL_UNSIGNED_INT, nullptr);
+    glDrawElements(GL_TRIANGLES, static_cast<GLsizei>(6 * std::min(first, count_)), GL_UNSIGNED_INT, nullptr);
 }
 
 ImpostorPrograms::Program::Program(const char* what, const char* vertex, const char* fragment_text)
     : program(what, shader((kCommon + std::string(vertex)).c_str()).c_str(), fragment(fragment_text).c_str()),
       view(program),
       pick(program.uniform("u_pick")),
-      body(program.uniform("u_body")) {}
+      body(program.uniform("u_body")),
+      grow(program.uniform("u_grow")) {}
 
 void ImpostorPrograms::Program::use(const ImpostorView& v) const {
     program.use();
     view.set(v.eye_from_local, v.projection, v.haze);
     glUniform1i(pick, static_cast<GLint>(v.colouring));
+    glUniform1f(grow, v.grow);
     glUniform3f(body, static_cast<float>(v.body[0]) / 255.0F, static_cast<float>(v.body[1]) / 255.0F,
                 static_cast<float>(v.body[2]) / 255.0F);
 }

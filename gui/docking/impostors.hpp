@@ -23,6 +23,7 @@ struct ImpostorView {
     const Haze& haze;
     Colouring colouring = Colouring::chain;
     Rgb8 body{255, 255, 255};  // for colouring by body
+    float grow = 1.0F;         // factor on the radii of spheres
 };
 
 // The shapes of one structure in graphics memory, shared by all its copies.
@@ -32,7 +33,8 @@ public:
     void fill(std::span<const Stick> sticks);
     [[nodiscard]] std::size_t count() const { return count_; }
     [[nodiscard]] bool filled() const { return filled_; }
-    void draw();
+    void draw() { draw(count_); }
+    void draw(std::size_t first);  // as many of them, from the first on
 
 private:
     template <class Shape>
@@ -55,7 +57,7 @@ private:
         void use(const ImpostorView& view) const;
         GlProgram program;
         ViewUniforms view;
-        GLint pick, body;
+        GLint pick, body, grow;
     };
     Program spheres_, sticks_;
 };

@@ -5,9 +5,12 @@
 // Cost     trace and tube are cheap anywhere. Sticks and spheres are impostors, one per bond or atom: cheap on a
 //          graphics card, expensive in software. A frame draws at most shapes_max of them (set_shapes_max);
 //          further bodies are drawn as tubes, and left_out() counts them.
+// Level    of gui.molecules: tubes and traces follow means of more atoms, with fewer sides; sticks lose the ends of side chains first;
+//          of the spheres a random part is drawn, enlarged to fill the same volume.
 // Thread   frame thread, context current.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <limits>
 #include <map>
@@ -41,21 +44,36 @@ public:
     void set_look(const MoleculeLook& look);  // of all bodies, including later ones
     void set_look(std::uint32_t id, const MoleculeLook& look);
     [[nodiscard]] MoleculeLook look(std::uint32_t id) const;
+    [[nodiscard]] MoleculeLook look() const { return look_; }  // of bodies without one of their own
     void set_shapes_max(std::size_t shapes) { shapes_max_ = shapes; }
+    // In (0, 1], from the next draw() on.
+    void set_level(float level) { level_ = level; }
 
     // Opaque; depth test and depth writing on.
     void draw(std::span<const DrawnBody> bodies, const Eigen::Matrix4f& eye_from_scene,
               const Eigen::Matrix4f& projection, const Haze& haze);
     // Bodies that the last draw() drew as tubes instead of sticks or spheres.
     [[nodiscard]] std::size_t left_out() const { return left_out_; }
+    // Of the last draw(): as drawn, and at level 1.
+    [[nodiscard]] std::uint32_t triangles() const { return triangles_; }
+    [[nodiscard]] std::uint32_t triangles_max() const { return triangles_max_; }
 
 private:
+    static constexpr std::array kTubeLevels{1.0F, 0.7F, 0.5F, 0.35F, 0.25F, 0.17F};
+    static constexpr std::size_t kTraceSteps = 4;
     struct OfStructure {
-        TriangleBuffers tube;
-        ImpostorShapes trace, sticks, spheres;
+        std::array<TriangleBuffers, kTubeLevels.size()> tube;
+        std::array<ImpostorShapes, kTraceSteps> trace;  // by the atoms per point
+        ImpostorShapes sticks, spheres;
+        std::size_t sticks_always = 0;  // drawn at any level
+        std::size_t tube_vertices = 0;  // of the tube at level 1
     };
     ImpostorShapes& shapes(std::size_t structure, MoleculeStyle style);
+    ImpostorShapes& trace(std::size_t structure, std::size_t atoms_per_point);
+    TriangleBuffers& tube(std::size_t structure, std::size_t step);
     void draw_tube(std::size_t structure, const ImpostorView& view);
+    void draw_shapes(std::size_t structure, MoleculeStyle style, ImpostorView view);
+    void count(std::size_t drawn, std::size_t most);
 
     std::shared_ptr<const SceneContent> content_;
     Programs& programs_;
@@ -64,6 +82,8 @@ private:
     MoleculeLook look_;
     std::map<std::uint32_t, MoleculeLook> look_of_;
     std::size_t shapes_max_ = kNoLimit, left_out_ = 0;
+    float level_ = 1.0F;
+    std::uint32_t triangles_ = 0, triangles_max_ = 0;
 };
 
 }  // namespace tact

@@ -19,6 +19,11 @@ public:
     void close() override;
     void follow(const SystemContext& context) override;
     void prepare(std::int64_t now_ns, bool sharp, ViewFrame& frame, const SystemContext& context) override;
+    // The hand is in the frame; nothing else moves.
+    [[nodiscard]] bool add_to_key(ContentKey& key) const override {
+        static_cast<void>(key);
+        return true;
+    }
 
 private:
     FieldPanels panels_;

@@ -48,6 +48,7 @@ ContourState Contours::state(std::size_t contour) const {
 }
 
 void Contours::show_mesh(Slot& slot, std::shared_ptr<const ProgressiveMesh> mesh, double level) {
+    slot.full.reset();
     slot.surface.reset();
     slot.mesh = std::move(mesh);
     slot.surface = std::make_unique<Surface>(*slot.mesh);
@@ -67,6 +68,7 @@ void Contours::take_news(std::size_t contour, std::size_t& bytes) {
     if (news->mesh) {
         show_mesh(slot, std::move(news->mesh), news->level);
     } else if (news->plain) {
+        slot.full.reset();
         slot.surface.reset();
         slot.mesh.reset();
         bytes += slot.plain.fill(*news->plain);
@@ -117,6 +119,34 @@ void Contours::apply_share(double budget_s) noexcept {
     if (worker_)
         worker_->set_vertices_max(share_ >= 1.0 ? ContourWorker::kPlainVerticesMax
                                                 : static_cast<std::uint32_t>(std::clamp(plain, kLeast, 1e9)));
+}
+
+void Contours::set_refined(bool refined) {
+    refined_ = refined;
+    if (!refined) return;
+    for (std::size_t i = 0; i < kContoursMax; ++i) {
+        Slot& slot = slot_[i];
+        if (!shown(i) || !slot.surface || slot.full) continue;
+        if (slot.surface->cut().vertices() >= slot.mesh->vertices()) continue;
+        slot.full = std::make_unique<Surface>(*slot.mesh);
+        slot.full->approach(slot.mesh->vertices(), 1e9);
+        slot.full->upload();
+    }
+}
+
+void Contours::add_to(ContentKey& key) const {
+    for (std::size_t i = 0; i < wanted_.size(); ++i) {
+        const Contour& c = wanted_[i];
+        key.add(c.shown);
+        if (!c.shown) continue;
+        for (int k = 0; k < 3; ++k) key.add(c.colour[k]);
+        key.add(c.opacity);
+        key.add(c.style ? static_cast<int>(*c.style) : -1);
+        key.add(slot_[i].state.level);
+        key.add(slot_[i].state.stride);
+        key.add(slot_[i].surface != nullptr);
+        if (!slot_[i].surface) key.add(slot_[i].plain.vertices());
+    }
 }
 
 std::uint32_t Contours::vertices() const {
@@ -191,7 +221,7 @@ void Contours::draw(std::size_t i, const Eigen::Matrix4f& eye, const Eigen::Matr
         {.glass = style == SurfaceStyle::glass, .opacity = std::clamp(contour.opacity, 0.0F, 1.0F)});
     const auto triangles = [&] {
         if (slot.surface)
-            slot.surface->draw(contour.colour);
+            (refined_ && slot.full ? *slot.full : *slot.surface).draw(contour.colour);
         else
             slot.plain.draw(contour.colour);
     };

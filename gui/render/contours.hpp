@@ -16,6 +16,7 @@
 #include <string>
 #include <vector>
 
+#include "gui/render/content_key.hpp"
 #include "gui/render/contour_worker.hpp"
 #include "gui/render/looks.hpp"
 #include "gui/render/programs.hpp"
@@ -53,6 +54,11 @@ public:
     // Goes to `wanted` at once if that takes less than 33 ms; else as far as `budget_s` of this frame allows, divided
     // among the surfaces (see Surface). Call it every frame.
     void approach_vertices(std::uint32_t wanted, double budget_s) noexcept;
+    // While on, surfaces are drawn in full detail from buffers of their own, so that the level is kept meanwhile and is back at once.
+    // Counts below are those of the level.
+    void set_refined(bool refined);
+    // Adds what is shown, apart from the level.
+    void add_to(ContentKey& key) const;
     // Takes the worker's results and uploads changes. Returns bytes.
     std::size_t upload();
     void draw_opaque(const Eigen::Matrix4f& eye_from_model, const Eigen::Matrix4f& projection,
@@ -72,6 +78,7 @@ private:
         std::optional<double> asked;                  // of the worker
         std::shared_ptr<const ProgressiveMesh> mesh;  // of `surface`, which is destroyed first
         std::unique_ptr<Surface> surface;
+        std::unique_ptr<Surface> full;  // refined, where `surface` is not at full detail
         PlainSurface plain;
         std::uint32_t plain_full = 0;
         ContourState state;
@@ -90,6 +97,7 @@ private:
     std::vector<Contour> wanted_;
     std::array<Slot, kContoursMax> slot_;
     double share_ = 1.0;
+    bool refined_ = false;
     std::unique_ptr<ContourWorker> worker_;  // only if the scene has a map
 };
 

@@ -111,6 +111,27 @@ private:
     GLuint name_ = 0;
 };
 
+class GlRenderbuffer {
+public:
+    GlRenderbuffer() = default;
+    GlRenderbuffer(const GlRenderbuffer&) = delete;
+    GlRenderbuffer& operator=(const GlRenderbuffer&) = delete;
+    ~GlRenderbuffer() {
+        if (name_ == 0) return;
+        glDeleteRenderbuffers(1, &name_);
+        --gl_names_held();
+    }
+    GLuint get() {
+        if (name_ != 0) return name_;
+        glGenRenderbuffers(1, &name_);
+        ++gl_names_held();
+        return name_;
+    }
+
+private:
+    GLuint name_ = 0;
+};
+
 class GlProgram {
 public:
     GlProgram(const std::string& what, const char* vertex_source, const char* fragment_source);

@@ -1,23 +1,40 @@
 #include "gui/render/pass_clock.hpp"
 
 #include <algorithm>
+#include <initializer_list>
 
 namespace tact {
 namespace {
 
 constexpr std::uint64_t kFirstFinished = 16;  // soon after the start, so that values exist
 
-// The passes of each visual path, in the order of visual_path_text().
-constexpr std::array<std::array<Pass, 2>, kVisualPaths> kPassesOf{
-    {{Pass::adapt, Pass::surface}, {Pass::bone, Pass::bone}, {Pass::motion, Pass::particles}}};
+// After a change of the levels, a frame is measured once the change has settled, and no more often than this.
+constexpr std::uint64_t kSettledAfter = 8, kFinishLeastApart = 32;
+
+using Times = std::array<double, kPasses>;
 
 std::size_t at(Pass pass) { return static_cast<std::size_t>(pass); }
 
-void add_paths(const std::array<double, kPasses>& of_pass_s, std::vector<RecentTimes>& to) {
-    for (std::size_t i = 0; i < kVisualPaths; ++i) {
-        const auto [first, second] = kPassesOf[i];
-        to[i].add(of_pass_s[at(first)] + (second != first ? of_pass_s[at(second)] : 0.0));
-    }
+std::array<double, kVisualPaths> path_times(const Times& s) {
+    const auto sum = [&s](std::initializer_list<Pass> passes) {
+        double total_s = 0.0;
+        for (const Pass p : passes) total_s += s[at(p)];
+        return total_s;
+    };
+    std::array<double, kVisualPaths> of{};
+    const auto path = [&of](VisualPathIndex i) -> double& { return of[static_cast<std::size_t>(i)]; };
+    path(VisualPathIndex::mesh) = sum({Pass::adapt, Pass::surface});
+    path(VisualPathIndex::volume) = sum({Pass::bone});
+    path(VisualPathIndex::particles) = sum({Pass::motion, Pass::particles});
+    path(VisualPathIndex::molecules) = sum({Pass::structures});
+    path(VisualPathIndex::resolution) = sum({Pass::structures, Pass::bone, Pass::surface, Pass::marks,
+                                             Pass::particles, Pass::edges, Pass::enlarge});
+    return of;
+}
+
+void add_paths(const Times& of_pass_s, std::vector<RecentTimes>& to) {
+    const auto of = path_times(of_pass_s);
+    for (std::size_t i = 0; i < kVisualPaths; ++i) to[i].add(of[i]);
 }
 
 PassMetrics metrics_of(const RecentTimes& work, const RecentTimes& drawn, bool known) {
@@ -59,7 +76,8 @@ void PassClock::begin_frame() {
     ++frame_;
     work_s_.fill(0.0);
     drawn_s_.fill(0.0);
-    finishing_ = how_ == Drawn::finished && frame_ % kFinishEvery == kFirstFinished;
+    finishing_ = how_ == Drawn::finished && (frame_ % kFinishEvery == kFirstFinished || frame_ == finish_at_);
+    if (finishing_) finished_at_ = frame_;
     if (how_ == Drawn::stamped) collect(in_flight_[frame_ % kFramesInFlight]);
 }
 
@@ -84,9 +102,12 @@ void PassClock::end(Pass pass) {
         glQueryCounter(s.query[2 * s.count++ + 1], GL_TIMESTAMP);
 }
 
-void PassClock::end_frame() {
+void PassClock::end_frame(bool at_levels) {
+    in_flight_[frame_ % kFramesInFlight].at_levels = at_levels;
+    if (!at_levels) return;
     for (std::size_t i = 0; i < kPasses; ++i) work_[i].add(work_s_[i]);
     add_paths(work_s_, path_work_);
+    if (how_ == Drawn::unknown) newest_path_s_ = path_times(work_s_);
     if (finishing_) add_drawn(drawn_s_);
 }
 
@@ -104,7 +125,7 @@ void PassClock::collect(Stamps& s) {
             glGetQueryObjectui64v(s.query[2 * i + 1], GL_QUERY_RESULT, &to_ns);
             if (to_ns > from_ns) drawn_s[at(s.pass[i])] += 1e-9 * static_cast<double>(to_ns - from_ns);
         }
-        add_drawn(drawn_s);
+        if (s.at_levels) add_drawn(drawn_s);
     }
     s.count = 0;
 }
@@ -112,6 +133,14 @@ void PassClock::collect(Stamps& s) {
 void PassClock::add_drawn(const Times& drawn_s) {
     for (std::size_t i = 0; i < kPasses; ++i) drawn_[i].add(drawn_s[i]);
     add_paths(drawn_s, path_drawn_);
+    newest_path_s_ = path_times(drawn_s);
+}
+
+void PassClock::measure_next() { finish_at_ = frame_ + 2; }
+
+void PassClock::measure_soon() {
+    if (finish_at_ > frame_) return;
+    finish_at_ = std::max(frame_ + kSettledAfter, finished_at_ + kFinishLeastApart);
 }
 
 void PassClock::fill(FrameMetrics& f) const {

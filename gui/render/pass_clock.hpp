@@ -34,9 +34,18 @@ public:
     [[nodiscard]] static Drawn possible(bool software);
 
     void begin_frame();
-    void end_frame();
+    // at_levels: drawn at the governor's levels. Other frames (a copied view, a measurement) are not counted.
+    void end_frame(bool at_levels = true);
     void fill(FrameMetrics& metrics) const;
     [[nodiscard]] Drawn drawn() const { return how_; }
+    // Newest measurement of a visual path's cost; 0: none yet. Work time where the renderer's is unknown.
+    [[nodiscard]] double path_s(VisualPathIndex path) const {
+        return newest_path_s_[static_cast<std::size_t>(path)];
+    }
+    // Finishes one of the next frames pass by pass, because the levels changed; only on a software renderer.
+    void measure_soon();
+    // The same for the frame after the next one: a scene has appeared, and nothing is known.
+    void measure_next();
     [[nodiscard]] std::uint64_t lost() const { return lost_; }
 
     // Times a pass from construction to destruction. Scopes do not nest. A null clock does nothing.
@@ -61,6 +70,7 @@ private:
         std::array<GLuint, 2 * kScopesMost> query{};
         std::array<Pass, kScopesMost> pass{};
         std::size_t count = 0;
+        bool at_levels = true;
     };
     using Times = std::array<double, kPasses>;
     void begin(Pass pass);
@@ -74,6 +84,8 @@ private:
     bool finishing_ = false;
     Instant began_{};
     Times work_s_{}, drawn_s_{};
+    std::array<double, kVisualPaths> newest_path_s_{};
+    std::uint64_t finished_at_ = 0, finish_at_ = 0;    // frames; 0: none
     std::vector<RecentTimes> work_, drawn_;            // per pass
     std::vector<RecentTimes> path_work_, path_drawn_;  // per visual path
     std::array<Stamps, kFramesInFlight> in_flight_{};

@@ -13,6 +13,14 @@ namespace {
 
 using Eigen::Vector3f;
 
+// Steps of the curve per point, sides of the tube, and trace atoms per point.
+struct TubeDetail {
+    int steps, sides;
+    std::size_t atoms;
+};
+constexpr TubeDetail kDetails[] = {{4, 8, 1}, {3, 6, 1}, {2, 6, 1}, {2, 5, 1}, {1, 5, 1}, {1, 4, 1},
+                                   {1, 3, 1}, {1, 4, 2}, {1, 3, 2}, {1, 3, 3}, {1, 3, 4}};
+
 struct Strand {
     std::vector<Vector3f> point_a;
     Rgb8 colour{};
@@ -111,24 +119,37 @@ std::vector<std::vector<std::uint32_t>> strands_of(const Structure& s) {
     return strands;
 }
 
-TubeMesh build_tubes(const Structure& structure, std::size_t vertices_max) {
-    std::vector<Strand> strands;
-    std::size_t points = 0;
-    for (const auto& atoms : strands_of(structure)) {
-        Strand strand{{}, chain_colour(structure.chain[atoms.front()])};
-        for (const std::uint32_t i : atoms) strand.point_a.push_back(point_a(structure, i));
-        points += atoms.size();
-        strands.push_back(std::move(strand));
+std::vector<Vector3f> thinned_strand_a(const Structure& s, const std::vector<std::uint32_t>& atoms,
+                                       std::size_t atoms_per_point) {
+    std::vector<Vector3f> points;
+    if (atoms_per_point > 1) points.push_back(point_a(s, atoms.front()));
+    for (std::size_t i = 0; i < atoms.size(); i += atoms_per_point) {
+        Vector3f sum = Vector3f::Zero();
+        const std::size_t end = std::min(i + atoms_per_point, atoms.size());
+        for (std::size_t k = i; k < end; ++k) sum += point_a(s, atoms[k]);
+        points.push_back(sum / static_cast<float>(end - i));
     }
-    int steps = 1, sides = 4;
-    for (const auto& [try_steps, try_sides] : {std::pair{4, 8}, {3, 6}, {2, 6}, {2, 5}, {1, 5}, {1, 4}}) {
-        steps = try_steps;
-        sides = try_sides;
-        if (points * static_cast<std::size_t>(steps * sides) <= vertices_max) break;
+    if (atoms_per_point > 1) points.push_back(point_a(s, atoms.back()));
+    return points;
+}
+
+TubeMesh build_tubes(const Structure& structure, std::size_t vertices_max) {
+    const auto strands = strands_of(structure);
+    std::size_t points = 0;
+    for (const auto& atoms : strands) points += atoms.size();
+    TubeDetail detail{};
+    for (const TubeDetail& wanted : kDetails) {
+        detail = wanted;
+        if (points * static_cast<std::size_t>(wanted.steps * wanted.sides) <= vertices_max * wanted.atoms)
+            break;
     }
     TubeMesh mesh;
     mesh.strands = strands.size();
-    for (const Strand& strand : strands) add_strand(mesh, strand, steps, sides, 0.75F);
+    for (const auto& atoms : strands)
+        add_strand(
+            mesh,
+            {thinned_strand_a(structure, atoms, detail.atoms), chain_colour(structure.chain[atoms.front()])},
+            detail.steps, detail.sides, 0.75F);
     return mesh;
 }
 

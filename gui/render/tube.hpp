@@ -2,9 +2,11 @@
 //
 // Curve    Catmull-Rom spline through the trace atoms; interrupted where the chain changes or two successive atoms
 //          are farther apart than a bond. Frame body, unit ångström.
-// Size     sides and steps are chosen to keep the total below vertices_max if possible.
+// Size     sides and steps are chosen to keep the total below vertices_max if possible. The coarsest tubes follow the mean of two to
+//          four successive atoms.
 #pragma once
 
+#include <Eigen/Core>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
@@ -31,6 +33,11 @@ inline constexpr double kTraceGapM = 8e-10;  // above the C-alpha (3.8 A) and ph
 
 // The trace atoms in order, one strand per curve; strands of one atom are omitted.
 [[nodiscard]] std::vector<std::vector<std::uint32_t>> strands_of(const Structure& structure);
+
+// Points along a strand, ångström: its atoms, or the means of as many successive ones, between its first and last atom.
+[[nodiscard]] std::vector<Eigen::Vector3f> thinned_strand_a(const Structure& structure,
+                                                            const std::vector<std::uint32_t>& atoms,
+                                                            std::size_t atoms_per_point);
 
 [[nodiscard]] TubeMesh build_tubes(const Structure& structure, std::size_t vertices_max);
 

@@ -38,4 +38,11 @@ void SurfaceSystem::prepare(std::int64_t now_ns, bool sharp, ViewFrame& frame, c
     if (t.force) layer_->frame.touch = touch_marks(controller);
 }
 
+bool SurfaceSystem::add_to_key(ContentKey& key) const {
+    const SurfaceLayer::Frame& f = layer_->frame;
+    if (f.detail || f.touch) return false;  // the contact and the detail around it change with the hand
+    if (f.T_model_tool) key.add(*f.T_model_tool);
+    return true;
+}
+
 }  // namespace tact

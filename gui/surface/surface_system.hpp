@@ -19,6 +19,7 @@ public:
              SceneView& view, const SystemContext& context) override;
     void close() override;
     void prepare(std::int64_t now_ns, bool sharp, ViewFrame& frame, const SystemContext& context) override;
+    [[nodiscard]] bool add_to_key(ContentKey& key) const override;
 
 private:
     SurfacePanels panels_;

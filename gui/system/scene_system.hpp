@@ -15,6 +15,7 @@
 #include "gui/link/command_sender.hpp"
 #include "gui/link/controller.hpp"
 #include "gui/render/camera.hpp"
+#include "gui/render/content_key.hpp"
 #include "gui/render/scene_content.hpp"
 #include "gui/render/scene_view.hpp"
 #include "gui/system/keys.hpp"
@@ -82,6 +83,13 @@ public:
     [[nodiscard]] virtual bool second_hand_is_pen() const { return true; }
     // sharp: this frame is saved, so nothing is omitted to save time.
     virtual void prepare(std::int64_t now_ns, bool sharp, ViewFrame& frame, const SystemContext& context) = 0;
+    // After prepare(): draws this frame in full detail, because the view rests.
+    virtual void refine() {}
+    // Adds what prepare() decided to draw, beside the frame. False: it changes all the time, or cannot be told.
+    [[nodiscard]] virtual bool add_to_key(ContentKey& key) const {
+        static_cast<void>(key);
+        return false;
+    }
     virtual void drawn(const SystemContext& context) { static_cast<void>(context); }
     virtual void ended(double work_s) { static_cast<void>(work_s); }
     virtual void add_to(LoadTopic& load) const { static_cast<void>(load); }

@@ -87,9 +87,12 @@ int GuiApp::run() {
 void GuiApp::frame(Instant now, bool take_picture) {
     clock_.begin(due_s());
     passes_.begin_frame();
-    window_.begin_frame(theme_);
+    const bool input = window_.take_input();
     const bool of_series = pictures_.series_due(now, view_ != nullptr);
     sharp_ = of_series || take_picture;
+    panels_due_ = panel_image_.due(now, input || take_picture || screenshot_requested_ || layout_changes_);
+    if (panels_due_) window_.begin_panels(theme_);
+    window_.bind();
     const std::int64_t now_ns = to_ns(now);
     state_.now_ns = now_ns;
     state_.history.now_s = 1e-9 * static_cast<double>(now_ns - first_ns_);
@@ -98,7 +101,7 @@ void GuiApp::frame(Instant now, bool take_picture) {
     if (const auto dropped = window_.take_dropped(); !dropped.empty()) browser_.drop(dropped, state_.browser);
     browser_.follow(state_.browser);
     system().follow(context());
-    handle_input();
+    if (panels_due_) handle_input();
     {
         const PassClock::Scope scope(&passes_, Pass::adapt);
         system().adapt();
@@ -123,12 +126,12 @@ void GuiApp::frame(Instant now, bool take_picture) {
         pictures_.save_at_end(window_.picture());
         if (stage_ && (view_ || calibration_.open())) pictures_.save_stage(stage_->pictures());
     }
-    if (std::exchange(screenshot_requested_, false)) pictures_.save_now(window_.picture());
+    if (panels_due_ && std::exchange(screenshot_requested_, false)) pictures_.save_now(window_.picture());
     {
         const PassClock::Scope scope(&passes_, Pass::swap);
         window_.show();
     }
-    passes_.end_frame();
+    passes_.end_frame(detail_.refined == 0);
     clock_.end_part(FramePart::swap);
     if (view_) system().ended(clock_.work_s());
     publish_load();
@@ -167,9 +170,13 @@ void GuiApp::follow_controller(std::int64_t now_ns) {
 
 void GuiApp::draw_panels() {
     const PassClock::Scope scope(&passes_, Pass::dashboard);
+    const Window::Size size = window_.size();
+    glViewport(0, 0, size.width_px, size.height_px);
+    if (!panels_due_) return panel_image_.draw_over();
     const ImGuiIO& io = ImGui::GetIO();
     draw_dashboard(theme_, state_, system().panels(), io.DisplaySize.x, io.DisplaySize.y);
-    window_.draw_panels();
+    ImGui::Render();
+    panel_image_.draw(*ImGui::GetDrawData(), layout_, to_px(size), size.width_px, size.height_px);
     for (const Request& request : state_.requests)
         if (!commands_.send({request.kind,
                              request.value,
@@ -197,6 +204,12 @@ void GuiApp::publish_load() {
     load.triangles_drawn = drawn ? view_->triangles() : 0;
     load.vertices_max = view_ ? view_->vertices_max() : 0;
     if (view_) system().add_to(load);
+    for (std::size_t i = 0; i < kVisualPaths; ++i)
+        load.path_s[i] = passes_.path_s(static_cast<VisualPathIndex>(i));
+    load.path_s[static_cast<std::size_t>(VisualPathIndex::resolution)] = resolution_saves_s_;
+    load.pixels = detail_.pixels;
+    load.pixels_max = detail_.pixels_max;
+    load.refined = detail_.refined;
     region_->load.publish(load);
     state_.load = load;
     const bool levels = controller_.have_levels && controller_.attached();

@@ -11,20 +11,26 @@ void GuiApp::draw_scene(std::int64_t now_ns) {
     const Window::Size size = window_.size();
     const Layout layout = layout_for(theme_, static_cast<float>(size.width), static_cast<float>(size.height),
                                      middle_card(state_, system().panels()), state_.strip == 1);
-    const PixelRect& rect = layout.view;
-    const float to_px = static_cast<float>(size.width_px) / static_cast<float>(std::max(size.width, 1));
+    if (panels_due_) layout_ = layout;
+    layout_changes_ = !(layout == layout_);
+    const PixelRect& rect = layout_.view;
     ViewFrame view{};
-    view.x_px = static_cast<int>(rect.x * to_px);
+    view.x_px = static_cast<int>(rect.x * to_px(size));
     view.width_px = std::max(size.width_px - view.x_px, 1);
-    view.height_px = std::max(static_cast<int>(rect.height * to_px), 1);
+    view.height_px = std::max(static_cast<int>(rect.height * to_px(size)), 1);
     view.y_px = size.height_px - view.height_px;
-    {
-        const PassClock::Scope scope(&passes_, Pass::ground);
-        paint_grounds(layout, to_px, size.height_px);
-    }
+    draw_ground(size);
     view.passes = &passes_;
     if (!programs_) programs_ = std::make_unique<Programs>();
-    if (!view_ || !stage_) begin_view(view);
+    detail_ = {};
+    if (!view_) {
+        begin_view(view);
+    } else if (stage_) {
+        const PassClock::Scope scope(&passes_, Pass::ground);
+        const ImVec4 c = ImGui::ColorConvertU32ToFloat4(colour::kGround);
+        stage_ground_.show(*programs_, Eigen::Vector3f(c.x, c.y, c.z), view.x_px, view.y_px, view.width_px,
+                           view.height_px);
+    }
     state_.a_per_px = static_cast<double>(camera_.a_per_px(rect.height));
     const Eigen::Matrix3f axes = camera_.orientation().toRotationMatrix();
     for (int i = 0; i < 3; ++i)
@@ -54,15 +60,23 @@ void GuiApp::draw_scene(std::int64_t now_ns) {
     if (stage_)
         draw_stage(view, now_ns);
     else
-        view_->draw(camera_.eye(static_cast<float>(view.width_px) / static_cast<float>(view.height_px)),
-                    view_options_, view);
+        draw_window_view(view, Instant{std::chrono::nanoseconds(now_ns)});
     system().drawn(context());
+}
+
+void GuiApp::draw_ground(const Window::Size& size) {
+    const PassClock::Scope scope(&passes_, Pass::ground);
+    glDisable(GL_SCISSOR_TEST);
+    if (!panel_image_.show(layout_, to_px(size), size.width_px, size.height_px)) paint_ground();
+    glClear(GL_DEPTH_BUFFER_BIT);
 }
 
 void GuiApp::begin_view(const ViewFrame& view) {
     const PassClock::Scope scope(&passes_, Pass::ground);
+    std::optional<Eigen::Vector3f> plain;
+    if (!view_options_.gradient) plain = view_options_.plain_ground;
+    backdrop_.show(*programs_, plain, view.x_px, view.y_px, view.width_px, view.height_px);
     glViewport(view.x_px, view.y_px, view.width_px, view.height_px);
-    if (view_options_.gradient) programs_->draw_background();
 }
 
 void GuiApp::draw_stage(ViewFrame view, std::int64_t now_ns) {
@@ -75,10 +89,9 @@ void GuiApp::draw_stage(ViewFrame view, std::int64_t now_ns) {
     for (std::size_t eye = 0; eye < 2; ++eye) {
         view.eye = eye;
         stage_->begin(eye, view_options_.plain_ground);
-        begin_view(view);
-        view_->draw(stage_->eye(eye, camera_, content_->meta.world_per_model,
-                                content_->meta.to_world(content_->centre_model_m), view_->radius_a()),
-                    view_options_, view);
+        draw_view(stage_->eye(eye, camera_, content_->meta.world_per_model,
+                              content_->meta.to_world(content_->centre_model_m), view_->radius_a()),
+                  view);
     }
     {
         const PassClock::Scope scope(&passes_, Pass::stereo);

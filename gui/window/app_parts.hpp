@@ -2,11 +2,13 @@
 //
 // app.cpp      the frame, the controller, panels, the published load
 // app_scene    the scene shown, its levels, its bodies
-// app_draw     the 3D view, for one eye or two
+// app_draw     the frame around the 3D view, and both eyes of a stage
+// app_view     the 3D view: its resolution, and its full detail at rest
 // app_calibration  the screen of the stage during its calibration
 // app_input    mouse and keys
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <memory>
 #include <string>
@@ -15,8 +17,10 @@
 #include "gui/dashboard/trace_export.hpp"
 #include "gui/link/command_sender.hpp"
 #include "gui/link/controller.hpp"
+#include "gui/render/backdrop.hpp"
 #include "gui/render/camera.hpp"
 #include "gui/render/scene_view.hpp"
+#include "gui/render/view_target.hpp"
 #include "gui/stereo/calibration_controller.hpp"
 #include "gui/stereo/picture_painter.hpp"
 #include "gui/stereo/stage.hpp"
@@ -25,9 +29,11 @@
 #include "gui/window/frame_report.hpp"
 #include "gui/window/layout.hpp"
 #include "gui/window/options.hpp"
+#include "gui/window/panel_image.hpp"
 #include "gui/window/scene_loader.hpp"
 #include "gui/window/screenshots.hpp"
 #include "gui/window/second_hand.hpp"
+#include "gui/window/still_view.hpp"
 #include "gui/window/systems.hpp"
 #include "gui/window/window.hpp"
 namespace tact {
@@ -38,6 +44,12 @@ public:
     int run();
 
 private:
+    // Views drawn before the gain of a lower resolution is measured: after the scene appeared, and from then on.
+    static constexpr std::uint32_t kFirstMeasured = 24, kMeasuredEvery = 1024;
+    struct ViewDetail {
+        std::uint32_t pixels = 0, pixels_max = 0;
+        std::uint32_t refined = 0;  // as LoadTopic::refined
+    };
     void frame(Instant now, bool take_picture);
     void follow_controller(std::int64_t now_ns);
     void start_loading(const std::string& path);
@@ -52,7 +64,14 @@ private:
     void perform(KeyAction what, std::size_t place);
     void apply_level();
     void draw_scene(std::int64_t now_ns);
+    void draw_ground(const Window::Size& size);
     void begin_view(const ViewFrame& view);
+    void draw_window_view(const ViewFrame& view, Instant now);
+    void draw_view(const EyeView& eye, const ViewFrame& view);
+    void draw_small_view(const EyeView& eye, const ViewFrame& view, double share);
+    [[nodiscard]] std::optional<std::uint64_t> view_key(const EyeView& eye, const ViewFrame& view) const;
+    [[nodiscard]] bool refining_is_quick() const;
+    void measure_resolution(const EyeView& eye, const ViewFrame& view);
     void draw_stage(ViewFrame view, std::int64_t now_ns);
     void open_calibration(bool check_alone);
     void follow_calibration(std::int64_t now_ns);
@@ -63,6 +82,9 @@ private:
     void publish_load();
     void publish_frames();
     [[nodiscard]] double due_s() const;
+    [[nodiscard]] static float to_px(const Window::Size& size) {
+        return static_cast<float>(size.width_px) / static_cast<float>(std::max(size.width, 1));
+    }
 
     const GuiOptions options_;
     OwnedRegion<GuiRegion> region_;
@@ -81,12 +103,26 @@ private:
     std::unique_ptr<PicturePainter> calibration_painter_;
     CalibrationController calibration_{options_.stage_file.empty() ? "stage.toml" : options_.stage_file};
     std::unique_ptr<Programs> programs_;
+    PanelImage panel_image_;
+    Backdrop backdrop_;           // of the 3D view, or of both eyes
+    Backdrop stage_ground_;       // of the window, where the eyes are shown
+    Layout layout_{};             // of the newest dashboard; the view keeps to it
+    bool panels_due_ = true;      // this frame draws the dashboard
+    bool layout_changes_ = true;  // the next frame draws it because its layout differs
     std::shared_ptr<const SceneContent> content_;
     std::unique_ptr<SceneView> view_;
     // One for each of system_rows(); they hold data in the view, so they are destroyed before it.
     std::vector<std::unique_ptr<SceneSystem>> systems_;
-    std::size_t shown_ = 0;        // index in system_rows()
-    double vertices_share_ = 1.0;  // of the vertices of all surfaces; keeps the controller's newest value
+    std::size_t shown_ = 0;  // index in system_rows()
+    // Keep the controller's newest values.
+    double vertices_share_ = 1.0;              // of the vertices of all surfaces
+    double resolution_share_ = 1.0;            // of the pixels of the 3D view
+    std::uint64_t levels_applied_ = 0;         // sequence
+    std::unique_ptr<ViewTarget> view_target_;  // created for the first view with fewer pixels
+    StillView still_;
+    ViewDetail detail_;  // of this frame
+    std::uint32_t views_until_measured_ = kFirstMeasured;
+    double resolution_saves_s_ = 0.0;  // per unit of the level; 0: nothing, or not measured
     BrowserController browser_{options_.scene_switch};
     bool as_left_wanted_ = !options_.window_state_file.empty();  // for the first scene shown
     SecondHand second_hand_;

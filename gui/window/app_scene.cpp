@@ -62,7 +62,10 @@ void GuiApp::use_scene(std::unique_ptr<SceneStart> start) {
         state_.scene.warning = e.what();
     }
     view_->approach_vertices(view_->vertices_max(), 1e9);  // at once: nothing is drawn yet
-    vertices_share_ = 1.0;
+    vertices_share_ = resolution_share_ = 1.0;
+    views_until_measured_ = kFirstMeasured;
+    passes_.measure_next();
+    resolution_saves_s_ = 0.0;
     state_.toggles.molecule = static_cast<int>(options_.look.style);
     state_.toggles.colouring = static_cast<int>(options_.look.colouring);
     camera_.frame(view_->radius_a());
@@ -127,6 +130,12 @@ void GuiApp::apply_level() {
             vertices_for(*path, fewest_shown(view_->vertices_min(), most), most) / static_cast<double>(most);
     view_->approach_vertices(static_cast<std::uint32_t>(std::lround(vertices_share_ * most)),
                              adapt_budget_s(clock_.frame_s()));
+    if (const PathLevel* const resolution = controller_.level(kResolutionPath))
+        resolution_share_ = static_cast<double>(resolution->level);
+    if (controller_.have_levels && controller_.levels.sequence != levels_applied_) {
+        levels_applied_ = controller_.levels.sequence;
+        passes_.measure_soon();
+    }
     state_.scene.mesh_error_m = view_->error_m();
 }
 

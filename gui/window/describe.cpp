@@ -13,8 +13,8 @@ SceneState describe(const SceneContent& content) {
     return state;
 }
 
-EventLine describe(const EventTopic& event) {
-    EventLine line{event.taken_at_ns, event.code, 1, event_text(event), Grade::good};
+EventLine describe(const EventTopic& event, const LevelsTopic* levels) {
+    EventLine line{event.taken_at_ns, event.code, 1, event_text(event, levels), Grade::good};
     switch (static_cast<EventCode>(event.code)) {
         case EventCode::fault_latched:
             line.grade = Grade::bad;

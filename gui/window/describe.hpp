@@ -9,6 +9,7 @@ namespace tact {
 
 // The part common to all systems; the scene's system adds the rest.
 [[nodiscard]] SceneState describe(const SceneContent& content);
-[[nodiscard]] EventLine describe(const EventTopic& event);
+// levels: for the names of paths; null: unknown.
+[[nodiscard]] EventLine describe(const EventTopic& event, const LevelsTopic* levels = nullptr);
 
 }  // namespace tact

@@ -7,7 +7,9 @@
 
 namespace tact {
 
-// to_px: framebuffer pixels per layout pixel; height_px: of the framebuffer.
-void paint_grounds(const Layout& layout, float to_px, int height_px);
+void paint_ground();  // of the whole window
+// Of the cards and of everything else beside the 3D view.
+// to_px: framebuffer pixels per layout pixel; width_px, height_px: of the framebuffer.
+void paint_cards(const Layout& layout, float to_px, int width_px, int height_px);
 
 }  // namespace tact

@@ -19,6 +19,7 @@ struct Layout {
     PixelRect view, health, middle, scene, plots, events;
 
     [[nodiscard]] std::array<PixelRect, 5> cards() const { return {health, middle, scene, plots, events}; }
+    friend bool operator==(const Layout&, const Layout&) = default;
 };
 // The card between those of the controller and the scene: from the scene's system; without one, the scene card gets
 // its space. A calibration's card takes the whole column.

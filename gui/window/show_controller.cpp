@@ -18,7 +18,7 @@ void take_events(Controller& controller, DashboardState& state) {
             state.history.knobs.add(
                 state.history.at_s(event.taken_at_ns), static_cast<std::size_t>(event.a), event.b,
                 event.detail < 255 ? static_cast<LevelReason>(event.detail) : static_cast<LevelReason>(255));
-        EventLine line = describe(event);
+        EventLine line = describe(event, controller.have_levels ? &controller.levels : nullptr);
         // Repeated events, such as a limit reached again and again, must not push out the others.
         const bool repeats = !state.events.empty() && state.events.front().code == line.code;
         if (repeats && (line.grade == Grade::watch ||

@@ -26,6 +26,7 @@ WindowInput& input_of(GLFWwindow* window) {
     return *static_cast<WindowInput*>(glfwGetWindowUserPointer(window));
 }
 std::vector<KeyStroke>& keys_of(GLFWwindow* window) { return input_of(window).keys; }
+void note_input(GLFWwindow* window) { input_of(window).any = true; }
 
 void on_drop(GLFWwindow* window, int count, const char** paths) {
     input_of(window).dropped.assign(paths, paths + count);
@@ -59,6 +60,7 @@ KeyCode code_of(int key) {
 }
 
 void on_key(GLFWwindow* window, int key, int scancode, int action, int modifiers) {
+    note_input(window);
     if (action != GLFW_PRESS || (modifiers & (GLFW_MOD_ALT | GLFW_MOD_SUPER)) != 0) return;
     KeyStroke stroke;
     stroke.control = (modifiers & GLFW_MOD_CONTROL) != 0;
@@ -73,6 +75,7 @@ void on_key(GLFWwindow* window, int key, int scancode, int action, int modifiers
 
 // Signs and digits by character, not by key: the position of '?' depends on the keyboard.
 void on_char(GLFWwindow* window, unsigned int character) {
+    note_input(window);
     const bool letter = (character | 0x20U) >= 'a' && (character | 0x20U) <= 'z';
     if (character <= ' ' || character > '~' || letter) return;  // on_key() handles those
     keys_of(window).push_back({KeyCode::character, static_cast<char>(character), false, false});
@@ -133,6 +136,12 @@ void Window::open(int width_px, int height_px, bool hidden) {
     glfwSetKeyCallback(window_, on_key);
     glfwSetCharCallback(window_, on_char);
     glfwSetDropCallback(window_, on_drop);
+    // ImGui's backend calls these as well as its own.
+    glfwSetCursorPosCallback(window_, [](GLFWwindow* w, double, double) { note_input(w); });
+    glfwSetMouseButtonCallback(window_, [](GLFWwindow* w, int, int, int) { note_input(w); });
+    glfwSetScrollCallback(window_, [](GLFWwindow* w, double, double) { note_input(w); });
+    glfwSetCursorEnterCallback(window_, [](GLFWwindow* w, int) { note_input(w); });
+    glfwSetWindowFocusCallback(window_, [](GLFWwindow* w, int) { note_input(w); });
     glfwSetWindowSizeLimits(window_, 320, 240, GLFW_DONT_CARE, GLFW_DONT_CARE);
 }
 
@@ -177,8 +186,19 @@ float Window::density(const Size& s) const {
 bool Window::close_wanted() const { return glfwWindowShouldClose(window_) == GLFW_TRUE; }
 void Window::set_title(const std::string& title) { glfwSetWindowTitle(window_, title.c_str()); }
 
-void Window::begin_frame(Theme& theme) {
+bool Window::take_input() {
     glfwPollEvents();
+    const Size s = size();
+    const ImGuiIO& io = ImGui::GetIO();
+    const bool held =
+        std::any_of(std::begin(io.MouseDown), std::end(io.MouseDown), [](bool down) { return down; });
+    const bool resized = s.width != size_before_.width || s.height != size_before_.height ||
+                         s.width_px != size_before_.width_px || s.height_px != size_before_.height_px;
+    size_before_ = s;
+    return std::exchange(input_.any, false) || held || resized;
+}
+
+void Window::begin_panels(Theme& theme) {
     const Size s = size();
     const float scale = theme_scale(s.width, s.height, density(s), ui_scale_);
     if (theme.text == nullptr) {
@@ -195,17 +215,13 @@ void Window::begin_frame(Theme& theme) {
         ImGui::GetIO().DisplayFramebufferScale = {1.0F, 1.0F};
     }
     ImGui::NewFrame();
+}
+
+void Window::bind() {
     if (target_)
         target_->bind();
     else
         glBindFramebuffer(GL_FRAMEBUFFER, 0);
-}
-
-void Window::draw_panels() {
-    ImGui::Render();
-    const Size s = size();
-    glViewport(0, 0, s.width_px, s.height_px);
-    ImGui_ImplOpenGL3_RenderDrawData(ImGui::GetDrawData());
 }
 
 void Window::show() {

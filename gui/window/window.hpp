@@ -20,6 +20,7 @@ namespace tact {
 struct WindowInput {
     std::vector<KeyStroke> keys;
     std::vector<std::string> dropped;
+    bool any = false;  // of any kind, mouse and keys included
 };
 
 class Window {
@@ -37,10 +38,12 @@ public:
     [[nodiscard]] Size size() const;
     [[nodiscard]] bool close_wanted() const;
     void set_title(const std::string& title);
-    // Processes input, adapts the fonts to the size, begins an ImGui frame and binds the framebuffer.
-    void begin_frame(Theme& theme);
-    void draw_panels();  // ImGui's content of this frame
-    void show();         // swaps, or finishes the image if hidden
+    // Processes input. True: there was some, a mouse button is held, or the size changed.
+    bool take_input();
+    // Adapts the fonts to the size and begins an ImGui frame.
+    void begin_panels(Theme& theme);
+    void bind();  // the framebuffer
+    void show();  // swaps, or finishes the image if hidden
     [[nodiscard]] std::vector<KeyStroke> take_keys();
     [[nodiscard]] std::vector<std::string> take_dropped();  // paths of files
     [[nodiscard]] GLFWwindow* handle() const { return window_; }
@@ -65,6 +68,7 @@ private:
     std::string renderer_;
     std::unique_ptr<OffscreenTarget> target_;
     WindowInput input_;
+    Size size_before_{0, 0, 0, 0};
 };
 
 }  // namespace tact

@@ -21,6 +21,9 @@ struct KnobSpec {
     bool haptic = false;      // haptic levels are lowered last
     // Equally spaced levels, from 0 to 1, between which a level costs as much as both of its neighbours; 0: none.
     std::uint32_t steps = 0;
+    // Of a visual path: how much worse the display looks when the level falls by a given factor, relative to other paths. With levels at
+    // their best, paths spend time in proportion to this weight.
+    float loss = 1.0F;
 };
 
 // Reason for a level.

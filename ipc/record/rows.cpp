@@ -141,6 +141,13 @@ constexpr std::array kReport{
     TACT_SAID(gui_particles_max),
     TACT_SAID(gui_attached),
     TACT_SAID(gui_particles_s),
+    TACT_SAID(gui_mesh_s),
+    TACT_SAID(gui_volume_s),
+    TACT_SAID(gui_molecules_s),
+    TACT_SAID(gui_resolution_s),
+    TACT_SAID(gui_molecules_max),
+    TACT_SAID(gui_pixels_max),
+    TACT_SAID(gui_refined),
 };
 #undef TACT_SAID
 

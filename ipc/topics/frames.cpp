@@ -8,10 +8,11 @@
 namespace tact {
 namespace {
 
-constexpr const char* kPassText[kPasses] = {"ground",  "adapt",  "structures", "bone",
-                                            "surface", "marks",  "motion",     "particles",
-                                            "edges",   "stereo", "dashboard",  "swap"};
-constexpr const char* kVisualPathText[kVisualPaths] = {kMeshPath, kVolumePath, kParticlesPath};
+constexpr const char* kPassText[kPasses] = {"ground", "adapt",     "structures", "bone",  "surface",
+                                            "marks",  "motion",    "particles",  "edges", "enlarge",
+                                            "stereo", "dashboard", "swap"};
+constexpr const char* kVisualPathText[kVisualPaths] = {kMeshPath, kVolumePath, kParticlesPath, kMoleculesPath,
+                                                       kResolutionPath};
 
 bool time(float s) noexcept { return s >= 0.0F && s < 1e6F; }  // false for NaN
 bool rising(float a, float b) noexcept { return time(a) && time(b) && a <= b; }

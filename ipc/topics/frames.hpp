@@ -27,8 +27,9 @@ enum class Pass : std::uint8_t {
     marks,    // codebook, box, forces, hands
     motion,   // of particles
     particles,
-    edges,   // smoothed
-    stereo,  // combination of both eyes
+    edges,    // smoothed
+    enlarge,  // of a view with fewer pixels than the window
+    stereo,   // combination of both eyes
     dashboard,
     swap,  // or waiting for the frame
     count
@@ -36,8 +37,9 @@ enum class Pass : std::uint8_t {
 inline constexpr std::size_t kPasses = static_cast<std::size_t>(Pass::count);
 [[nodiscard]] const char* pass_text(Pass pass) noexcept;
 
-// In the order of kVisualPaths in ipc/topics/frames.cpp: gui.mesh, gui.volume, gui.particles.
-inline constexpr std::size_t kVisualPaths = 3;
+// In the order of visual_path_text().
+enum class VisualPathIndex : std::uint8_t { mesh, volume, particles, molecules, resolution, count };
+inline constexpr std::size_t kVisualPaths = static_cast<std::size_t>(VisualPathIndex::count);
 [[nodiscard]] const char* visual_path_text(std::size_t path) noexcept;  // "" for a larger index
 
 inline constexpr std::uint32_t kFinishEvery = 128;
@@ -57,23 +59,24 @@ struct FrameMetrics {
     std::uint32_t gl_objects;                // allocated: buffers, textures, images
     std::uint64_t heap_bytes, resident_bytes;
     PassMetrics pass[kPasses];
-    PassMetrics path[kVisualPaths];  // cost of each path, summed over its passes
+    // Cost of each path, summed over its passes. Those of gui.resolution are all of the 3D view, also counted elsewhere.
+    PassMetrics path[kVisualPaths];
 };
-static_assert(std::is_trivially_copyable_v<FrameMetrics> && sizeof(FrameMetrics) == 312);
+static_assert(std::is_trivially_copyable_v<FrameMetrics> && sizeof(FrameMetrics) == 360);
 
 struct alignas(64) FramesTopic {
-    static constexpr TopicInfo kInfo{.name = "frames", .version = 2, .writer = Writer::gui};
+    static constexpr TopicInfo kInfo{.name = "frames", .version = 3, .writer = Writer::gui};
     std::int64_t taken_at_ns;
     FrameMetrics metrics;
-    std::uint8_t reserved[64];  // zero
+    std::uint8_t reserved[16];  // zero
 };
 static_assert(std::is_trivially_copyable_v<FramesTopic> && sizeof(FramesTopic) == 384);
 
 struct alignas(64) DisplayTopic {
-    static constexpr TopicInfo kInfo{.name = "picture", .version = 2, .writer = Writer::rt};
+    static constexpr TopicInfo kInfo{.name = "picture", .version = 3, .writer = Writer::rt};
     std::int64_t taken_at_ns;
     FrameMetrics metrics;
-    std::uint8_t reserved[64];  // zero
+    std::uint8_t reserved[16];  // zero
 };
 static_assert(std::is_trivially_copyable_v<DisplayTopic> && sizeof(DisplayTopic) == 384);
 

@@ -51,6 +51,8 @@ inline constexpr std::size_t kParticlesPathIndex = 2;
 // The path of the rendering: vertices of a surface, or rays through bone.
 inline constexpr char kMeshPath[] = "gui.mesh", kVolumePath[] = "gui.volume";
 inline constexpr char kParticlesPath[] = "gui.particles";
+// Triangles of the structures; pixels of the 3D view.
+inline constexpr char kMoleculesPath[] = "gui.molecules", kResolutionPath[] = "gui.resolution";
 inline constexpr char kDockingPath[] = "docking.force";
 
 }  // namespace tact

@@ -6,13 +6,14 @@
 #include <type_traits>
 
 #include "ipc/shm/topic.hpp"
+#include "ipc/topics/frames.hpp"
 
 namespace tact {
 
 enum class FramePart : std::uint8_t { adapt, upload, scene, panels, swap, particles, count };
 
 struct alignas(64) LoadTopic {
-    static constexpr TopicInfo kInfo{.name = "load", .version = 2, .writer = Writer::gui};
+    static constexpr TopicInfo kInfo{.name = "load", .version = 3, .writer = Writer::gui};
     std::int64_t taken_at_ns;
     std::uint64_t frame;
     std::uint64_t levels_sequence;  // of the LevelsTopic that this frame applied
@@ -27,7 +28,14 @@ struct alignas(64) LoadTopic {
     std::uint32_t particles;       // existing
     std::uint32_t particle_moves;  // computed for this frame
     std::uint32_t particles_max;   // limit at level 1
+    // Cost per frame of each visual path, newest measurement; 0: unknown. For gui.resolution: the time that the level can save.
+    double path_s[kVisualPaths];
+    std::uint32_t molecule_triangles, molecule_triangles_max;  // drawn; at level 1
+    std::uint32_t pixels, pixels_max;                          // of the 3D view: rendered; at level 1
+    // Not 0: this frame was not drawn at the levels. 1: the view rests and is shown in full detail. 2: something was measured.
+    std::uint32_t refined;
+    std::uint32_t reserved;  // zero
 };
-static_assert(std::is_trivially_copyable_v<LoadTopic> && sizeof(LoadTopic) == 128);
+static_assert(std::is_trivially_copyable_v<LoadTopic> && sizeof(LoadTopic) == 192);
 
 }  // namespace tact

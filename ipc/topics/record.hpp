@@ -44,6 +44,11 @@ struct HousekeepingReport {
     std::uint32_t gui_particles_max;
     std::uint32_t gui_attached;  // 0 or 1
     double gui_particles_s;      // of the frame, for moving and drawing them
+    // Costs of the other visual paths (LoadTopic::path_s).
+    double gui_mesh_s, gui_volume_s, gui_molecules_s, gui_resolution_s;
+    std::uint32_t gui_molecules_max, gui_pixels_max;
+    std::uint32_t gui_refined;  // LoadTopic::refined, of the newest frame
+    std::uint32_t reserved;
 };
 
 enum CycleFlag : std::uint8_t {
@@ -122,11 +127,11 @@ struct MailboxTopic {
 static_assert(std::is_trivially_copyable_v<MailboxTopic> && sizeof(MailboxTopic) == 104);
 
 struct ReportTopic {
-    static constexpr TopicInfo kInfo{.name = "report", .version = 1, .writer = Writer::rt};
+    static constexpr TopicInfo kInfo{.name = "report", .version = 2, .writer = Writer::rt};
     std::uint64_t step;
     HousekeepingReport said;
 };
-static_assert(std::is_trivially_copyable_v<ReportTopic> && sizeof(ReportTopic) == 120);
+static_assert(std::is_trivially_copyable_v<ReportTopic> && sizeof(ReportTopic) == 168);
 
 enum StartFlag : std::uint32_t {
     kStartEmulated = 1U << 0,  // no real device

@@ -1,5 +1,6 @@
 #include "ipc/topics/text.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <csignal>
@@ -32,10 +33,15 @@ std::string late_text(double us) {
                       : number(1e-6 * us, 3) + " s";
 }
 
-std::string path_text(double index) {
+std::string path_text(double index, const LevelsTopic* levels) {
     if (index == static_cast<double>(kDisplayPathIndex)) return "display";
     if (index == static_cast<double>(kForcePathIndex)) return "force";
-    if (index == static_cast<double>(kParticlesPathIndex)) return "particles";
+    if (levels != nullptr && index >= 0.0 && index < std::min<double>(levels->count, kPathsMax)) {
+        const char* const path = levels->path[static_cast<std::size_t>(index)].path;
+        const std::string name(path, std::find(path, path + kPathNameMax, '\0'));
+        const std::size_t dot = name.find('.');  // "gui.molecules"
+        return dot == std::string::npos ? name : name.substr(dot + 1);
+    }
     return "path " + number(index);
 }
 
@@ -287,7 +293,7 @@ const char* head_link_text(std::uint8_t link) noexcept {
     return link < kWords.size() ? kWords[link] : kUnknown;
 }
 
-std::string event_text(const EventTopic& event) {
+std::string event_text(const EventTopic& event, const LevelsTopic* levels) {
     const auto code = static_cast<EventCode>(event.code);
     const std::string what = event_code_text(code);
     const std::string a = number(event.a);
@@ -316,7 +322,7 @@ std::string event_text(const EventTopic& event) {
             return std::string("command ") + command_kind_text(code_of<CommandKind>(event.a)) + ": " +
                    command_result_text(code_of<CommandResult>(event.b));
         case EventCode::level_changed:
-            return what + ": " + path_text(event.a) + " to " + number(event.b, 2) + ", " +
+            return what + ": " + path_text(event.a, levels) + " to " + number(event.b, 2) + ", " +
                    level_reason_text(code_of<LevelReason>(event.detail));
         case EventCode::input_refused:
             return what + ": " + a + " so far";

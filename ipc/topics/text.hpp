@@ -27,7 +27,8 @@ namespace tact {
 [[nodiscard]] const char* head_link_text(std::uint8_t link) noexcept;    // "bus off"
 
 // One line with the event's numbers and their units: "overrun: 120 us late, 3 so far".
-[[nodiscard]] std::string event_text(const EventTopic& event);
+// With the levels, a path has its own name.
+[[nodiscard]] std::string event_text(const EventTopic& event, const LevelsTopic* levels = nullptr);
 // Errors on a device's bus: "checksum 3, lost 12, connected again 1"; empty: none.
 [[nodiscard]] std::string bus_text(const BusCounts& counts);
 // "FIFO, pinned, memory locked", or "ordinary scheduling".

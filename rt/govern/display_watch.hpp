@@ -21,9 +21,10 @@ struct DisplayReport {
     std::uint64_t frame = 0;
     std::uint64_t levels_sequence = 0;  // sequence of the levels that this frame applied
     std::int64_t taken_at_ns = 0;
-    double work_s = 0.0;  // time to draw the frame, without the pause after it
-    double cpu_s = 0.0;   // processor time of the visual process since it started
-    bool drawn = false;   // the frame had something to draw
+    double work_s = 0.0;   // time to draw the frame, without the pause after it
+    double cpu_s = 0.0;    // processor time of the visual process since it started
+    bool drawn = false;    // the frame had something to draw
+    bool refined = false;  // not drawn at the levels: a resting view in full detail, or a measurement
 };
 
 class DisplayWatch {
@@ -50,6 +51,7 @@ public:
                                                       0.0) /
                                              frames};
         last_ = w;
+        if (w.refined) return std::nullopt;
         applied_ = w.levels_sequence >= from_;
         if (first || !applied_ || !w.drawn) return std::nullopt;
         if (!applied_before && frames > 1.0) return std::nullopt;

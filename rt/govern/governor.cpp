@@ -5,7 +5,7 @@
 // and the elasticity n = d ln g / d ln V of the display's cost,
 //     d ln r / d ln V = - n g / (1 - g),      so an error e = (r - r_g) / r_g requires
 //     ln V <- ln V + k e (1 - g) / (n g).
-// g and n are measured (processor time of the visual process, cost_fit.hpp); the load of other programs and
+// g and n are measured (processor time of the visual process, display_cost.hpp); the load of other programs and
 // the cost of an update need not be known. The law "sensitus" is the same with a constant s in place of
 // k (1 - g) / (n g). That factor grows from below 1 at full detail to 50 at a coarse level, so "sensitus"
 // returns slowly where V is small.
@@ -18,24 +18,23 @@
 #include <algorithm>
 #include <cmath>
 
+#include "rt/govern/step_limits.hpp"
+
 namespace tact {
 
 namespace {
 
 constexpr double kHold_s = 0.5;
 constexpr double kDownGain = 1.0, kUpGain = 0.5;
-constexpr double kDownMost = 1.4, kUpMost = 0.3;  // in ln V
 // A display that never pauses takes whatever processor time is left, at any level, so the model does not hold.
 // A large rate error then lowers the level by at least this step, until the display pauses again.
 constexpr double kDownToPause = 0.7, kNoPause = 0.97, kFarOff = 0.04;
 constexpr double kTolerance = 0.002;        // of the law "elastic", added to the flicker
 constexpr double kAim = 1.002;              // of the goal: centres the remaining flicker on the goal
-constexpr double kPictureTolerance = 0.05;  // excess of a frame's time over its goal
-constexpr double kPictureRoom = 0.85;       // fraction of the goal time up to which a frame may grow
+constexpr double kDisplayTolerance = 0.05;  // excess of a frame's time over its goal
+constexpr double kDisplayMargin = 0.85;     // fraction of the goal time up to which a frame may grow
 // Below this elasticity, halving the level saves less than a fourteenth of a frame: the level stays.
 constexpr double kWorthwhile = 0.1;
-// Levels change by factors. A lower level would need many steps to recover and would save nothing.
-constexpr double kLeastLevel = 1e-3;
 constexpr double kShareLeast = 0.02, kShareMost = 0.9;
 constexpr double kBudgetLeast = 0.05;  // least budget of a fitted path
 
@@ -105,25 +104,20 @@ Governor::Factors Governor::factors(double rate_hz, RateIs rate) const noexcept 
     }
     const double e = (rate == RateIs::low ? kDownGain : kUpGain) * rate_.error();
     const double g = std::clamp(display_fraction_, kShareLeast, kShareMost);
-    const double n = display_cost_.elasticity(visual_level());
+    const double n = display_cost_.at(visual_levels()).elasticity();
     double visual = std::clamp(e * (1.0 - g) / (n * g), -kDownMost, kUpMost);
     if (rate_.error() < -kFarOff && display_busy_ > kNoPause) visual = std::min(visual, -kDownToPause);
     return {std::exp(visual), std::exp(std::clamp(e, -kDownMost, kUpMost))};
-}
-
-double Governor::visual_level() const noexcept {
-    for (std::size_t i = 0; i < count_; ++i)
-        if (!paths_[i].knob.haptic) return static_cast<double>(paths_[i].level);
-    return 1.0;
 }
 
 // Factor by which visual levels may rise before a frame takes too long; unlimited without a display goal.
 double Governor::display_margin() const noexcept {
     if (settings_.display_goal_hz <= 0.0) return 1e9;
     if (frame_s_ <= 0.0) return 1.0;  // the cost of the present levels is not known yet
-    const double spare = kPictureRoom / (settings_.display_goal_hz * frame_s_);
+    const double spare = kDisplayMargin / (settings_.display_goal_hz * frame_s_);
     if (spare <= 1.0) return 1.0;
-    return std::exp(std::min(kUpGain * std::log(spare) / display_cost_.elasticity(visual_level()), kUpMost));
+    return std::exp(
+        std::min(kUpGain * std::log(spare) / display_cost_.at(visual_levels()).elasticity(), kUpMost));
 }
 
 bool Governor::step(double rate_hz, Duration dt) noexcept {
@@ -131,11 +125,15 @@ bool Governor::step(double rate_hz, Duration dt) noexcept {
     if (settings_.law == Law::fixed) return apply_requests(dt_s);
     if (!std::isfinite(rate_hz) || rate_hz < 0.0) return false;
     const RateIs rate = judge(rate_hz, dt_s);
-    if (rate == RateIs::right) return display_binds_ ? false : say_hold();
+    since_visual_s_ += dt_s;
+    if (rate == RateIs::right) {
+        if (rebalance_visual()) return true;
+        return display_binds_ ? false : say_hold();
+    }
     const Factors by = factors(rate_hz, rate);
     bool moved = false;
     if (rate == RateIs::low) {
-        moved = scale(false, by.visual, dt_s, LevelReason::rate_low, LevelReason::at_floor);
+        moved = scale_visual(by.visual, dt_s, LevelReason::rate_low, LevelReason::at_floor);
         display_binds_ = display_binds_ && !moved;
         if (!moved) moved = scale(true, by.haptic, dt_s, LevelReason::rate_low, LevelReason::at_floor);
         if (moved) since_down_s_ = 0.0;
@@ -144,9 +142,10 @@ bool Governor::step(double rate_hz, Duration dt) noexcept {
         const double room = display_margin();
         if (!moved && room > 1.0) {
             const LevelReason up = display_binds_ ? LevelReason::display_high : LevelReason::rate_high;
-            moved = scale(false, std::min(by.visual, room), dt_s, up, LevelReason::at_top);
+            moved = scale_visual(std::min(by.visual, room), dt_s, up, LevelReason::at_top);
         }
     }
+    if (!moved && rate == RateIs::high && rebalance_visual()) return true;
     if (moved) rate_.restart();
     return moved;
 }
@@ -158,7 +157,11 @@ bool Governor::update(const DisplaySample& picture) noexcept {
         const double share = std::min(picture.processor_s / picture.period_s, 64.0);
         display_fraction_ += (display_fraction_ > 0.0 ? 0.2 : 1.0) * (share - display_fraction_);
     }
-    display_cost_.add(visual_level(), picture.processor_s);
+    DisplayCost::PerPath share{};
+    for (std::size_t i = 0; i < count_; ++i)
+        if (picture.work_s > 0.0 && time_like(picture.path_s[i]))
+            share[i] = picture.path_s[i] / picture.work_s;
+    display_cost_.add(visual_levels(), share, picture.processor_s);
     const double busy = picture.period_s > 0.0 ? std::min(picture.work_s / picture.period_s, 1.0) : 0.0;
     display_busy_ += 0.4 * (busy - display_busy_);
     if (settings_.law == Law::fixed || settings_.display_goal_hz <= 0.0 || picture.work_s <= 0.0)
@@ -171,17 +174,17 @@ bool Governor::update(const DisplaySample& picture) noexcept {
                                   : std::min(picture.work_s, frame_before_s_);
     frame_before_s_ = picture.work_s;
     frame_s_ = first ? picture.work_s : frame_s_ + 0.3 * (picture.work_s - frame_s_);
-    if (believed <= (1.0 + kPictureTolerance) * goal_s) return false;
+    if (believed <= (1.0 + kDisplayTolerance) * goal_s) return false;
     double factor = 1.0;
     if (settings_.law == Law::sensitus) {
         factor =
             sensitus_factor(1.0 / believed, settings_.display_goal_hz, settings_.gain, settings_.tolerance);
     } else {
-        const double n = display_cost_.elasticity(visual_level());
+        const double n = display_cost_.at(visual_levels()).elasticity();
         if (n < kWorthwhile) return false;
         factor = std::exp(std::max(-std::log(believed / goal_s) / n, -kDownMost));
     }
-    if (!scale(false, factor, 0.0, LevelReason::display_low, LevelReason::at_floor)) return false;
+    if (!scale_visual(factor, 0.0, LevelReason::display_low, LevelReason::at_floor)) return false;
     display_binds_ = true;
     since_down_s_ = 0.0;
     rate_.restart();
@@ -194,7 +197,7 @@ bool Governor::scale(bool haptic, double factor, double dt_s, LevelReason up_or_
     bool moved = false;
     for (std::size_t i = 0; i < count_; ++i) {
         GovernedPath& p = paths_[i];
-        if (!p.present || p.knob.haptic != haptic || (p.fitted && !settings_.free_running)) continue;
+        if (!takes_part(p) || p.knob.haptic != haptic || (p.fitted && !settings_.free_running)) continue;
         float& value = p.fitted ? p.budget : p.level;
         const double floor = p.fitted ? kBudgetLeast : static_cast<double>(p.knob.floor);
         const double before = static_cast<double>(value);
@@ -235,12 +238,6 @@ bool Governor::set_fitted_level(std::size_t path, float level, LevelReason reaso
     const float before = p.level;
     p.level = std::max(level, p.knob.floor);
     return p.level != before;
-}
-
-bool Governor::visual_can_give() const noexcept {
-    return std::any_of(
-        paths_.begin(), paths_.begin() + static_cast<std::ptrdiff_t>(count_),
-        [](const GovernedPath& p) { return p.present && !p.knob.haptic && p.level > p.knob.floor; });
 }
 
 // The law "fixed" starts from the present levels, so that no level jumps.

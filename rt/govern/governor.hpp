@@ -5,9 +5,11 @@
 // Out       one level per path, within [floor, 1]; whether any changed
 // Fitted    the level of a fitted path comes from level_fit.hpp; the law moves the budget of such a path instead
 // Goals     the force rate, always; the display rate, where a goal is set and a visual process is attached
-// Order     rate too low: visual levels first, all by the same factor; haptic paths only when no visual level can
+// Order     rate too low: visual levels first; haptic paths only when no visual level can
 //           fall further. Rate to spare: haptic paths first. Levels fall at once and rise no faster than the
 //           knob's slew rate; visual levels rise only where the display has time to spare too
+// Visual    law "sensitus": all by the same factor. Law "elastic": by marginal gain (README.md). A path that would
+//           shorten a frame by less than kWorthGain of it is not lowered
 // Wind-up   none: the clamped levels are the only integrator state
 #pragma once
 
@@ -20,7 +22,7 @@
 #include "ipc/base/clock.hpp"
 #include "ipc/base/knob.hpp"
 #include "ipc/base/rt.hpp"
-#include "rt/govern/cost_fit.hpp"
+#include "rt/govern/display_cost.hpp"
 #include "rt/govern/law.hpp"
 #include "rt/govern/rate_filter.hpp"
 
@@ -49,14 +51,16 @@ struct GovernedPath {
 
 // Cost of a frame that was drawn with the present levels.
 struct DisplaySample {
-    double work_s = 0.0;       // time to draw it, without the pause of a frame-rate limit
-    double processor_s = 0.0;  // processor time of the visual process since the previous frame
-    double period_s = 0.0;     // time since the previous frame
+    double work_s = 0.0;            // time to draw it, without the pause of a frame-rate limit
+    double processor_s = 0.0;       // processor time of the visual process since the previous frame
+    double period_s = 0.0;          // time since the previous frame
+    DisplayCost::PerPath path_s{};  // cost of each visual path, by its index in the governor; 0: no report
 };
 
 class Governor {
 public:
-    static constexpr std::size_t kPathsMax = 8;
+    static constexpr std::size_t kPathsMax = DisplayCost::kPathsMax;
+    static constexpr double kWorthGain = 0.02;
 
     explicit Governor(const GovernorSettings& settings) noexcept;
 
@@ -77,10 +81,12 @@ public:
     // Makes the path a fitted one and sets its level; refused under the law "fixed". True: the level changed.
     bool set_fitted_level(std::size_t path, float level, LevelReason reason) noexcept TACT_RT;
     void set_present(std::size_t path, bool present) noexcept TACT_RT;
+    // A display at rest costs nothing and is not drawn at the levels: visual paths then take no part.
+    void set_display_resting(bool resting) noexcept TACT_RT { resting_ = resting; }
 
     [[nodiscard]] std::span<const GovernedPath> paths() const noexcept { return {paths_.data(), count_}; }
     [[nodiscard]] float level(std::size_t path) const noexcept { return paths_[path].level; }
-    // True: a visual path is above its floor.
+    // True: a visual path is above its floor, and lowering it would save time.
     [[nodiscard]] bool visual_can_give() const noexcept;
     [[nodiscard]] const GovernorSettings& settings() const noexcept { return settings_; }
 
@@ -92,22 +98,29 @@ private:
     [[nodiscard]] RateIs judge(double rate_hz, double dt_s) noexcept;
     [[nodiscard]] Factors factors(double rate_hz, RateIs rate) const noexcept;
     [[nodiscard]] double display_margin() const noexcept;
-    [[nodiscard]] double visual_level() const noexcept;
+    [[nodiscard]] DisplayCost::PerPath visual_levels() const noexcept;
+    [[nodiscard]] bool takes_part(const GovernedPath& path) const noexcept {
+        return path.present && (path.knob.haptic || !resting_);
+    }
     [[nodiscard]] bool say_hold() noexcept;
     bool scale(bool haptic, double factor, double dt_s, LevelReason moved, LevelReason stuck) noexcept;
+    bool scale_visual(double factor, double dt_s, LevelReason moved, LevelReason stuck) noexcept;
+    bool rebalance_visual() noexcept;
 
     GovernorSettings settings_;
     std::array<GovernedPath, kPathsMax> paths_{};
     std::size_t count_ = 0;
 
     RateFilter rate_;
-    CostFit display_cost_;
+    DisplayCost display_cost_;
     double display_fraction_ = 0.0;  // fraction of one processor used by the visual process; filtered
     double frame_s_ = 0.0;           // time to draw a frame, filtered; 0: no frame since the last change
     double frame_before_s_ = 0.0;
     double since_down_s_ = 1e9;
-    double display_busy_ = 0.0;   // fraction of the time spent drawing, filtered; 1: no pauses
-    bool display_binds_ = false;  // the last fall of a visual level was for the display goal
+    double since_visual_s_ = 0.0;  // since a visual level moved
+    double display_busy_ = 0.0;    // fraction of the time spent drawing, filtered; 1: no pauses
+    bool resting_ = false;         // nothing is drawn at the levels
+    bool display_binds_ = false;   // the last fall of a visual level was for the display goal
 };
 
 }  // namespace tact

@@ -36,16 +36,21 @@ void report_levels(CycleState& c, const ServoSettings& settings, RtRegion& regio
 }
 
 // True: a frame has changed a level or its reason.
-bool sample_display(CycleState& c) noexcept {
+bool sample_display(CycleState& c, const ServoSettings& settings) noexcept {
     const HousekeepingReport& h = c.housekeeping;
+    c.governor.set_display_resting(h.gui_attached != 0 && h.gui_refined == 1);
     if (h.gui_attached == 0) return false;
-    const auto sample = c.govern.display.take({.frame = h.gui_frame,
-                                               .levels_sequence = h.gui_levels_sequence,
-                                               .taken_at_ns = h.gui_taken_at_ns,
-                                               .work_s = h.gui_work_s,
-                                               .cpu_s = h.gui_cpu_s,
-                                               .drawn = h.gui_vertices > 0});
-    return sample && c.governor.update(*sample);
+    auto sample = c.govern.display.take({.frame = h.gui_frame,
+                                         .levels_sequence = h.gui_levels_sequence,
+                                         .taken_at_ns = h.gui_taken_at_ns,
+                                         .work_s = h.gui_work_s,
+                                         .cpu_s = h.gui_cpu_s,
+                                         .drawn = h.gui_vertices > 0,
+                                         .refined = h.gui_refined != 0});
+    if (!sample) return false;
+    for (std::size_t i = 0; i < settings.visual_paths.size(); ++i)
+        sample->path_s[visual_index(i)] = h.*settings.visual_paths[i].cost_s;
+    return c.governor.update(*sample);
 }
 
 // A slow update that takes longer than kSlowUpdateFraction of its period makes the force's data lag the hand. The law
@@ -112,7 +117,7 @@ void govern(CycleState& c, const ServoSettings& settings, RtRegion& region) noex
     }
 
     const bool pending = c.housekeeping.gui_attached != 0 && g.display.pending(c.now);
-    if (sample_display(c)) {
+    if (sample_display(c, settings)) {
         report_levels(c, settings, region, before, true);
         return start_interval(c, c.now);
     }

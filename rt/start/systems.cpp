@@ -73,8 +73,10 @@ std::string summary_of_drilling(const RtRegion& region) {
 }
 
 constexpr std::array kSystems{
-    System{.kind = SceneKind::docking, .name = "docking", .visual_paths = kMeshPaths, .make = make_docking},
-    System{.kind = SceneKind::surface, .name = "surface", .visual_paths = kMeshPaths, .make = make_surface},
+    System{
+        .kind = SceneKind::docking, .name = "docking", .visual_paths = kDockingPaths, .make = make_docking},
+    System{
+        .kind = SceneKind::surface, .name = "surface", .visual_paths = kSurfacePaths, .make = make_surface},
     System{.kind = SceneKind::drilling,
            .name = "drilling",
            .visual_paths = kBonePaths,
@@ -82,7 +84,7 @@ constexpr std::array kSystems{
            .share = share_bone,
            .drive = drill_switch,
            .summary = summary_of_drilling},
-    System{.kind = SceneKind::field, .name = "field", .visual_paths = kMeshPaths, .make = make_field},
+    System{.kind = SceneKind::field, .name = "field", .visual_paths = kSurfacePaths, .make = make_field},
 };
 
 }  // namespace

@@ -31,8 +31,12 @@ bool plausible(const LoadTopic& load) {
     bool good = time(load.frame_s) && time(load.busy_s) && time(load.cpu_s) && std::isfinite(load.fps) &&
                 load.fps >= 0.0 && load.fps < 1e6 && load.vertices_drawn <= load.vertices_max &&
                 load.vertices_max < 1U << 31U && load.particles <= load.particles_max &&
-                load.particle_moves <= load.particles_max && load.particles_max < 1U << 31U;
+                load.particle_moves <= load.particles_max && load.particles_max < 1U << 31U &&
+                load.molecule_triangles <= load.molecule_triangles_max &&
+                load.molecule_triangles_max < 1U << 31U && load.pixels <= load.pixels_max &&
+                load.pixels_max < 1U << 31U && load.refined <= 2;
     for (const double s : load.part_s) good = good && time(s);
+    for (const double s : load.path_s) good = good && time(s);
     return good;
 }
 
@@ -156,6 +160,16 @@ void Housekeeping::serve_gui() {
             report_.gui_vertices_max = load.vertices_max;
             report_.gui_particles_max = load.particles_max;
             report_.gui_particles_s = load.part_s[static_cast<std::size_t>(FramePart::particles)];
+            const auto path_s = [&load](VisualPathIndex i) {
+                return load.path_s[static_cast<std::size_t>(i)];
+            };
+            report_.gui_mesh_s = path_s(VisualPathIndex::mesh);
+            report_.gui_volume_s = path_s(VisualPathIndex::volume);
+            report_.gui_molecules_s = path_s(VisualPathIndex::molecules);
+            report_.gui_resolution_s = path_s(VisualPathIndex::resolution);
+            report_.gui_molecules_max = load.molecule_triangles_max;
+            report_.gui_pixels_max = load.pixels_max;
+            report_.gui_refined = load.refined;
             if (settings_.arm_with_gui && load.vertices_drawn > 0) {
                 settings_.arm_with_gui = false;
                 order(CommandKind::arm, 0.0, 0);

@@ -103,14 +103,15 @@ TEST(GovernorScenario, particles_are_reduced_with_the_display_of_bone_and_absent
     loop.active();
     Picture picture{loop, 0.2};
     picture.report.gui_particles_max = 80000;
-    picture.report.gui_particles_s = 0.003;
+    picture.report.gui_particles_s = 0.05;
+    picture.report.gui_volume_s = 0.1;
     for (int i = 0; i < 60; ++i) picture.frame();
     const PathLevel p = particles_of(loop);
     EXPECT_LT(p.level, 0.5F);
     EXPECT_GE(p.level, p.floor);
     EXPECT_EQ(p.items_max, 80000U);
     EXPECT_NEAR(p.items, 80000.0 * static_cast<double>(p.level), 1.0);
-    EXPECT_EQ(p.cost_s, 0.003);
+    EXPECT_EQ(p.cost_s, 0.05);
     EXPECT_FLOAT_EQ(loop.levels().path[kForcePathIndex].level, 1.0F);
     picture.frame_s = 0.006;  // the machine is free again
     for (int i = 0; i < 2000; ++i) picture.frame();
@@ -145,6 +146,51 @@ TEST(GovernorScenario, a_low_force_rate_reduces_particles_to_their_floor_before_
         EXPECT_EQ(l.path[kDisplayPathIndex].level, l.path[kDisplayPathIndex].floor);
     }
     EXPECT_TRUE(force_fell);
+}
+
+// --- several visual paths ---
+
+TEST(GovernorScenario, the_reported_cost_of_each_path_decides_which_one_is_lowered) {
+    for (const bool of_mesh : {true, false}) {
+        ServoSettings settings = with_display_goal(Law::elastic, 30.0);
+        settings.visual_paths = kDockingPaths;
+        Lockstep loop(settings);
+        loop.active();
+        Picture picture{loop, 0.06};
+        (of_mesh ? picture.report.gui_mesh_s : picture.report.gui_molecules_s) = 0.05;
+        (of_mesh ? picture.report.gui_molecules_s : picture.report.gui_mesh_s) = 0.0005;
+        picture.report.gui_resolution_s = 0.0005;
+        picture.report.gui_pixels_max = 2000000;
+        for (int i = 0; i < 6; ++i) picture.frame();
+        const LevelsTopic l = loop.levels();
+        ASSERT_EQ(l.count, 4U);
+        EXPECT_STREQ(l.path[2].path, kMoleculesPath);
+        EXPECT_STREQ(l.path[3].path, kResolutionPath);
+        EXPECT_EQ(l.path[kDisplayPathIndex].level < 1.0F, of_mesh);
+        EXPECT_EQ(l.path[2].level < 1.0F, !of_mesh);
+        EXPECT_EQ(l.path[3].level, 1.0F);
+        EXPECT_EQ(l.path[3].items_max, 2000000U);
+        EXPECT_EQ(l.path[of_mesh ? kDisplayPathIndex : 2].cost_s, 0.05);
+    }
+}
+
+TEST(GovernorScenario, frames_of_a_view_at_rest_move_no_level) {
+    Lockstep loop(with_display_goal(Law::elastic, 30.0));
+    loop.active();
+    Picture picture{loop, 0.1};
+    for (int i = 0; i < 60; ++i) picture.frame();
+    const float level = picture.level();
+    ASSERT_LT(level, 0.6F);
+    picture.report.gui_refined = 1;
+    picture.frame_s = 0.3;  // in full detail
+    picture.frame();
+    picture.frame_s = 0.004;  // copied
+    for (int i = 0; i < 1000; ++i) picture.frame();
+    EXPECT_FLOAT_EQ(picture.level(), level);
+    picture.report.gui_refined = 0;
+    picture.frame_s = 0.1;
+    for (int i = 0; i < 20; ++i) picture.frame();
+    EXPECT_NEAR(picture.level(), level, 0.1F);
 }
 
 // --- a slow update that takes too long ---

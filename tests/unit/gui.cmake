@@ -13,6 +13,8 @@ if(TACT_GUI)
         SYSTEM nlohmann_json::nlohmann_json)
     tact_test(unit/gui_cloud_test.cpp USES gui_window gui_drilling gui_drilling_site gui_dashboard gui_render launch scene base
         TIMEOUT 300)
+    tact_test(unit/gui_detail_test.cpp USES gui_window gui_docking gui_dashboard gui_render launch prep_mesh topics shm scene base
+        TIMEOUT 300)
     tact_test(unit/gui_edges_test.cpp USES gui_window gui_render launch base)
     tact_test(unit/gui_drilling_test.cpp USES gui_drilling_site topics shm scene base SYSTEM nlohmann_json::nlohmann_json)
     tact_test(unit/gui_bone_test.cpp USES gui_drilling gui_render topics shm scene base)

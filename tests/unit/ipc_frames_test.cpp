@@ -76,6 +76,8 @@ TEST(Frames, passes_and_paths_have_names_of_their_own) {
     EXPECT_STREQ(visual_path_text(0), kMeshPath);
     EXPECT_STREQ(visual_path_text(1), kVolumePath);
     EXPECT_STREQ(visual_path_text(2), kParticlesPath);
+    EXPECT_STREQ(visual_path_text(3), kMoleculesPath);
+    EXPECT_STREQ(visual_path_text(4), kResolutionPath);
     EXPECT_STREQ(visual_path_text(kVisualPaths), "");
 }
 

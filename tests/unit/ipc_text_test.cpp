@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <csignal>
+#include <cstring>
 #include <limits>
 #include <set>
 #include <string>
@@ -98,8 +99,17 @@ TEST(Text, events_carry_their_numbers_and_units) {
               "level changed: force to 0.25, force rate below goal");
     EXPECT_EQ(text(EventCode::level_changed, kForcePathIndex, 0.25, 999),
               "level changed: force to 0.25, unknown");
-    EXPECT_EQ(text(EventCode::level_changed, kParticlesPathIndex, 0.25),
-              "level changed: particles to 0.25, start");
+    EventTopic of_path{};
+    of_path.code = static_cast<std::uint16_t>(EventCode::level_changed);
+    of_path.a = 2;
+    of_path.b = 0.25;
+    EXPECT_EQ(event_text(of_path), "level changed: path 2 to 0.25, start");
+    LevelsTopic levels{};
+    levels.count = 3;
+    std::strcpy(levels.path[2].path, kMoleculesPath);
+    EXPECT_EQ(event_text(of_path, &levels), "level changed: molecules to 0.25, start");
+    levels.count = 2;
+    EXPECT_EQ(event_text(of_path, &levels), "level changed: path 2 to 0.25, start");
     EXPECT_EQ(text(EventCode::level_changed, 7, 1), "level changed: path 7 to 1, start");
     EXPECT_EQ(text(EventCode::body_selected, 3, 825), "body held: body 3, 825 points");
     EXPECT_EQ(text(EventCode::body_selected, 4294967295.0, 0), "no body held");

@@ -159,6 +159,23 @@ TEST(Housekeeping, a_load_must_be_possible) {
     load.particles = 50000;
     load.particle_moves = 50001;
     EXPECT_FALSE(plausible(load));
+    load.particle_moves = 0;
+    load.molecule_triangles = load.molecule_triangles_max = 30000;
+    load.pixels = load.pixels_max = 2000000;
+    load.refined = 2;
+    EXPECT_TRUE(plausible(load));
+    LoadTopic wrong = load;
+    wrong.molecule_triangles = 30001;
+    EXPECT_FALSE(plausible(wrong));
+    wrong = load;
+    wrong.pixels = 2000001;
+    EXPECT_FALSE(plausible(wrong));
+    wrong = load;
+    wrong.refined = 3;
+    EXPECT_FALSE(plausible(wrong));
+    wrong = load;
+    wrong.path_s[3] = -1.0;
+    EXPECT_FALSE(plausible(wrong));
 }
 
 }  // namespace
