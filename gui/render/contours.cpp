@@ -230,8 +230,16 @@ void Contours::draw(std::size_t i, const Eigen::Matrix4f& eye, const Eigen::Matr
         triangles();
         glPolygonMode(GL_FRONT_AND_BACK, GL_FILL);
     } else if (style == SurfaceStyle::glass) {
+        // Of a contour only the walls towards the eye: the far walls veil the structures inside, and take half of the time in
+        // software rendering. Contours face the lower density; below the map's mean that is their inside.
+        const bool of_map = !content_->grid.values.empty();
+        if (of_map) {
+            glEnable(GL_CULL_FACE);
+            glCullFace(contour.level >= content_->meta.map_mean ? GL_BACK : GL_FRONT);
+        }
         glDepthMask(GL_FALSE);
         triangles();
+        glDisable(GL_CULL_FACE);
         glDepthMask(GL_TRUE);
     } else if (contour.opacity < 1.0F) {
         // Only the nearest layer, so that it looks like one object: first the depth, then the colour.

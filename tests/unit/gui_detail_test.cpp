@@ -277,6 +277,19 @@ TEST_F(GuiLevels, gui_mesh_changes_triangles_and_picture_and_a_refined_view_show
     EXPECT_EQ(differing(coarse, drawn()), 0U);
 }
 
+TEST_F(GuiLevels, glass_shows_the_walls_towards_the_eye_and_not_those_behind) {
+    layer_->frame.bodies = {};
+    options_.style = SurfaceStyle::glass;
+    options_.surface = false;
+    const Image nothing = drawn();
+    options_.surface = true;
+    EXPECT_GT(differing(nothing, drawn()), 2000U);
+    camera_.approach(Eigen::Vector3f::Zero(), 0.2F);  // inside the contour
+    EXPECT_EQ(differing(nothing, drawn()), 0U);
+    options_.style = SurfaceStyle::solid;
+    EXPECT_GT(differing(nothing, drawn()), 2000U);
+}
+
 TEST_F(GuiLevels, gui_resolution_changes_pixels_and_picture_but_not_what_is_seen) {
     const Image full = drawn();
     ViewTarget target;
