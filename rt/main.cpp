@@ -62,8 +62,9 @@ LevelRequest parse_level(const std::string& text, const std::vector<std::string>
     for (std::size_t i = 0; i < paths.size(); ++i) {
         known += (i == 0 ? "" : ", ") + paths[i];
         if (text.substr(0, equals) != paths[i] || value.empty() || *end != 0) continue;
-        const double floor = static_cast<double>(servo.governor().paths()[i].knob.floor);
-        if (level >= floor && level <= 1.0) return {static_cast<std::uint32_t>(i), level};
+        const float floor = servo.governor().paths()[i].knob.floor;
+        // In the precision of the floor, so that the printed floor is accepted.
+        if (static_cast<float>(level) >= floor && level <= 1.0) return {static_cast<std::uint32_t>(i), level};
         throw StartupError("--level " + text, "the level is outside " + std::to_string(floor) + " to 1",
                            "choose a level inside the range");
     }

@@ -26,6 +26,7 @@ int metrics(const MetricsOptions& o) {
     std::unique_ptr<MetricsServer> server;
     if (!o.once && o.textfile.empty()) {
         server = std::make_unique<MetricsServer>(o.address, o.port);
+        server->offer(metrics.text(nullptr));  // before the address is known: no request finds an empty page
         std::fprintf(stderr, "http://%s:%d/metrics, until Ctrl-C\n", o.address.c_str(), server->port());
     }
     const Instant began = Monotonic::now();

@@ -20,7 +20,7 @@ constexpr std::size_t kAtoms = 100'000, kVectors = 200;
 // Heavy atoms of protein: one per about 18 cubic angstrom.
 constexpr double kAtomVolumeM3 = 18e-30;
 
-// Smooth noise, so that gradients are nonzero everywhere and no value is denormal or constant.
+// A smooth pattern: gradients are nonzero everywhere, and no value is denormal or constant.
 DensityGrid make_map() {
     DensityGrid grid;
     grid.size = {kSide, kSide, kSide};
@@ -75,28 +75,28 @@ DockingModel make_model() {
     return {meta, make_map(), {std::move(body)}, {std::move(codebook)}, DockingSettings{}};
 }
 
-// A slow figure through some voxels and a few degrees, about the home of the body.
-Pose moved(int step) {
+// A slow motion through a few voxels and a few degrees, relative to the home pose of the body.
+Pose pose_at(int step) {
     return {3.0 * kVoxelM * Vec3(std::sin(1e-3 * step), std::cos(2e-3 * step), std::sin(3e-3 * step)),
             quat_from_rotation_vector(0.1 * Vec3(std::cos(1e-3 * step), std::sin(1e-3 * step), 0.5))};
 }
 
-// Of whole steps at 1 kHz, once a tenth of them has gone by.
+// Times of whole steps at 1 kHz. The first tenth of the steps is a warm-up and is not counted.
 Percentiles loop_us(DockingModel& model, float fidelity, int steps) {
     const Budget budget{.fidelity = fidelity};
     std::vector<double> times_us;
     times_us.reserve(static_cast<std::size_t>(steps));
     run_as_loop(kServoPriority, [&] {
         ToolState tool;
-        const auto lead = [&](int i) {
-            tool.T_world_tool = moved(i);
+        const auto move_hand = [&](int i) {
+            tool.T_world_tool = pose_at(i);
             tool.T_world_tool.p_m *= model.meta().world_per_model;
         };
-        lead(0);
+        move_hand(0);
         model.reset(tool);
         LoopPace pace(1e-3);
         for (int i = 0; i < steps + steps / 10; ++i) {
-            lead(i);
+            move_hand(i);
             pace.wait();
             const Instant begin = Monotonic::now();
             model.drive({});
@@ -108,14 +108,14 @@ Percentiles loop_us(DockingModel& model, float fidelity, int steps) {
     return percentiles(times_us);
 }
 
-// The least of the medians of twenty stretches of so many forces.
-double best_of_20_us(const DockingModel& model, float fidelity, int stretch) {
+// The smallest median over twenty series of `count` forces each.
+double best_of_20_us(const DockingModel& model, float fidelity, int count) {
     const Budget budget{.fidelity = fidelity};
     double least_us = 1e300, sink = 0.0;
     for (int k = 0; k < 20; ++k) {
         std::vector<double> times_us;
-        for (int i = 0; i < stretch; ++i) {
-            Pose pose = moved(k * stretch + i);
+        for (int i = 0; i < count; ++i) {
+            Pose pose = pose_at(k * count + i);
             pose.p_m += model.home().p_m;
             const Instant begin = Monotonic::now();
             const StepResult result = model.evaluate(pose, budget);

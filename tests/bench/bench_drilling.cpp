@@ -17,13 +17,13 @@ namespace {
 using nlohmann::json;
 
 constexpr std::size_t kDrillSteps = 4000;
-constexpr int kDrillPasses = 3;  // the keys say so too
+constexpr int kDrillPasses = 3;  // also part of the key names
 
 struct DrillCase {
     const char* key;
     double radius_m, voxel_m;
     std::array<std::uint32_t, 3> voxels;
-    bool finest = false;  // else the default level
+    bool finest = false;  // false: the default level
     BurrShape shape = BurrShape::sphere;
 };
 constexpr DrillCase kDrillCases[] = {
@@ -52,13 +52,13 @@ double elastic_n(const BoneBricks& bricks, double radius_m, const BallMoments& m
         .wrench.force_n.norm();
 }
 
-// In bone as a stroke has left it, at positions along that stroke.
+// Adds the force errors at positions along a stroke, in bone that this stroke has already drilled.
 void add_force_errors(BoneSample& bone, const std::vector<Vec3>& path_m, double radius_m, ForceError& error) {
     std::vector<std::uint32_t> revision(bone.bricks.brick_count());
     const DrillBone drilled(bone.bricks, bone.density, revision);
     const double radius = radius_m / bone.bricks.voxel_m;
     for (std::size_t i = path_m.size() / 2; i < path_m.size(); i += 23) {
-        // A little deeper than the hole, so that there is contact.
+        // Slightly deeper than the drilled hole, to ensure contact.
         const Vec3 at =
             bone.bricks.to_voxels(path_m[i] - Vec3(0.0, 0.0, 0.03 * radius_m * static_cast<double>(i % 7)));
         const double exact = elastic_n(bone.bricks, radius_m, ball_moments_exact(drilled.octree, at, radius));
@@ -73,7 +73,7 @@ void add_force_errors(BoneSample& bone, const std::vector<Vec3>& path_m, double 
     }
 }
 
-// Equation 12, voxel by voxel in small time steps, for a straight stroke through solid bone.
+// Integrates equation 12 voxel by voxel in small time steps, for a straight stroke through solid bone.
 double eroded_levels(const BoneSample& bone, const Vec3& from_m, const Vec3& to_m, double seconds,
                      double radius_m, const DrillSettings& law) {
     constexpr int kParts = 600;
@@ -82,21 +82,21 @@ double eroded_levels(const BoneSample& bone, const Vec3& from_m, const Vec3& to_
     for (std::uint32_t z = 0; z < bone.bricks.size[2]; ++z)
         for (std::uint32_t y = 0; y < bone.bricks.size[1]; ++y)
             for (std::uint32_t x = 0; x < bone.bricks.size[0]; ++x) {
-                const double whole = bone.density[bone.bricks.voxel(x, y, z)];
+                const double initial = bone.density[bone.bricks.voxel(x, y, z)];
                 const Vec3 at = bone.bricks.to_model(Vec3(x, y, z));
-                const Vec3 way = to_m - from_m;
-                const double along = std::clamp((at - from_m).dot(way) / way.squaredNorm(), 0.0, 1.0);
-                if (!(whole > 0.0) || (at - from_m - along * way).squaredNorm() >= radius_m * radius_m)
+                const Vec3 stroke = to_m - from_m;
+                const double along = std::clamp((at - from_m).dot(stroke) / stroke.squaredNorm(), 0.0, 1.0);
+                if (!(initial > 0.0) || (at - from_m - along * stroke).squaredNorm() >= radius_m * radius_m)
                     continue;
-                double left = whole;
+                double left = initial;
                 for (int k = 0; k < kParts; ++k) {
                     const double r2 =
-                        (at - from_m - (k + 0.5) / kParts * way).squaredNorm() / (radius_m * radius_m);
+                        (at - from_m - (k + 0.5) / kParts * stroke).squaredNorm() / (radius_m * radius_m);
                     if (r2 >= 1.0) continue;
                     const double rate = a * (law.soft + (1.0 - law.soft) * left / 255.0);
                     left *= std::exp(-rate * (1.0 - r2) * dt);
                 }
-                sum += whole - left;
+                sum += initial - left;
             }
     return sum;
 }
@@ -167,7 +167,8 @@ json bench_drilling() {
 
 std::string drilling_work_csv(const DrillingWork& work) {
     if (work.size.size() != 3)
-        throw StartupError("drill into " + work.volume.string(), "--size needs three numbers", "give X Y Z");
+        throw StartupError("drill into " + work.volume.string(), "--size needs three numbers",
+                           "write --size X Y Z");
     BoneSample bone =
         bone_of_raw_file(work.volume, {work.size[0], work.size[1], work.size[2]}, 1e-3 * work.voxel_mm);
     const std::vector<Vec3> path = read_positions(work.trajectory, 1e-3);

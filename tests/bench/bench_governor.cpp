@@ -26,7 +26,7 @@ using launch::Child;
 using launch::ChildSettings;
 using nlohmann::json;
 
-constexpr auto kBakeMost = std::chrono::minutes(15);
+constexpr auto kBakeTimeout = std::chrono::minutes(15);
 
 struct Folder {
     fs::path path;
@@ -54,7 +54,7 @@ void run_program(const std::string& name, const std::vector<std::string>& argume
     ::close(s.output_fd);
     const auto& ending = child.wait(most);
     if (!ending)
-        throw StartupError("run " + name, "the program did not end in time",
+        throw StartupError("run " + name, "the program did not exit in time",
                            "run it by hand: " + name + " " + arguments.front());
 }
 
@@ -63,8 +63,8 @@ struct BenchScene {
     std::size_t atoms = 0;
     fs::path path;
     std::string knob;
-    std::vector<double> levels;          // levels of the sweep
-    std::vector<std::string> arguments;  // arguments of the runs
+    std::vector<double> levels;          // fixed levels
+    std::vector<std::string> arguments;  // for tact run
 };
 
 std::vector<double> equal_levels(std::size_t steps, double first = 0.0) {
@@ -83,7 +83,7 @@ void write_copies(const Structure& s, std::size_t copies, const fs::path& file) 
            "_atom_site.Cartn_y\n_atom_site.Cartn_z\n_atom_site.occupancy\n";
     std::size_t id = 0;
     for (std::size_t c = 0; c < copies; ++c) {
-        // Copies lie along a spiral, so that no two coincide.
+        // The copies lie along a spiral, so that no two coincide.
         const double angle = 2.4 * static_cast<double>(c), r_a = 1.5 * std::sqrt(static_cast<double>(c));
         const Vec3 shift_a(r_a * std::cos(angle), r_a * std::sin(angle),
                            0.7 * std::sin(1.3 * static_cast<double>(c)));
@@ -117,12 +117,12 @@ BenchScene docking_scene(const GovernorBenchSettings& settings, const Folder& fo
     const fs::path log = folder.path / "bake.log";
     if (!fs::exists(one)) {
         if (settings.map.empty())
-            run_program("tact-prep", {"demo", "dock", "-o", one.string()}, log, kBakeMost);
+            run_program("tact-prep", {"demo", "dock", "-o", one.string()}, log, kBakeTimeout);
         else
             run_program("tact-prep",
                         {"dock", settings.map.string(), settings.structure.string(), "--resolution-a", "10",
                          "-o", one.string()},
-                        log, kBakeMost);
+                        log, kBakeTimeout);
     }
     const SceneFile scene = SceneFile::open(one);
     const Structure structure = read_structure(scene, 0);
@@ -133,7 +133,7 @@ BenchScene docking_scene(const GovernorBenchSettings& settings, const Folder& fo
     run_program("tact-prep",
                 {"dock", map.string(), copies.string(), "--resolution-a", "10", "--vertices-max", "20000",
                  "-o", many.string()},
-                log, kBakeMost);
+                log, kBakeTimeout);
     const SceneFile baked = SceneFile::open(many);
     return {.name = "docking",
             .atoms = n * structure.size(),
@@ -148,7 +148,7 @@ BenchScene surface_scene(const Folder& folder) {
     run_program("tact-prep",
                 {"demo", "touch", "--parts", "1000", "--tool", "block", "--tool-points", "1000",
                  "--no-forest", "--no-picture", "-o", path.string()},
-                folder.path / "bake.log", kBakeMost);
+                folder.path / "bake.log", kBakeTimeout);
     return {.name = "surface",
             .path = path,
             .knob = "surface.force",
@@ -159,7 +159,7 @@ BenchScene surface_scene(const Folder& folder) {
 BenchScene drilling_scene(const Folder& folder) {
     const fs::path path = folder.path / "drilling.tact";
     run_program("tact-prep", {"demo", "drill", "--voxels", "512", "--voxel-mm", "0.1", "-o", path.string()},
-                folder.path / "bake.log", kBakeMost);
+                folder.path / "bake.log", kBakeTimeout);
     return {.name = "drilling",
             .path = path,
             .knob = "drilling.force",
@@ -204,10 +204,10 @@ GovernorRun run(const Folder& folder, const BenchScene& scene, double rate_hz, d
     run_program("tact", arguments, folder.path / "run.log",
                 std::chrono::seconds(60) + std::chrono::milliseconds(std::llround(1e3 * seconds)));
     const json parsed = json::parse(launch::read_small(report), nullptr, false);
-    if (parsed.is_discarded())
+    if (parsed.is_discarded() || !parsed.contains("governor"))
         throw StartupError("run " + scene.name,
-                           "the run left no report: " + launch::read_small(folder.path / "run.log"),
-                           "start the scene by hand: tact run SCENE");
+                           "the run failed: " + launch::read_small(folder.path / "run.log"),
+                           "run the scene by hand: tact run SCENE");
     return run_of(parsed);
 }
 
@@ -263,7 +263,8 @@ json bench_governor(const GovernorBenchSettings& settings) {
         for (const double rate_hz : settings.rates_hz) {
             std::fprintf(stderr, "%s%s at %s\n", scene.name.c_str(),
                          scene.atoms > 0 ? (", " + std::to_string(scene.atoms) + " atoms,").c_str() : "",
-                         rate_hz > 0.0 ? (std::to_string(std::lround(rate_hz)) + " Hz").c_str() : "any rate");
+                         rate_hz > 0.0 ? (std::to_string(std::lround(rate_hz)) + " Hz").c_str()
+                                       : "a free-running rate");
             const GovernorRun adaptive = run(folder, scene, rate_hz, settings.seconds, nullptr);
             std::vector<GovernorRun> fixed;
             for (const double level : scene.levels)

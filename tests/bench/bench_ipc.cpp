@@ -17,11 +17,11 @@
 namespace tact {
 namespace {
 
-constexpr std::size_t kTimes = 50'000;
+constexpr std::size_t kRepeats = 50'000;
 
 template <class Work>
 Percentiles measure(Work&& work) {
-    std::vector<double> times_ns(kTimes);
+    std::vector<double> times_ns(kRepeats);
     for (double& ns : times_ns) {
         const Instant start = Monotonic::now();
         work();
@@ -30,7 +30,7 @@ Percentiles measure(Work&& work) {
     return percentiles(times_ns);
 }
 
-// Values whose first and last numbers agree, so that a reader detects a torn one.
+// Writes values whose first and last numbers agree, so that a reader detects a torn value.
 struct ServoSide {
     RtRegion& region;
     ToolTopic tool{};
@@ -87,7 +87,7 @@ IpcBench bench_ipc() {
     VisualSide reader{*mapped};
     IpcBench bench;
 
-    measure([&] { writer.publish_state(); });  // warms caches and clocks
+    measure([&] { writer.publish_state(); });  // warms up the caches and the clock
     bench.clock_ns = measure([] {});
     bench.publish_ns = measure([&] { writer.publish_state(); });
     bench.publish_tool_ns = measure([&] { writer.publish_tool(); });
@@ -95,7 +95,7 @@ IpcBench bench_ipc() {
     bench.read_ns = measure([&] { reader.read_state(); });
     bench.trace_push_ns = measure([&] { writer.push_trace(); });
 
-    std::atomic<int> step{0};  // 0: the other thread reads; 1: it writes; 2: it ends
+    std::atomic<int> step{0};  // 0: the other thread reads; 1: it writes; 2: it exits
     std::thread other([&] {
         VisualSide other_reader{*mapped};
         while (step.load(std::memory_order_acquire) == 0) other_reader.read_state();

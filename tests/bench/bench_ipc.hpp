@@ -1,9 +1,9 @@
 // Cost of shared memory on this machine: for `tact bench ipc`.
 //
-// Method   a real region is mapped by a reader thread that reads the newest state again and again, as the
-//          visual process would at its worst, while the writer publishes. Each operation is timed by itself, so its
-//          time holds one reading of the clock, which is a figure of its own.
-// Takes    about half a second. Throws StartupError if there is no memory for the regions.
+// Method   a reader thread maps a real region and reads the newest state without pauses while the writer publishes: the
+//          worst case of the visual process. Each operation is timed separately, so its time includes one reading of
+//          the clock, which is measured too (clock_ns).
+// Takes    about half a second. Throws StartupError if the regions cannot be allocated.
 #pragma once
 
 #include <cstdint>
@@ -13,15 +13,15 @@
 namespace tact {
 
 struct IpcBench {
-    // Publish of the state of one servo cycle: a ToolTopic and a BodiesTopic, as the loop does.
+    // Time to publish the state of one servo cycle, as the loop does: a ToolTopic and a BodiesTopic.
     Percentiles publish_ns;
-    Percentiles publish_contended_ns;  // while the reader reads all the time on another core
+    Percentiles publish_contended_ns;  // while the reader reads without pauses in another thread
     Percentiles publish_tool_ns;       // ToolTopic alone
-    Percentiles read_ns;               // ToolTopic and BodiesTopic, writer silent
-    Percentiles read_contended_ns;     // writer publishing at full speed; failed tries included
-    Percentiles trace_push_ns;         // one TraceTopic
-    Percentiles clock_ns;              // nothing between two readings of the clock
-    std::uint64_t torn = 0;            // values that did not fit together; has to be 0
+    Percentiles read_ns;               // ToolTopic and BodiesTopic, without a writer
+    Percentiles read_contended_ns;     // while the writer publishes without pauses; includes failed attempts
+    Percentiles trace_push_ns;         // one TraceTopic record
+    Percentiles clock_ns;              // two successive readings of the clock
+    std::uint64_t torn = 0;            // inconsistent values read; must be 0
 };
 
 [[nodiscard]] IpcBench bench_ipc();

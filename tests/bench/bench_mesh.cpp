@@ -17,9 +17,9 @@ namespace {
 
 constexpr std::uint32_t kTorusSide = 1024, kBaseSide = 8;
 
-// Grid indices in contraction order, and the target of each.
+// Vertices (grid indices) in contraction order, and the target vertex of each.
 struct Contractions {
-    std::vector<std::uint32_t> gone;
+    std::vector<std::uint32_t> removed;
     std::vector<std::uint32_t> into = std::vector<std::uint32_t>(std::size_t{kTorusSide} * kTorusSide);
 };
 
@@ -29,7 +29,7 @@ Contractions contractions() {
     std::vector<std::uint32_t> round;
     const auto finish = [&] {
         for (std::size_t i = round.size(); i > 1; --i) std::swap(round[i - 1], round[random.below(i)]);
-        c.gone.insert(c.gone.end(), round.begin(), round.end());
+        c.removed.insert(c.removed.end(), round.begin(), round.end());
         round.clear();
     };
     for (std::uint32_t s = 1; s < kTorusSide / kBaseSide; s *= 2) {
@@ -65,11 +65,11 @@ MeshVertex torus_vertex(std::uint32_t at) {
 ProgressiveMeshData torus() {
     constexpr std::uint32_t kVertices = kTorusSide * kTorusSide;
     const Contractions c = contractions();
-    const auto steps = static_cast<std::uint32_t>(c.gone.size());
+    const auto steps = static_cast<std::uint32_t>(c.removed.size());
     ProgressiveMeshData data;
     data.base_vertices = kVertices - steps;
     std::vector<std::uint32_t> number(kVertices, UINT32_MAX);
-    for (std::uint32_t s = 0; s < steps; ++s) number[c.gone[s]] = kVertices - 1 - s;
+    for (std::uint32_t s = 0; s < steps; ++s) number[c.removed[s]] = kVertices - 1 - s;
     std::uint32_t next = 0;
     for (std::uint32_t& n : number) n = n == UINT32_MAX ? next++ : n;
     data.vertex.resize(kVertices);
@@ -79,9 +79,9 @@ ProgressiveMeshData torus() {
     data.error_m.resize(steps + 1);
     for (std::uint32_t s = 0; s < steps; ++s) {
         const std::uint32_t k = steps - 1 - s;
-        data.parent[k] = number[c.into[c.gone[s]]];
+        data.parent[k] = number[c.into[c.removed[s]]];
         data.merged[k] = data.vertex[data.parent[k]];
-        // Another position, so that there is something to copy.
+        // A changed position, so that each contraction copies a vertex.
         data.merged[k].position_m[2] += 1e-7F * static_cast<float>(s);
         data.error_m[k] = 1e-7F * static_cast<float>(s + 1);
     }
@@ -97,13 +97,13 @@ ProgressiveMeshData torus() {
             for (const auto& t :
                  {std::array{at(0, 0), at(1, 0), at(1, 1)}, std::array{at(0, 0), at(1, 1), at(0, 1)}}) {
                 auto v = t;
-                std::uint32_t k = 0;  // index of the lowest level that contains it, counted from the base
+                std::uint32_t k = 0;  // lowest level that contains the triangle, counted from the base
                 while (k == 0) {
                     std::uint32_t& last = *std::max_element(v.begin(), v.end());
                     if (last < data.base_vertices) break;
-                    const std::uint32_t gone = last - data.base_vertices;
-                    last = data.parent[gone];
-                    if (v[0] == v[1] || v[1] == v[2] || v[2] == v[0]) k = gone + 1;
+                    const std::uint32_t removed = last - data.base_vertices;
+                    last = data.parent[removed];
+                    if (v[0] == v[1] || v[1] == v[2] || v[2] == v[0]) k = removed + 1;
                 }
                 triangle.push_back(t);
                 level.push_back(k);
@@ -123,7 +123,7 @@ ProgressiveMeshData torus() {
     return data;
 }
 
-// The times of so many runs; parts_per_ms: 1 for milliseconds.
+// Percentiles of the times of `runs` runs. Unit: 1 ms / parts_per_ms.
 template <class Prepare, class Timed>
 Percentiles times(int runs, double parts_per_ms, Prepare&& prepare, Timed&& timed) {
     std::vector<double> all;
@@ -142,17 +142,17 @@ MeshBench bench_mesh() {
     const ProgressiveMesh mesh(torus());
     MeshCut cut(mesh);
     const std::uint32_t all = mesh.vertices(), few = all / 100 * 28, half = all / 2;
-    const auto go = [&](std::uint32_t vertices) {
+    const auto prepare = [&](std::uint32_t vertices) {
         cut.set_vertices(vertices);
         (void)cut.changes();
     };
     MeshBench bench;
     bench.bytes_per_vertex = static_cast<double>(mesh.memory_bytes()) / all;
     bench.jump_ms = times(
-        15, 1.0, [&] { go(all); }, [&] { go(few); });
+        15, 1.0, [&] { prepare(all); }, [&] { prepare(few); });
     bench.jump_back_ms = times(
-        15, 1.0, [&] { go(few); }, [&] { go(all); });
-    go(few);
+        15, 1.0, [&] { prepare(few); }, [&] { prepare(all); });
+    prepare(few);
     std::vector<std::byte> copy(sizeof(PackedVertex) * few + std::size_t{12} * cut.triangles());
     bench.copy_ms = times(
         15, 1.0, [] {},
@@ -161,15 +161,15 @@ MeshBench bench_mesh() {
             std::memcpy(copy.data() + sizeof(PackedVertex) * few, cut.index().data(),
                         std::size_t{12} * cut.triangles());
         });
-    // A walk of a thousand takes its milliseconds times a thousand in nanoseconds each.
+    // A walk of 1000 steps that takes t ms takes 1000 t ns per step.
     bench.ns_per_contraction = times(
-        101, 1e3, [&] { go(half); }, [&] { cut.set_vertices(half - 1000); });
+        101, 1e3, [&] { prepare(half); }, [&] { cut.set_vertices(half - 1000); });
     bench.ns_per_vertex_split = times(
-        101, 1e3, [&] { go(half - 1000); }, [&] { cut.set_vertices(half); });
+        101, 1e3, [&] { prepare(half - 1000); }, [&] { cut.set_vertices(half); });
     bench.changes_ms = times(
         101, 1.0,
         [&] {
-            go(half);
+            prepare(half);
             cut.set_vertices(half - 1000);
         },
         [&] { (void)cut.changes(); });

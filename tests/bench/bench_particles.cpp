@@ -16,7 +16,7 @@ nlohmann::json bench_particles_by_child() {
     try {
         gui = find_program("tact-gui");
     } catch (const StartupError& e) {
-        std::fprintf(stderr, "tact: particles are not measured: %s\n", e.what());
+        std::fprintf(stderr, "tact: cannot measure particles: %s\n", e.what());
         return nlohmann::json::object();
     }
     const ScratchFolder scratch;
@@ -28,12 +28,12 @@ nlohmann::json bench_particles_by_child() {
     Child child("tact-gui", gui, settings);
     if (fd >= 0) ::close(fd);
     const auto& ending = child.wait(std::chrono::minutes(3));
-    const std::string said = read_small(file);
-    auto numbers = nlohmann::json::parse(said, nullptr, false);
+    const std::string output = read_small(file);
+    auto numbers = nlohmann::json::parse(output, nullptr, false);
     if (!ending || !ending->clean() || !numbers.is_object())
         throw StartupError(
             "measure particles",
-            "tact-gui " + (ending ? ending->text() : "did not end in three minutes") + ": " + said,
+            "tact-gui " + (ending ? ending->text() : "did not exit within three minutes") + ": " + output,
             "run tact-gui --bench-particles by hand");
     return numbers;
 }

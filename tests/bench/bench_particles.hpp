@@ -1,7 +1,7 @@
 // Cost of particles, measured by tact-gui: for `tact bench drilling`. Keys: gui/drilling/bench_particles.hpp.
 //
-// Without   tact-gui on this machine: no keys, and a message on standard error
-// Fails by  StartupError if tact-gui exists and fails
+// Without   tact-gui on this machine: returns no keys and prints a message to standard error
+// Fails by  StartupError if tact-gui fails
 #pragma once
 
 #include <nlohmann/json.hpp>

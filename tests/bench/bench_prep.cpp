@@ -19,12 +19,12 @@ nlohmann::json bench_prep() {
     Child child("tact-prep", find_program("tact-prep"), settings);
     if (fd >= 0) ::close(fd);
     const auto& ending = child.wait(std::chrono::minutes(2));
-    const std::string said = read_small(file);
-    auto numbers = nlohmann::json::parse(said, nullptr, false);
+    const std::string output = read_small(file);
+    auto numbers = nlohmann::json::parse(output, nullptr, false);
     if (!ending || !ending->clean() || !numbers.is_object())
         throw StartupError(
             "measure simplification",
-            "tact-prep " + (ending ? ending->text() : "did not end in two minutes") + ": " + said,
+            "tact-prep " + (ending ? ending->text() : "did not exit within two minutes") + ": " + output,
             "run tact-prep bench by hand");
     return numbers;
 }

@@ -5,7 +5,7 @@
 
 namespace tact::launch {
 
-// Returns the result of `tact-prep bench --json`. Takes about three seconds. Throws StartupError if it fails.
+// Returns the result of `tact-prep bench --json`. Takes about three seconds. Throws StartupError if tact-prep fails.
 [[nodiscard]] nlohmann::json bench_prep();
 
 }  // namespace tact::launch

@@ -42,10 +42,10 @@ LatenessMetrics metrics(const DurationHistogram& h) {
     return {us(0.5), us(0.99), us(0.999), static_cast<double>(h.max_ns()) * 1e-3, h.total()};
 }
 
-// Locks memory and keeps processors awake during the benchmark only.
-class Fitted {
+// Locks memory and keeps processors out of deep idle states while it exists.
+class RealTimeSetup {
 public:
-    Fitted()
+    RealTimeSetup()
         : locked_(mlockall(MCL_CURRENT) == 0),
           latency_fd_(open("/dev/cpu_dma_latency", O_WRONLY | O_CLOEXEC)) {
         const std::int32_t zero = 0;
@@ -54,12 +54,12 @@ public:
             latency_fd_ = -1;
         }
     }
-    ~Fitted() {
+    ~RealTimeSetup() {
         if (latency_fd_ >= 0) close(latency_fd_);
         if (locked_) munlockall();
     }
-    Fitted(const Fitted&) = delete;
-    Fitted& operator=(const Fitted&) = delete;
+    RealTimeSetup(const RealTimeSetup&) = delete;
+    RealTimeSetup& operator=(const RealTimeSetup&) = delete;
 
 private:
     bool locked_;
@@ -69,7 +69,7 @@ private:
 }  // namespace
 
 ServoBench bench_servo(const ServoBenchSettings& settings) {
-    const Fitted fitted;
+    const RealTimeSetup setup;
     const auto cycles = static_cast<std::uint64_t>(settings.seconds / to_s(settings.period));
     Round spun{settings.period, settings.spin_tail, cycles, settings.priority};
     Round asleep{settings.period, Duration{0}, cycles, settings.priority};

@@ -1,9 +1,9 @@
 // Wake-up lateness of a servo thread on this machine: for `tact bench servo`.
 //
-// Method   a thread set up like the servo's (FIFO and last core if permitted, memory locked) runs empty
-//          cycles on the servo's clock and pacer: planned start time, sleep, spin tail, one clock reading. Lateness
-//          is that reading minus the plan, as in tact-rt. A second round without the spin tail shows the kernel's
-//          lateness alone.
+// Method   a thread configured like the servo thread (FIFO scheduling and the last core where permitted, memory locked)
+//          runs empty cycles with the servo's clock and pacer: planned start time, sleep, spin tail, one clock reading.
+//          Lateness is this reading minus the planned start time, as in tact-rt. A second round without the spin tail
+//          measures the lateness of the kernel alone.
 // Takes    `seconds` per round. Throws StartupError if the thread cannot be started.
 #pragma once
 
@@ -28,9 +28,9 @@ struct LatenessMetrics {
 struct ServoBench {
     LatenessMetrics lateness;         // sleep and spin tail
     LatenessMetrics lateness_asleep;  // sleep alone
-    std::uint64_t overruns = 0;       // cycles that woke after the start time of the next one
-    bool fifo = false;                // true: the priority was permitted
-    int core = -1;                    // core of the thread; -1: not pinned
+    std::uint64_t overruns = 0;       // cycles that woke after the start time of the next cycle
+    bool fifo = false;                // true: FIFO scheduling was permitted
+    int core = -1;                    // core that the thread is pinned to; -1: not pinned
 };
 
 [[nodiscard]] ServoBench bench_servo(const ServoBenchSettings& settings = {});

@@ -1,10 +1,11 @@
-// Time and appearance of a frame of bone.
+// Rendering time and appearance of a frame of bone.
 //
-// Bone      the temporal bone of tact-prep, `voxels` per side, in its first view; 960 x 540 pixels
+// Bone      the temporal bone of tact-prep with `voxels` per side, seen in its initial view; 960 x 540 pixels
 // sharp     one ray per pixel of the whole view
-// moving    the view turns a little each frame, so many rays are needed
-// drilled   the view rests, a burr of 3 mm moves through the bone: bricks are uploaded and tiles traced again
-// Picture   TACT_BONE_PICTURE names a PNG for the last frame; the file name gets voxels and case
+// moving    the view rotates slightly in each frame; at most `rays` rays per frame
+// drilled   the view rests, and a burr of 3 mm moves through the bone: bricks are uploaded and tiles are retraced
+// Picture   the environment variable TACT_BONE_PICTURE sets the path prefix of a PNG of the last frame; case and voxels
+//           are appended
 // Skipped   without a display
 #include <benchmark/benchmark.h>
 
@@ -26,7 +27,7 @@ namespace {
 
 constexpr int kWidth = 960, kHeight = 540;
 
-struct BonePicture {
+struct BoneFrame {
     Window window{kWidth, kHeight, true};
     OffscreenTarget target{kWidth, kHeight};
     BoneData bone;
@@ -37,7 +38,7 @@ struct BonePicture {
     std::unique_ptr<BoneView> view;
     Camera camera;
 
-    explicit BonePicture(std::uint32_t voxels) {
+    explicit BoneFrame(std::uint32_t voxels) {
         TemporalBone settings;
         settings.voxels = voxels;
         settings.voxel_m = 50e-3 / voxels;
@@ -73,49 +74,49 @@ struct BonePicture {
         glFinish();
     }
     void save(const char* what) const {
-        if (const char* const picture = std::getenv("TACT_BONE_PICTURE"); picture != nullptr)
-            write_png(std::string(picture) + what + std::to_string(bone.bricks.size[0]) + ".png", kWidth,
+        if (const char* const prefix = std::getenv("TACT_BONE_PICTURE"); prefix != nullptr)
+            write_png(std::string(prefix) + what + std::to_string(bone.bricks.size[0]) + ".png", kWidth,
                       kHeight, read_pixels(kWidth, kHeight).rgb);
     }
 };
 
-// Metrics of a loop of frames, each with its own preparation.
-void bone_pictures(benchmark::State& state, const char* what, std::uint32_t rays,
-                   const std::function<void(BonePicture&, int)>& prepare) {
+// Times a loop of frames. `prepare` runs before each frame.
+void time_frames(benchmark::State& state, const char* what, std::uint32_t rays,
+                 const std::function<void(BoneFrame&, int)>& prepare) {
     if (std::getenv("DISPLAY") == nullptr) {
         state.SkipWithError("no display");
         return;
     }
-    BonePicture picture(static_cast<std::uint32_t>(state.range(0)));
-    picture.draw(1U << 30U);
+    BoneFrame frame(static_cast<std::uint32_t>(state.range(0)));
+    frame.draw(1U << 30U);
     double sent = 0.0;
     int n = 0;
     for (auto _ : state) {
-        prepare(picture, n++);
-        picture.draw(rays);
-        sent += picture.view->rays();
+        prepare(frame, n++);
+        frame.draw(rays);
+        sent += frame.view->rays();
     }
     state.counters["rays"] = sent / static_cast<double>(state.iterations());
-    state.SetLabel(picture.window.renderer());
-    picture.save(what);
+    state.SetLabel(frame.window.renderer());
+    frame.save(what);
 }
 
 void sharp(benchmark::State& state) {
-    bone_pictures(state, "sharp", 1U << 30U,
-                  [](BonePicture& p, int n) { p.camera.rotate(n % 2 == 0 ? 1.0F : -1.0F, 0.0F, kHeight); });
+    time_frames(state, "sharp", 1U << 30U,
+                [](BoneFrame& p, int n) { p.camera.rotate(n % 2 == 0 ? 1.0F : -1.0F, 0.0F, kHeight); });
 }
 void moving(benchmark::State& state) {
-    bone_pictures(state, "moving", static_cast<std::uint32_t>(state.range(1)),
-                  [](BonePicture& p, int n) { p.camera.rotate(n % 64 < 32 ? 3.0F : -3.0F, 0.5F, kHeight); });
+    time_frames(state, "moving", static_cast<std::uint32_t>(state.range(1)),
+                [](BoneFrame& p, int n) { p.camera.rotate(n % 64 < 32 ? 3.0F : -3.0F, 0.5F, kHeight); });
 }
-// Over the side of the first view, 1 mm deep, 0.5 mm per frame.
+// Moves across the side that faces the initial view, 1 mm deep, 0.5 mm per frame.
 void drilled(benchmark::State& state) {
-    bone_pictures(state, "drilled", 1U << 30U, [](BonePicture& p, int n) {
+    time_frames(state, "drilled", 1U << 30U, [](BoneFrame& p, int n) {
         const BoneBricks& b = p.bone.bricks;
         const double edge = b.size[0], r = 3e-3 / b.voxel_m;
-        const double way = std::fmod(0.5e-3 / b.voxel_m * n, 0.3 * edge);
-        // The point at which the line of sight through `at` meets bone.
-        Vec3 at(0.35 * edge + way, 0.45 * edge, edge - 2.0);
+        const double travel = std::fmod(0.5e-3 / b.voxel_m * n, 0.3 * edge);
+        // The intersection of the bone with the line of sight through `at`.
+        Vec3 at(0.35 * edge + travel, 0.45 * edge, edge - 2.0);
         while (at.z() > 0.0 &&
                p.drilled[b.voxel(static_cast<std::uint32_t>(at.x()), static_cast<std::uint32_t>(at.y()),
                                  static_cast<std::uint32_t>(at.z()))] < 77)

@@ -1,6 +1,6 @@
-// The clash force: a ball of protein of 3500 atoms that moves among others, by the number of others in contact.
+// Time of the clash force: a ball of protein of 3500 atoms moves among others.
 //
-// Arguments of a run: bodies around it, distance of their centres in angstrom (radii are 25: 48 is contact).
+// Arguments  number of other bodies; distance of their centres in angstrom (the radii are 25, so 48 is contact)
 #include <benchmark/benchmark.h>
 
 #include <cmath>
@@ -38,7 +38,7 @@ void clash(benchmark::State& state) {
     int i = 0;
     std::uint32_t points = 0;
     for (auto _ : state) {
-        ++i;  // a body that moves a little, as in a hand
+        ++i;  // the body moves slightly, as in a hand
         const Pose pose{kA * Vec3(std::sin(1e-3 * i), std::cos(2e-3 * i), std::sin(3e-3 * i)),
                         quat_from_rotation_vector(0.1 * Vec3(std::cos(1e-3 * i), std::sin(1e-3 * i), 0.5))};
         ClashResult result = clash_force({&field, pose}, others, 6e6, {});

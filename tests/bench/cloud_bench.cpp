@@ -1,8 +1,9 @@
-// Time and appearance of a frame of dust, water, blood and paste in a hole in bone.
+// Rendering time and appearance of a frame of dust, water, blood and paste in a hole in bone.
 //
 // Size      960 x 540 pixels; the hole fills most of the frame
-// Metrics   ms per frame, of the particles alone: the bone behind them is a mesh that is drawn once
-// Picture   TACT_CLOUD_PICTURE names a PNG for the largest case
+// Metrics   ms per frame for the particles alone; the bone behind them is a mesh, whose drawing is not timed
+// Picture   the environment variable TACT_CLOUD_PICTURE sets the path prefix of a PNG per case; the number of particles
+//           is appended
 // Skipped   without a display
 #include <benchmark/benchmark.h>
 
@@ -25,7 +26,7 @@ namespace {
 constexpr int kWidth = 960, kHeight = 540;
 constexpr std::uint32_t kEdge = 128;
 
-// A plate at z = 60 with a bowl that opens towards z.
+// Density of a plate at z = 60 with a bowl that is open towards +z.
 double solid(const Vec3& p) {
     const double bowl = (p - Vec3(64.0, 64.0, 62.0)).norm();
     const double plate =
@@ -52,7 +53,7 @@ std::shared_ptr<SceneContent> content_of(const BoneBlock& bone) {
     return content;
 }
 
-// Drilled for some seconds: dust from the burr, water and blood from the wall.
+// Adds the particles of some seconds of drilling: dust from the burr, water, and blood from the wall.
 void fill(Particles& particles, const BoneBricks& bricks, std::uint32_t most) {
     SeededRandom random(1);
     const double down = 0.01;
@@ -138,8 +139,8 @@ void cloud(benchmark::State& state) {
     state.counters["fluids"] = static_cast<double>(particle_cloud.sent().fluids);
     state.counters["fill_ms"] = 1e3 * filling_s / static_cast<double>(state.iterations());
     state.SetLabel(window.renderer());
-    if (const char* const picture = std::getenv("TACT_CLOUD_PICTURE"); picture != nullptr)
-        write_png(std::string(picture) + std::to_string(most) + ".png", kWidth, kHeight,
+    if (const char* const prefix = std::getenv("TACT_CLOUD_PICTURE"); prefix != nullptr)
+        write_png(std::string(prefix) + std::to_string(most) + ".png", kWidth, kHeight,
                   read_pixels(kWidth, kHeight).rgb);
 }
 BENCHMARK(cloud)

@@ -1,7 +1,8 @@
-// The inner loop of docking: sums over points of a density map, by kernel, number of points and voxel size.
+// Time of the inner loop of docking: sums of a density map over points, by kernel, number of points and voxel size.
 //
-// For each kernel of this processor: 200 points in random order (a codebook) and 100 000 along a Morton curve
-// (atoms), as the force model stores them. Arguments of a run: points, voxel in picometres.
+// Cases      each kernel that this processor supports, with 200 points in random order (a codebook) and 100 000 points
+//            along a Morton curve (atoms), as the force model stores them
+// Arguments  number of points; voxel size in picometres
 #include <benchmark/benchmark.h>
 
 #include <cmath>
@@ -18,7 +19,7 @@
 namespace tact {
 namespace {
 
-// A ball of protein: one heavy atom per 18 cubic angstrom at 100 000 atoms.
+// A ball of protein; with 100 000 atoms, one heavy atom per 18 cubic angstrom.
 constexpr double kBallM = 75e-10;
 
 PointSet ball(std::size_t count) {
@@ -55,7 +56,7 @@ void sum(benchmark::State& state, const DensityKernel* kernel) {
     const Vec3 middle = Vec3::Constant(100e-10);
     int i = 0;
     for (auto _ : state) {
-        ++i;  // a body that moves a little, as in a hand
+        ++i;  // the body moves slightly, as in a hand
         const Pose pose{middle + 5e-10 * Vec3(std::sin(1e-3 * i), std::cos(2e-3 * i), std::sin(3e-3 * i)),
                         quat_from_rotation_vector(0.1 * Vec3(std::cos(1e-3 * i), std::sin(1e-3 * i), 0.5))};
         benchmark::DoNotOptimize(map.sum(points.view(), pose));

@@ -1,8 +1,8 @@
-// Time of a frame: bodies by style, with the number of atoms of a large complex; contours during extraction.
+// Time of a frame with the atoms of a large complex, by rendering style; time of a contour extraction.
 //
-// Size      960 x 540 pixels, 27,000 atoms in a ball with the density of a protein, which fills the height.
-// Measured  see gui/README.md.
-// Skipped   without a display.
+// Size      960 x 540 pixels; 27,000 atoms in a ball with the density of a protein, which fills the height of the frame
+// Measured  see gui/README.md
+// Skipped   without a display
 #include <benchmark/benchmark.h>
 
 #include <cstdlib>
@@ -21,7 +21,7 @@ constexpr int kWidth = 960, kHeight = 540;
 Structure ball_of_atoms(std::size_t atoms) {
     std::mt19937 random(1);
     std::uniform_real_distribution<double> unit(-1.0, 1.0);
-    // 20 cubic ångström per atom, without hydrogens.
+    // 20 cubic angstrom per atom, without hydrogens.
     const double radius_m = 1e-10 * std::cbrt(20.0 * static_cast<double>(atoms) * 0.75 / 3.14159265);
     Structure s;
     while (s.size() < atoms) {

@@ -1,10 +1,12 @@
-// What a level of the drilling knob costs, what error it reports, and how far its force is from the full level's.
+// Cost, reported error and force deviation of each level of the drilling knob.
 //
-// Stroke    60 mm/s to and fro over solid bone with a grain, down to 1 mm in 0.3 s, then fed by 3 mm/s; default rates, one
-//           pass, bone afresh for every level. Servo of `hz`.
-// Figures   us: of DrillModel::step() and of the force alone (ball_moments at the same place); items and error reported;
-//           n_off: to the force of the full level in the same step; predicted: cost of predict() before the step,
-//           over that of the step. Measured in rt/force/drilling/README.md.
+// Stroke    60 mm/s to and fro in solid bone with a grain, down to 1 mm in 0.3 s, then with a feed of 3 mm/s; default
+//           erosion rate, one pass, undrilled bone for each level. Servo rate `hz`.
+// Metrics   us: time of DrillModel::step(); force_us: time of the force alone (ball_moments() at the same position);
+//           items, error_n: as reported by the step; n_off: deviation (N) from the force at the full level in the same
+//           step; n_step: change of the force between two steps (N); predicted: cost predicted by predict() before the
+//           step, relative to the measured cost
+// Measured  see rt/force/drilling/README.md
 #include <benchmark/benchmark.h>
 
 #include <algorithm>
@@ -37,10 +39,11 @@ struct Bone {
     }
 };
 
-double part_of(std::vector<double> values, double part) {
+double quantile(std::vector<double> values, double fraction) {
     std::sort(values.begin(), values.end());
-    return values.empty() ? 0.0
-                          : values[static_cast<std::size_t>(part * static_cast<double>(values.size() - 1))];
+    return values.empty()
+               ? 0.0
+               : values[static_cast<std::size_t>(fraction * static_cast<double>(values.size() - 1))];
 }
 
 std::map<std::tuple<std::int64_t, std::int64_t, std::int64_t>, std::vector<Vec3>> full_level_n;
@@ -67,21 +70,22 @@ void level(benchmark::State& state) {
         Budget budget;
         budget.fidelity = fidelity;
         const double span_m = std::min(0.3 * edge * voxel_m, 10.0 * radius_m);
-        auto& whole = full_level_n[{state.range(0), state.range(1), state.range(2)}];
-        if (fidelity == 1.0F) whole.clear();
+        auto& reference_n = full_level_n[{state.range(0), state.range(1), state.range(2)}];
+        if (fidelity == 1.0F) reference_n.clear();
         const int steps = static_cast<int>(1.0 / step_s);
         Vec3 before_n = Vec3::Zero();
         for (int i = 0; i < steps; ++i) {
-            const double t = step_s * i, way_m = std::fmod(0.06 * t, 2.0 * span_m);
+            const double t = step_s * i, travel_m = std::fmod(0.06 * t, 2.0 * span_m);
             const double depth_m = t < 0.3 ? t / 0.3 * 1e-3 : 1e-3 + 3e-3 * (t - 0.3);
             ToolState tool;
-            tool.T_world_tool.p_m = Vec3((way_m < span_m ? way_m : 2.0 * span_m - way_m) - 0.5 * span_m,
-                                         0.1 * radius_m * std::sin(9.0 * t), radius_m - depth_m);
+            tool.T_world_tool.p_m =
+                Vec3((travel_m < span_m ? travel_m : 2.0 * span_m - travel_m) - 0.5 * span_m,
+                     0.1 * radius_m * std::sin(9.0 * t), radius_m - depth_m);
             if (i == 0) model.reset(tool);
             const double predicted_us = to_us(model.predict(fidelity).cost_predicted);
             const StepResult result = model.step(tool, budget);
             const Vec3 force_n = result.wrench_world.force_n;
-            if (fidelity == 1.0F) whole.push_back(force_n);
+            if (fidelity == 1.0F) reference_n.push_back(force_n);
             const double moved_n = (force_n - before_n).norm();
             before_n = force_n;
             if (t < 0.3) continue;
@@ -89,7 +93,7 @@ void level(benchmark::State& state) {
             const double radius = radius_m / voxel_m;
             const Instant begin = Monotonic::now();
             BallMoments m = ball_moments(shared.octree, best_brick_kernels(), centre, radius,
-                                               DrillModel::block_of(fidelity) * radius, model.depth());
+                                         DrillModel::block_of(fidelity) * radius, model.depth());
             benchmark::DoNotOptimize(m.m0);
             force_us.push_back(to_us(Monotonic::now() - begin));
             us.push_back(to_us(result.load.cost));
@@ -97,25 +101,25 @@ void level(benchmark::State& state) {
             items.push_back(result.load.items);
             error_n.push_back(result.load.error);
             step_n.push_back(moved_n);
-            if (static_cast<std::size_t>(i) < whole.size())
-                off_n.push_back((force_n - whole[static_cast<std::size_t>(i)]).norm());
+            if (static_cast<std::size_t>(i) < reference_n.size())
+                off_n.push_back((force_n - reference_n[static_cast<std::size_t>(i)]).norm());
         }
         removed_mm3 = 1e9 * model.removed_m3();
     }
-    state.counters["us_p50"] = part_of(us, 0.5);
-    state.counters["us_p99"] = part_of(us, 0.99);
-    state.counters["us_p999"] = part_of(us, 0.999);
-    state.counters["force_us_p50"] = part_of(force_us, 0.5);
-    state.counters["items_p50"] = part_of(items, 0.5);
-    state.counters["error_n_p50"] = part_of(error_n, 0.5);
-    state.counters["n_off_p50"] = part_of(off_n, 0.5);
-    state.counters["n_off_max"] = part_of(off_n, 1.0);
-    state.counters["n_step_p99"] = part_of(step_n, 0.99);
-    state.counters["n_step_max"] = part_of(step_n, 1.0);
-    state.counters["predicted_p50"] = part_of(ratio, 0.5);
+    state.counters["us_p50"] = quantile(us, 0.5);
+    state.counters["us_p99"] = quantile(us, 0.99);
+    state.counters["us_p999"] = quantile(us, 0.999);
+    state.counters["force_us_p50"] = quantile(force_us, 0.5);
+    state.counters["items_p50"] = quantile(items, 0.5);
+    state.counters["error_n_p50"] = quantile(error_n, 0.5);
+    state.counters["n_off_p50"] = quantile(off_n, 0.5);
+    state.counters["n_off_max"] = quantile(off_n, 1.0);
+    state.counters["n_step_p99"] = quantile(step_n, 0.99);
+    state.counters["n_step_max"] = quantile(step_n, 1.0);
+    state.counters["predicted_p50"] = quantile(ratio, 0.5);
     state.counters["removed_mm3"] = removed_mm3;
 }
-// The full level first: the others are compared with it.
+// The full level runs first, as the reference for the other levels.
 void sweep(benchmark::internal::Benchmark* b) {
     for (const auto& [r, h] : {std::pair{30, 3}, {200, 3}, {30, 1}, {200, 1}})
         for (const int hz : {1000, 4000})

@@ -26,7 +26,7 @@ double waves(double x, double y, double z) {
            0.5 * std::sin(2.9 * x - 1.9 * y + 2.3 * z);
 }
 
-// Counts voxels of bone, brick by brick; counts again only bricks whose revision changed.
+// Counts the voxels of bone in each brick; recounts only bricks whose revision has changed.
 class SolidVoxels {
 public:
     SolidVoxels(const BoneSample& bone, const std::vector<std::uint32_t>& revision)
@@ -89,20 +89,20 @@ BoneSample bone_of_raw_file(const std::filesystem::path& file, std::array<std::u
     bone.bricks = {.size = voxels, .voxel_m = voxel_m, .origin_m = Vec3::Constant(0.5 * voxel_m)};
     const std::uint64_t bytes = std::uint64_t{voxels[0]} * voxels[1] * voxels[2];
     std::error_code none;
-    const auto there = std::filesystem::file_size(file, none);
-    if (none || there != bytes)
-        throw StartupError(
-            attempt,
-            none ? none.message()
-                 : "it has " + std::to_string(there) + " bytes instead of " + std::to_string(bytes),
-            "use a raw file of one byte per voxel, and give its size with --size X Y Z");
+    const auto bytes_found = std::filesystem::file_size(file, none);
+    if (none || bytes_found != bytes)
+        throw StartupError(attempt,
+                           none ? none.message()
+                                : "the file has " + std::to_string(bytes_found) + " bytes instead of " +
+                                      std::to_string(bytes),
+                           "use a raw file of one byte per voxel, and set its size with --size X Y Z");
     std::ifstream in(file, std::ios::binary);
     bone.density.assign(bone.bricks.bytes(), 0);
     std::vector<char> row(voxels[0]);
     for (std::uint32_t z = 0; z < voxels[2]; ++z)
         for (std::uint32_t y = 0; y < voxels[1]; ++y) {
             if (!in.read(row.data(), static_cast<std::streamsize>(row.size())))
-                throw StartupError(attempt, "the file ended early", "copy it again");
+                throw StartupError(attempt, "the file is shorter than expected", "copy it again");
             for (std::uint32_t x = 0; x < voxels[0]; ++x)
                 bone.density[bone.bricks.voxel(x, y, z)] = static_cast<std::uint8_t>(row[x]);
         }
@@ -129,39 +129,41 @@ float default_fidelity() {
                               std::log(DrillModel::kBlockFine / DrillModel::kBlockCoarse));
 }
 
-std::vector<DrillStep> drill_along(BoneSample& bone, const std::vector<Vec3>& path_m, const DrillWay& way) {
-    const std::vector<std::uint8_t> fresh = way.passes > 1 ? bone.density : std::vector<std::uint8_t>{};
+std::vector<DrillStep> drill_along(BoneSample& bone, const std::vector<Vec3>& path_m,
+                                   const DrillRunSettings& settings) {
+    const std::vector<std::uint8_t> undrilled =
+        settings.passes > 1 ? bone.density : std::vector<std::uint8_t>{};
     std::vector<DrillStep> steps(path_m.size());
-    DrillSettings settings;
-    settings.tool.shape = way.shape;
-    settings.tool.radius_m = way.radius_m;
-    settings.tool.length_m = way.length_m;
-    settings.tool.tip_radius_m = way.tip_radius_m;
-    settings.tool.shaft_radius_m = 0.0;
-    settings.force_n_max = 100.0;
+    DrillSettings model_settings;
+    model_settings.tool.shape = settings.shape;
+    model_settings.tool.radius_m = settings.radius_m;
+    model_settings.tool.length_m = settings.length_m;
+    model_settings.tool.tip_radius_m = settings.tip_radius_m;
+    model_settings.tool.shaft_radius_m = 0.0;
+    model_settings.force_n_max = 100.0;
     std::vector<std::uint32_t> revision(bone.bricks.brick_count());
-    const auto go = [&](int pass) {
-        if (pass > 0) bone.density = fresh;
+    const auto run_pass = [&](int pass) {
+        if (pass > 0) bone.density = undrilled;
         DrillBone drilled(bone.bricks, bone.density, revision);
-        DrillModel model(plain_meta(), drilled, settings);
+        DrillModel model(plain_meta(), drilled, model_settings);
         ToolState tool;
         if (!path_m.empty()) tool.T_world_tool.p_m = path_m.front();
         model.reset(tool);
-        model.turn_burr({.burr_rad_s = 0.0, .step_s = way.step_s});
-        for (int i = 0; i < ForceFade::ramp_steps(way.step_s); ++i)
-            static_cast<void>(model.step(tool, {.fidelity = way.fidelity}));
+        model.turn_burr({.burr_rad_s = 0.0, .step_s = settings.step_s});
+        for (int i = 0; i < ForceFade::ramp_steps(settings.step_s); ++i)
+            static_cast<void>(model.step(tool, {.fidelity = settings.fidelity}));
         std::uint64_t removed = model.removed_levels();
         SolidVoxels solid(bone, revision);
-        if (way.count_voxels) static_cast<void>(solid.lost());
-        model.turn_burr({.burr_rad_s = way.burr_rad_s, .step_s = way.step_s});
-        LoopPace pace(way.paced && pass == 0 ? way.step_s : 0.0);
+        if (settings.count_voxels) static_cast<void>(solid.lost());
+        model.turn_burr({.burr_rad_s = settings.burr_rad_s, .step_s = settings.step_s});
+        LoopPace pace(settings.paced && pass == 0 ? settings.step_s : 0.0);
         for (std::size_t i = 0; i < path_m.size(); ++i) {
             tool.twist_world.linear_m_s =
-                i == 0 ? Vec3(Vec3::Zero()) : Vec3((path_m[i] - path_m[i - 1]) / way.step_s);
+                i == 0 ? Vec3(Vec3::Zero()) : Vec3((path_m[i] - path_m[i - 1]) / settings.step_s);
             tool.T_world_tool.p_m = path_m[i];
             pace.wait();
             const Instant begin = Monotonic::now();
-            const StepResult result = model.step(tool, {.fidelity = way.fidelity});
+            const StepResult result = model.step(tool, {.fidelity = settings.fidelity});
             const double us = to_us(Monotonic::now() - begin);
             DrillStep& step = steps[i];
             if (pass == 0) step.us = us;
@@ -169,14 +171,14 @@ std::vector<DrillStep> drill_along(BoneSample& bone, const std::vector<Vec3>& pa
             step.force_n = result.wrench_world.force_n;
             step.removed_levels = model.removed_levels() - removed;
             removed = model.removed_levels();
-            if (way.count_voxels) step.removed_voxels = solid.lost();
+            if (settings.count_voxels) step.removed_voxels = solid.lost();
         }
     };
-    for (int pass = 0; pass < way.passes; ++pass) {
-        if (way.paced && pass == 0)
-            run_as_loop(kServoPriority, [&] { go(0); });
+    for (int pass = 0; pass < settings.passes; ++pass) {
+        if (settings.paced && pass == 0)
+            run_as_loop(kServoPriority, [&] { run_pass(0); });
         else
-            go(pass);
+            run_pass(pass);
     }
     return steps;
 }

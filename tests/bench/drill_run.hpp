@@ -1,11 +1,12 @@
-// Moves a burr along a stroke through bone, step by step, for measurements: forces, times and removed voxels.
+// Moves a burr along a stroke through bone, step by step, and measures forces, times and removed voxels.
 //
-// Method   whole steps of the servo's model, force and erosion together, without a servo. A stroke is gone along `passes`
-//          times, each time through fresh bone: the same steps, bit by bit. The first pass is timed as a loop would see
-//          it, paced in a thread like the servo's where asked for; best_us is the least time of a step in all passes.
-// Bone     a block made in code, or any raw volume. Bone up to 78 % of its height, under a wavy surface: a dense shell, and
-//          air cells deeper.
-// Frame    model metres, as large as in the hand's space; voxel (0, 0, 0) is centred on half a voxel
+// Method   runs whole steps of the servo's model, force and erosion together, without a servo. The stroke runs `passes`
+//          times, each time through undrilled bone; the passes are identical bit by bit. If `paced` is set, the first
+//          pass runs at the rate of a loop, in a thread configured like the servo thread. best_us is the minimum time
+//          of a step over all passes.
+// Bone     a synthetic block or a raw volume. The block holds bone up to 78 % of its height, below a wavy surface: a
+//          dense shell with air cells beneath.
+// Frame    model metres, at the scale of the hand's workspace; voxel (0, 0, 0) is centred half a voxel from the corner
 #pragma once
 
 #include <cstdint>
@@ -26,27 +27,27 @@ struct BoneSample {
 };
 
 [[nodiscard]] BoneSample bone_block(std::array<std::uint32_t, 3> voxels, double voxel_m);
-// Reads raw bytes, x fastest, without a header. Fails by StartupError if the file has another size.
+// Reads raw bytes, x fastest, without a header. Fails by StartupError if the size of the file does not match.
 [[nodiscard]] BoneSample bone_of_raw_file(const std::filesystem::path& file,
                                           std::array<std::uint32_t, 3> voxels, double voxel_m);
 // Height of the block's surface at (x_m, y_m).
 [[nodiscard]] double block_surface_m(const BoneSample& bone, double x_m, double y_m);
 
-// Descends to the bone in half a second, then strokes 18 mm (or a fifth of the block) to both sides, half a cycle per
-// second, with a feed of 0.3 mm/s.
+// Lowers the burr to the bone in half a second, then moves it to and fro with an amplitude of 18 mm (at most a fifth of
+// the block) at 0.5 Hz, with a feed of 0.3 mm/s.
 [[nodiscard]] std::vector<Vec3> drill_stroke_m(const BoneSample& bone, double radius_m, std::size_t steps);
 
 struct DrillStep {
     Vec3 force_n = Vec3::Zero();
     double us = 0.0;         // in the first pass
-    double best_us = 1e300;  // least of all passes
+    double best_us = 1e300;  // minimum over all passes
     std::uint64_t removed_levels = 0;
     std::uint64_t removed_voxels = 0;  // voxels that became empty
 };
 
-[[nodiscard]] float default_fidelity();  // gives the block size DrillModel::kBlockDefault
+[[nodiscard]] float default_fidelity();  // fidelity of the block size DrillModel::kBlockDefault
 
-struct DrillWay {
+struct DrillRunSettings {
     float fidelity = default_fidelity();
     double radius_m = 3e-3;
     BurrShape shape = BurrShape::sphere;
@@ -54,15 +55,17 @@ struct DrillWay {
     double step_s = kDrillStepS;
     double burr_rad_s = 2.0 * 3.14159265358979323846 * 1000.0;
     int passes = 1;
-    bool paced = false;         // the first pass: see loop_thread.hpp; else steps follow each other at once
-    bool count_voxels = false;  // takes longer than the steps; not in their time
+    bool paced = false;  // true: the first pass is paced (loop_thread.hpp); false: all run without pauses
+    bool count_voxels = false;  // slower than the steps; not included in their times
 };
 
-// bone: in the end as the last pass left it.
+// Runs the stroke. Afterwards `bone` is as drilled by the last pass.
 [[nodiscard]] std::vector<DrillStep> drill_along(BoneSample& bone, const std::vector<Vec3>& path_m,
-                                                 const DrillWay& way);
+                                                 const DrillRunSettings& settings);
 
-[[nodiscard]] Percentiles times_us(const std::vector<DrillStep>& steps);       // of the first pass
-[[nodiscard]] Percentiles best_times_us(const std::vector<DrillStep>& steps);  // of the best of all passes
+// Of the first pass.
+[[nodiscard]] Percentiles times_us(const std::vector<DrillStep>& steps);
+// Of the minimum over all passes.
+[[nodiscard]] Percentiles best_times_us(const std::vector<DrillStep>& steps);
 
 }  // namespace tact::launch

@@ -1,12 +1,13 @@
-// A burr that strokes over bone and sinks into it: time of the servo's step, force and erosion together.
+// Time of a drilling step of the servo, force and erosion together: a burr moves to and fro in bone and sinks into it.
 //
-// Case      radius and voxel in tenths of a millimetre, shaft or none; 60 mm/s to and fro, sinking by 0.6 R per second,
-//           default level, solid bone with a grain. 512^3 voxels of 0.1 mm if the environment variable
-//           TACT_BENCH_LARGE is set, otherwise 192^3.
-// Metrics   step_us: of DrillModel::step(); bricks: changed per step; mhz: median of a counting loop between the steps, as a
-//           reference for the machine.
-// Kernels   ns per brick in the surface of a ball of 10 voxels, of sixteen cuts, and of an update of its moments.
-// Measured  see rt/force/drilling/README.md.
+// Arguments  r, h: burr radius and voxel size in tenths of a millimetre; shaft: 1 with shaft, 0 without
+// Stroke     60 mm/s to and fro, sinking by 0.6 R in the first second; default level; solid bone with a grain. Voxels
+//            of 0.1 mm: 512^3 if the environment variable TACT_BENCH_LARGE is set, otherwise 192^3.
+// Metrics    step_us: time of DrillModel::step(); bricks: bricks changed per step; mhz: median speed of a counting loop
+//            between the steps, as a reference for the machine
+// Kernels    ns for one brick at the surface of a ball of 10 voxels (sum, erode), for sixteen cuts (cut16), and to
+//            update the moments of a brick (pull)
+// Measured   see rt/force/drilling/README.md
 #include <benchmark/benchmark.h>
 
 #include <algorithm>
@@ -52,10 +53,11 @@ double counting_mhz() {
     return kCounts / std::max(to_us(Monotonic::now() - begin), 1e-3);
 }
 
-double part_of(std::vector<double>& values, double part) {
+double quantile(std::vector<double>& values, double fraction) {
     std::sort(values.begin(), values.end());
-    return values.empty() ? 0.0
-                          : values[static_cast<std::size_t>(part * static_cast<double>(values.size() - 1))];
+    return values.empty()
+               ? 0.0
+               : values[static_cast<std::size_t>(fraction * static_cast<double>(values.size() - 1))];
 }
 
 void stroke(benchmark::State& state) {
@@ -84,16 +86,16 @@ void stroke(benchmark::State& state) {
         budget.fidelity = model.knob().start;
         const double span_m = std::min(0.3 * edge * voxel_m, 10.0 * radius_m);
         for (int i = 0; i < 1500; ++i) {
-            const double t = 1e-3 * i, way_m = std::fmod(0.06 * t, 2.0 * span_m);
+            const double t = 1e-3 * i, travel_m = std::fmod(0.06 * t, 2.0 * span_m);
             ToolState tool;
             tool.T_world_tool.p_m =
-                Vec3((way_m < span_m ? way_m : 2.0 * span_m - way_m) - 0.5 * span_m,
+                Vec3((travel_m < span_m ? travel_m : 2.0 * span_m - travel_m) - 0.5 * span_m,
                      0.3 * radius_m * std::sin(9.0 * t), radius_m * (0.9 - 0.6 * std::min(1.0, t)));
             if (i == 0) model.reset(tool);
             mhz.push_back(counting_mhz());
             StepResult result = model.step(tool, budget);
             benchmark::DoNotOptimize(result.wrench_world.force_n.x());
-            if (i < 300) continue;  // the force fades in
+            if (i < 300) continue;  // the force is still fading in
             us.push_back(to_us(result.load.cost));
             bricks += model.cut().bricks;
             depth += model.depth();
@@ -102,13 +104,13 @@ void stroke(benchmark::State& state) {
         removed_mm3 = static_cast<double>(model.removed_levels()) / 255.0 * std::pow(1e3 * voxel_m, 3.0);
     }
     const auto n = static_cast<double>(steps);
-    state.counters["step_us_p50"] = part_of(us, 0.5);
-    state.counters["step_us_p99"] = part_of(us, 0.99);
+    state.counters["step_us_p50"] = quantile(us, 0.5);
+    state.counters["step_us_p99"] = quantile(us, 0.99);
     state.counters["bricks"] = bricks / n;
     state.counters["depth"] = depth / n;
     state.counters["removed_mm3"] = removed_mm3;
-    state.counters["build_ms"] = part_of(build_ms, 0.5);
-    state.counters["mhz"] = part_of(mhz, 0.5);
+    state.counters["build_ms"] = quantile(build_ms, 0.5);
+    state.counters["mhz"] = quantile(mhz, 0.5);
 }
 BENCHMARK(stroke)
     ->ArgNames({"r", "h", "shaft"})

@@ -1,5 +1,5 @@
-// Cost of the fit of bodies in a map, and of a refinement: 100^3 voxels of 2.7 Å at 11.5 Å, like a map of a
-// chaperonin, with the number of atoms of its ring of seven.
+// Time to evaluate the fit of bodies in a map and to refine a pose. Map: 100^3 voxels of 2.7 Å at a resolution of
+// 11.5 Å, like a map of a chaperonin; bodies with the number of atoms of its seven-membered ring.
 #include <benchmark/benchmark.h>
 
 #include "ipc/base/random.hpp"

@@ -1,4 +1,4 @@
-// Cost of shared memory: publish and read of each state, push and next of each ring, in a mapped region.
+// Cost of the shared-memory types: publish and read of each state topic, push and next of each ring.
 #include <benchmark/benchmark.h>
 
 #include <memory>

@@ -57,7 +57,8 @@ LoopThread run_as_loop(int priority, const std::function<void()>& work) {
     pthread_t thread{};
     const int error = pthread_create(&thread, nullptr, &start, &w);
     if (error != 0)
-        throw StartupError("starting the bench's servo thread", std::strerror(error), "free some memory");
+        throw StartupError("starting the servo thread of the benchmark", std::strerror(error),
+                           "free some memory");
     pthread_join(thread, nullptr);
     if (w.thrown) std::rethrow_exception(w.thrown);
     return w.thread;

@@ -1,6 +1,6 @@
 // tact-bench: measures the performance of a PC. `tact bench` starts it.
 //
-// Exit  0  measured; 1  error; 2  wrong usage
+// Exit  0  done; 1  error; 2  wrong usage
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cstdio>
@@ -29,7 +29,7 @@ struct Measure {
     const char* name;
     const char* help;
     json (*run)();
-    bool only_named = false;  // too long and too large for a default run
+    bool only_named = false;  // true: not part of a default run, because it takes long or needs much memory
 };
 
 json ipc() {
@@ -104,25 +104,23 @@ GovernorBenchSettings& governor_settings() {
 json governor() { return bench_governor(governor_settings()); }
 
 constexpr Measure kMeasures[] = {
-    {"servo", "lateness of a cycle of 1 ms", &servo},
+    {"servo", "cycle lateness of a 1 kHz loop", &servo},
     {"docking",
-     "time of one docking force at 1 kHz, of a change of surface detail, and of mesh simplification",
+     "time to compute one docking force at 1 kHz, to change the detail of a surface, and to simplify a mesh",
      &docking_and_meshes},
     {"surface",
      "time of one contact step at 1 kHz on surfaces of 92 480, 2 million and 10 million triangles; takes "
-     "minutes "
-     "and 4 GB",
+     "several minutes and 4 GB of memory",
      &bench_surface, true},
     {"drilling",
-     "time of a drilling step (force and erosion) at 1 kHz for burrs of 1 to 20 mm, and of moving particles; "
-     "takes "
-     "three minutes",
+     "time of one drilling step (force and erosion) at 1 kHz for burr radii of 1 to 20 mm, and of one "
+     "particle move; takes three minutes",
      &drilling_and_particles, true},
     {"governor",
-     "deadline misses, error and force steps of adaptive runs and of fixed levels, at 1, 2 and 4 kHz and "
-     "free running; takes half an hour",
+     "deadline misses, force error and force steps of runs with adaptive and with fixed levels, at 1, 2 and "
+     "4 kHz and free running; takes half an hour",
      &governor, true},
-    {"ipc", "time to publish and to read the state of a servo cycle", &ipc},
+    {"ipc", "time to publish and to read the state of one servo cycle", &ipc},
 };
 
 int bench(const std::vector<std::string>& wanted, bool as_json) {
@@ -151,10 +149,8 @@ void describe(CLI::App& app, int& exit_code) {
     const auto as_json = std::make_shared<bool>(false);
     std::vector<std::string> names;
     std::string help =
-        "Measurements to run; default: all but surface, drilling and governor. Percentiles (p50, p99, p999) "
-        "and the "
-        "maximum are of "
-        "one pass in the order of time; the best of several passes is named so (best_of_3).";
+        "Measurements to run; default: all except surface, drilling and governor. Percentiles (p50, p99, "
+        "p999) and max describe a single pass; the keys of the minimum over three passes contain best_of_3.";
     for (const Measure& m : kMeasures) {
         names.emplace_back(m.name);
         help += std::string(" ") + m.name + ": " + m.help + ".";
@@ -162,71 +158,70 @@ void describe(CLI::App& app, int& exit_code) {
     command->add_option("WHAT", *wanted, help)->check(CLI::IsMember(names));
     command->add_flag("--json", *as_json, "Print as JSON");
     const auto work = std::make_shared<SurfaceWork>();
-    auto* const group = command->add_option_group("Surface", "Measurement on your own data, printed as CSV");
-    auto* const mesh =
-        group->add_option("--mesh", work->mesh, "Triangle mesh to touch: PLY, OBJ, STL or OFF, also .gz")
-            ->check(CLI::ExistingFile);
+    auto* const group =
+        command->add_option_group("Surface", "Measure contact with your own mesh; prints CSV");
+    auto* const mesh = group
+                           ->add_option("--mesh", work->mesh,
+                                        "Triangle mesh: PLY, OBJ, STL or OFF, optionally compressed (.gz)")
+                           ->check(CLI::ExistingFile);
     auto* const path = group
                            ->add_option("--trajectory", work->trajectory,
-                                        "Positions of the tool, one line x y z per millisecond, in the unit "
-                                        "of the mesh (--mesh) or in mm (--volume)")
+                                        "Tool positions: text file, one line x y z per millisecond, in the "
+                                        "unit of the mesh (--mesh) or in mm (--volume)")
                            ->check(CLI::ExistingFile);
     mesh->needs(path);
-    group->add_option("--unit", work->unit, "Unit of length of mesh and trajectory (a: angstrom)")
+    group->add_option("--unit", work->unit, "Unit of length of the mesh and the trajectory (a: angstrom)")
         ->check(CLI::IsMember({"m", "cm", "mm", "um", "nm", "a"}))
         ->capture_default_str();
-    group
-        ->add_option("--tool-radius-mm", work->radius_mm,
-                     "Radius of the ball that touches the mesh (mm); 0: a point")
+    group->add_option("--tool-radius-mm", work->radius_mm, "Radius of the tool, a ball (mm); 0: a point")
         ->check(CLI::Range(0.0, 50.0))
         ->capture_default_str();
     const auto drilling = std::make_shared<DrillingWork>();
-    auto* const bone = command->add_option_group("Drilling", "Measurement on your own data, printed as CSV");
+    auto* const bone =
+        command->add_option_group("Drilling", "Measure drilling in your own volume; prints CSV");
     auto* const volume =
-        bone->add_option(
-                "--volume", drilling->volume,
-                "Volume of bone: raw file, one byte per voxel, x fastest; 0: no bone, 255: solid bone")
+        bone->add_option("--volume", drilling->volume,
+                         "Bone volume: raw file, one byte per voxel, x fastest; 0: no bone, 255: solid bone")
             ->check(CLI::ExistingFile)
             ->excludes(mesh);
-    bone->add_option("--size", drilling->size, "Size of the volume along x, y and z (voxels)")
+    bone->add_option("--size", drilling->size, "Size of the bone volume along x, y and z (voxels)")
         ->expected(3)
         ->check(CLI::Range(1, 2048))
         ->capture_default_str();
-    bone->add_option("--voxel-mm", drilling->voxel_mm, "Edge of a voxel (mm)")
+    bone->add_option("--voxel-mm", drilling->voxel_mm, "Edge length of a voxel (mm)")
         ->check(CLI::Range(0.01, 10.0))
         ->capture_default_str();
     bone->add_option("--burr-radius-mm", drilling->radius_mm, "Burr radius (mm)")
         ->check(CLI::Range(0.1, 50.0))
         ->capture_default_str();
     GovernorBenchSettings& governed = governor_settings();
-    auto* const runs = command->add_option_group("Governor", "Settings of the measurement governor");
+    auto* const runs = command->add_option_group("Governor", "Settings of the governor measurement");
     auto* const map = runs->add_option("--map", governed.map,
-                                       "Density map of the docking scenes; default: the map of the demo")
+                                       "Density map for the docking scenes; default: the map of the demo")
                           ->check(CLI::ExistingFile);
-    auto* const structure =
-        runs->add_option(
-                "--structure", governed.structure,
-                "Structure for the docking scenes, used in copies; default: the structure of the demo")
-            ->check(CLI::ExistingFile)
-            ->needs(map);
+    auto* const structure = runs->add_option("--structure", governed.structure,
+                                             "Structure for the docking scenes, copied to reach --atoms; "
+                                             "default: the structure of the demo")
+                                ->check(CLI::ExistingFile)
+                                ->needs(map);
     map->needs(structure);
-    runs->add_option("--scene", governed.scenes, "Scenes of the measurement governor")
+    runs->add_option("--scene", governed.scenes, "Scenes of the governor measurement")
         ->check(CLI::IsMember({"docking", "surface", "drilling"}))
         ->capture_default_str();
     runs->add_option("--atoms", governed.atoms, "Number of atoms of each docking scene")
         ->check(CLI::Range(1000, 2'000'000))
         ->capture_default_str();
     runs->add_option("--rate", governed.rates_hz,
-                     "Servo rates of the measurement governor (Hz); 0: free running")
+                     "Servo rates of the governor measurement (Hz); 0: free running")
         ->check(CLI::Range(0.0, 20'000.0))
         ->capture_default_str();
-    runs->add_option("--seconds", governed.seconds, "Duration of an adaptive run (s)")
+    runs->add_option("--seconds", governed.seconds, "Duration of each adaptive run (s)")
         ->check(CLI::Range(1.0, 600.0))
         ->capture_default_str();
     command->callback([=, &exit_code] {
         if (*volume && !*path)
             throw CLI::ValidationError(
-                "--volume", "needs --trajectory: one line x y z of the burr's centre per millisecond, in mm");
+                "--volume", "needs --trajectory: one line x y z of the burr centre per millisecond, in mm");
         if (*path && !*mesh && !*volume)
             throw CLI::ValidationError("--trajectory", "needs --mesh or --volume");
         if (*volume) {
@@ -250,7 +245,7 @@ void describe(CLI::App& app, int& exit_code) {
 int main(int argc, char** argv) {
     CLI::App app{"tact-bench: measures the performance of this machine"};
     app.set_version_flag("--version", tact::program_version("tact-bench"));
-    app.footer("Exit codes: 0 measured; 1 error; 2 wrong usage.");
+    app.footer("Exit codes: 0 done; 1 error; 2 wrong usage.");
     int exit_code = 0;
     tact::launch::describe(app, exit_code);
     if (const auto answered = tact::manual::answer(app, "tact-bench", argc, argv)) return *answered;

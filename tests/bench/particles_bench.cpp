@@ -1,7 +1,7 @@
-// Particles near a hole in bone: cost of a move, and how well a step keeps its budget.
+// Particles near a hole in bone: cost of one particle move, and time of a step relative to its budget.
 //
-// Metrics   particle_ns_each; over_p50, over_p99: a step's time over its budget, of the steps with more work
-//           than their budget; alive
+// Metrics   particle_ns_each: time per moved particle; moved: particles moved per step; over_p50, over_p99: time of a
+//           step divided by its budget, over the steps that could not move all particles; alive: number of particles
 #include <benchmark/benchmark.h>
 
 #include <algorithm>
@@ -24,7 +24,7 @@ void step_of_a_budget(benchmark::State& state) {
             for (std::uint32_t x = 0; x < 256; ++x) density[bricks.voxel(x, y, z)] = 200;
     Particles particles(bricks, density, {.most = most});
     SeededRandom random(1);
-    // Most lie where they fell; a hundredth is added in each step.
+    // Most particles are at rest; each step adds a hundredth of the maximum.
     const auto fill = [&](std::size_t count) {
         for (std::size_t misses = 0; count > 0 && misses < 1000 && particles.all().size() < most;) {
             const double far = 90.0 * random.uniform(), angle = 6.28 * random.uniform();

@@ -1,4 +1,4 @@
-// Percentiles of what was measured in one pass, in the order of time: what a loop sees. The unit is the caller's.
+// Percentiles of the values measured in one pass. The unit is the caller's.
 #pragma once
 
 #include <algorithm>
@@ -12,7 +12,7 @@ struct Percentiles {
     double p50 = 0.0, p99 = 0.0, p999 = 0.0, max = 0.0;
 };
 
-// The ceil(p n)-th smallest; 0 of nothing. p in (0, 1].
+// The ceil(p n)-th smallest value; 0 for an empty vector. p in (0, 1].
 [[nodiscard]] inline double percentile(std::vector<double> values, double p) {
     if (values.empty()) return 0.0;
     const double rank = std::ceil(p * static_cast<double>(values.size()) * (1.0 - 0x1p-50));

@@ -21,10 +21,10 @@ std::vector<Vec3> read_positions(const std::filesystem::path& file, double unit_
         ++number;
         if (line.empty() || line.front() == '#') continue;
         Vec3 p;
-        std::istringstream words(line);
-        if (!(words >> p.x() >> p.y() >> p.z()) || !p.allFinite() || path.size() == kPathMax)
+        std::istringstream fields(line);
+        if (!(fields >> p.x() >> p.y() >> p.z()) || !p.allFinite() || path.size() == kPathMax)
             throw StartupError(attempt, "line " + std::to_string(number) + " is not a position",
-                               "give x y z on each line, at most ten million lines");
+                               "write x y z on each line, at most ten million lines");
         path.emplace_back(unit_m * p);
     }
     return path;

@@ -1,4 +1,4 @@
-// Percentiles as keys of a bench's report: before_p50_after, and so on.
+// Adds percentiles to the report of a benchmark, with the keys before_p50_after, before_p99_after and so on.
 #pragma once
 
 #include <nlohmann/json.hpp>

@@ -1,10 +1,11 @@
-// Refinement around a moving probe: processor time of one step, on a rough torus.
+// Processor time of one refinement step around a moving probe, on a rough torus.
 //
-// Case      a step of 1 % of the diagonal, full detail within 5 % of it (Chebyshev), a bell beyond.
+// Cases     Moving: the probe moves by 1 % of the diagonal per step; full detail within 5 % of the diagonal (Chebyshev
+//           distance), a bell filter beyond. MovingSteep, MovingSteepest: narrower bells. Still: the probe is at rest.
 //           40,000 vertices; a million if the environment variable TACT_BENCH_LARGE is set.
-// Metrics   step_us: processor time of the thread, percentiles over the steps; ops: splits and merges per step;
-//           active: vertices; late: steps that ended without full detail. Still: the probe is at rest.
-// Measured  see rt/force/surface/REFINEMENT.md.
+// Metrics   step_us: processor time of the thread per step; ops: splits and merges per step; active: active vertices;
+//           late: number of steps that did not reach full detail
+// Measured  see rt/force/surface/REFINEMENT.md
 #include <benchmark/benchmark.h>
 #include <time.h>
 
@@ -34,7 +35,7 @@ struct Torus {
     double diagonal_m = std::sqrt(2.6 * 2.6 * 2 + 0.6 * 0.6);
 };
 
-void run(benchmark::State& state, double way, double width = 0.05, double far = 0.02) {
+void run(benchmark::State& state, double step_size, double width = 0.05, double far = 0.02) {
     static const Torus torus;
     RefinementSettings settings;
     const auto part = [&](double fraction) { return static_cast<float>(fraction * torus.diagonal_m); };
@@ -45,7 +46,7 @@ void run(benchmark::State& state, double way, double width = 0.05, double far = 
     std::vector<double> step_us;
     double angle = 0.0, ops = 0.0, active = 0.0, late = 0.0;
     for (auto _ : state) {
-        angle += way * torus.diagonal_m;
+        angle += step_size * torus.diagonal_m;
         const double before = thread_s();
         const RefineStep done = refinement.step(Vec3(std::cos(angle), std::sin(angle), 0.3), Vec3::Zero());
         step_us.push_back(1e6 * (thread_s() - before));

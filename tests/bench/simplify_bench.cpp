@@ -1,12 +1,12 @@
-// Simplification: time and two-sided error; and changes of detail of a progressive mesh.
+// Time and two-sided error of mesh simplification; time to change the detail of a progressive mesh.
 //
-// Shapes    two rings of seven blobs, their isosurface in a map of 73³ voxels (12,424 vertices); an open
-//           sheet of 1,250 triangles; a rough torus of a million triangles and one of two, only if the
-//           environment variable TACT_BENCH_LARGE is set, because they take half a minute.
-// Metrics   rms_pct, max_pct of the diagonal of the box; sharp: smallest cosine between adjacent triangles.
-//           copy_ms: a plain copy of the buffers of the level, as a reference for the machine.
+// Shapes    the isosurface of two rings of seven blobs in a map of 73³ voxels (12,424 vertices); an open sheet of 1,250
+//           triangles. Only if the environment variable TACT_BENCH_LARGE is set, because they take half a minute: rough
+//           tori of one and two million triangles.
+// Metrics   rms_pct, max_pct: error in percent of the diagonal of the box; sharp: smallest cosine between adjacent
+//           triangles; copy_ms: time of a plain copy of the buffers of the level, as a reference for the machine
 //
-// Measured 2026-11-21, two shared and loaded cores of 2.6 GHz, processor time:
+// Measured 2026-11-21 on two shared, loaded cores of 2.6 GHz; processor time:
 //   rings -> 2000 / 200           16 / 18 ms   rms 0.070 / 0.67 %, relaxed 0.0625 / 0.55 %
 //   sheet -> 100 / 8              f = none to 1000: README.md of prep/mesh; f = 100 is the default
 //   1 M triangles -> 5,000        0.9 s        at most 236 bytes per vertex
@@ -83,7 +83,7 @@ void bake(benchmark::State& state) {
         static_cast<double>(ProgressiveMesh(data).memory_bytes()) / static_cast<double>(rings().vertices());
 }
 
-// From one percentage of the vertices to another; the way back is not timed.
+// Changes from one number of vertices to another (in thousandths of all). The change back is not timed.
 void jump(benchmark::State& state, const ProgressiveMesh& (*shape)()) {
     const ProgressiveMesh& mesh = shape();
     MeshCut cut(mesh);
@@ -114,11 +114,11 @@ void jump(benchmark::State& state, const ProgressiveMesh& (*shape)()) {
     state.counters["copy_ms"] = best_ms;
 }
 
-const ProgressiveMesh& walked_rings() {
+const ProgressiveMesh& progressive_rings() {
     static const ProgressiveMesh mesh(make_progressive(rings()));
     return mesh;
 }
-const ProgressiveMesh& walked_million() {  // vertices; two million triangles
+const ProgressiveMesh& progressive_million() {  // a million vertices, two million triangles
     static const ProgressiveMesh mesh(make_progressive(rough_torus(1250, 800)));
     return mesh;
 }
@@ -140,7 +140,7 @@ BENCHMARK_CAPTURE(simplify_to, sheet_f_100, sheet, 100.0)->Arg(100)->Arg(8);
 BENCHMARK_CAPTURE(simplify_to, sheet_f_100_relaxed, sheet, 100.0, 1)->Arg(100)->Arg(8);
 BENCHMARK_CAPTURE(simplify_to, sheet_f_published, sheet, kPublishedBoundaryWeight)->Arg(100)->Arg(8);
 BENCHMARK(bake)->Unit(benchmark::kMillisecond);
-BENCHMARK_CAPTURE(jump, rings, walked_rings)->Args({1000, 280})->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(jump, rings, progressive_rings)->Args({1000, 280})->Unit(benchmark::kMillisecond);
 
 [[maybe_unused]] const bool large = [] {
     if (std::getenv("TACT_BENCH_LARGE") == nullptr) return false;
@@ -148,7 +148,7 @@ BENCHMARK_CAPTURE(jump, rings, walked_rings)->Args({1000, 280})->Unit(benchmark:
                                  SimplifySettings{}.boundary_weight, 1U)
         ->Arg(5000)
         ->Unit(benchmark::kMillisecond);
-    benchmark::RegisterBenchmark("jump/million", jump, walked_million)
+    benchmark::RegisterBenchmark("jump/million", jump, progressive_million)
         ->Args({1000, 280})
         ->Args({280, 1000})
         ->Args({280, 900})

@@ -1,12 +1,14 @@
-// A ball, or a block of 1000 points, that slides over a rough sphere: time of the servo's step in the modes off-tree and
-// chr, on one path.
+// Time of a contact step of the servo in the modes off-tree and chr: a ball or a block of 1000 points slides over a
+// rough sphere along the same path.
 //
-// Case      once around and up and down, 1 mm deep, at 55 or 500 mm/s of the hand; 92,480 triangles, two million
-//           where the environment variable TACT_BENCH_LARGE is set, ten where it is 10m. the slow update of chr runs every fourth step by the same
-//           thread, or (Live) steps are 1 ms apart and a thread beside it updates it every 4 ms, as in tact-rt.
-// Figures   servo_us: of a step, of the least of two passes; adaptive: share of the steps that were felt on the adaptive
-//           surface; tend_us: of one slow_update(); near: triangles in it, predicted for this fidelity.
-// Measured  see rt/force/surface/README.md.
+// Path      around the sphere with a slow up-and-down motion, 1 mm deep; the hand moves at 55 or 500 mm/s (Fast)
+// Mesh      92,480 triangles; two million if the environment variable TACT_BENCH_LARGE is set, ten million if it is 10m
+// Update    the same thread runs the slow update of chr in every fourth step. Live: steps are 1 ms apart, and a second
+//           thread runs the slow update every 4 ms, as in tact-rt.
+// Metrics   servo_us: time of a step, the minimum of two passes (Live: one pass); adaptive: fraction of the steps on
+//           the adaptive surface; tend_us: time of one slow_update(); near_predicted: predicted number of triangles of
+//           the adaptive surface at full fidelity
+// Measured  see rt/force/surface/README.md
 #include <benchmark/benchmark.h>
 
 #include <algorithm>
@@ -58,9 +60,9 @@ ToolState tool_at(const Baked& on, const Vec3& middle, double radius_m, double s
     return tool;
 }
 
-double percentile(std::vector<double> us, double part) {
+double percentile(std::vector<double> us, double fraction) {
     std::sort(us.begin(), us.end());
-    return us.empty() ? 0.0 : us[static_cast<std::size_t>(part * static_cast<double>(us.size() - 1))];
+    return us.empty() ? 0.0 : us[static_cast<std::size_t>(fraction * static_cast<double>(us.size() - 1))];
 }
 
 std::unique_ptr<SurfaceModel> load(const SurfaceModel* /*kind*/, const Baked& baked, double radius_m,
@@ -81,7 +83,7 @@ double predicted_triangles(const ToolModel& /*model*/) { return 0.0; }
 template <class Model>
 void run(benchmark::State& state, SurfaceMode mode, double speed_m_s, bool live) {
     static const Baked baked;
-    // Of the block: half its height.
+    // For the block, half its height.
     const double radius_m =
         std::is_same_v<Model, ToolModel> ? 4e-3 : 1e-3 * static_cast<double>(state.range(0));
     std::vector<double> servo_us(kSteps, 1e300), slow_update_us;
@@ -97,9 +99,9 @@ void run(benchmark::State& state, SurfaceMode mode, double speed_m_s, bool live)
                 model->slow_update(tool_at(baked, middle, radius_m, speed_m_s, i), {});
                 slow_update_us.push_back(to_us(Monotonic::now() - begin));
             };
-            std::thread beside;
+            std::thread updater;
             if (live && model->has_slow_update()) {
-                beside = std::thread([&] {
+                updater = std::thread([&] {
                     for (auto next = std::chrono::steady_clock::now(); stop == 0;) {
                         slow_update(now);
                         next = std::max(next + std::chrono::milliseconds(kSlowUpdateEvery),
@@ -123,7 +125,7 @@ void run(benchmark::State& state, SurfaceMode mode, double speed_m_s, bool live)
                 if (live) std::this_thread::sleep_until(next);
             }
             stop = 1;
-            if (beside.joinable()) beside.join();
+            if (updater.joinable()) updater.join();
             predicted = predicted_triangles(*model);
         }
     }
@@ -151,31 +153,32 @@ BENCHMARK(ChrFastLive)->Arg(1)->Arg(3)->Iterations(1)->Unit(benchmark::kMillisec
 BENCHMARK(ToolTree)->Iterations(1)->Unit(benchmark::kMillisecond);
 BENCHMARK(ToolChr)->Iterations(1)->Unit(benchmark::kMillisecond);
 
-// What the knob buys: the fewest moves of each level on the same fast path, and how far its force is from that of all.
+// Effect of the knob, the maximum number of moves per step: time of a step at each level on the same fast path, and
+// deviation of the force from the full level.
 void Level(benchmark::State& state) {
     static const Baked baked;
     const double radius_m = 1e-3 * static_cast<double>(state.range(0));
     const auto fidelity = 0.01F * static_cast<float>(state.range(1));
     std::vector<double> us, off_n, error_n, predicted_n;
-    double short_of = 0.0;
+    double lagging = 0.0;
     for (auto _ : state) {
         const auto model = load_surface_model(baked.file, {.radius_m = radius_m}),
-                   whole = load_surface_model(baked.file, {.radius_m = radius_m});
+                   reference = load_surface_model(baked.file, {.radius_m = radius_m});
         const Vec3 middle = read_meta(baked.file).to_world(Vec3::Zero());
         for (int i = 0; i < kSteps; ++i) {
             const ToolState tool = tool_at(baked, middle, radius_m, 0.5, i);
             if (i == 0) {
                 model->reset(tool);
-                whole->reset(tool);
+                reference->reset(tool);
             }
-            predicted_n.push_back(whole->predict(fidelity).error);
-            const StepResult full = whole->step(tool, {.fidelity = 1.0F});
+            predicted_n.push_back(reference->predict(fidelity).error);
+            const StepResult full = reference->step(tool, {.fidelity = 1.0F});
             const Instant begin = Monotonic::now();
             const StepResult now = model->step(tool, {.fidelity = fidelity});
             us.push_back(to_us(Monotonic::now() - begin));
             off_n.push_back((now.wrench_world.force_n - full.wrench_world.force_n).norm());
             error_n.push_back(now.load.error);
-            short_of += model->contact().state == ContactState::lagging ? 1.0 / kSteps : 0.0;
+            lagging += model->contact().state == ContactState::lagging ? 1.0 / kSteps : 0.0;
         }
     }
     state.counters["us_p50"] = percentile(us, 0.5);
@@ -185,7 +188,7 @@ void Level(benchmark::State& state) {
     state.counters["n_off_max"] = percentile(off_n, 1.0);
     state.counters["error_n_p99"] = percentile(error_n, 0.99);
     state.counters["predicted_n_p99"] = percentile(predicted_n, 0.99);
-    state.counters["lagging"] = short_of;
+    state.counters["lagging"] = lagging;
 }
 BENCHMARK(Level)->ArgsProduct({{0, 3, 20}, {5, 25, 50, 100}})->Iterations(1)->Unit(benchmark::kMillisecond);
 

@@ -16,23 +16,23 @@ namespace tact::launch {
 
 using nlohmann::json;
 
-json bake_to_measure(const std::vector<std::string>& words, const std::filesystem::path& scene) {
+json bake_to_measure(const std::vector<std::string>& arguments, const std::filesystem::path& scene) {
     const auto log = scene.parent_path() / "bake.json";
     const int fd = ::open(log.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0600);
     ChildSettings settings;
-    settings.arguments = words;
+    settings.arguments = arguments;
     settings.arguments.insert(settings.arguments.end(), {"--no-picture", "--json", "-o", scene.string()});
     settings.output_fd = fd;
     Child child("tact-prep", find_program("tact-prep"), settings);
     if (fd >= 0) ::close(fd);
     const auto& ending = child.wait(std::chrono::minutes(10));
-    const std::string said = read_small(log);  // progress, then JSON
-    json numbers = json::parse(said.substr(std::min(said.find('{'), said.size())), nullptr, false);
+    const std::string output = read_small(log);  // progress, then JSON
+    json numbers = json::parse(output.substr(std::min(output.find('{'), output.size())), nullptr, false);
     if (!ending || !ending->clean() || !numbers.is_object())
         throw StartupError(
             "bake a surface to measure",
-            "tact-prep " + (ending ? ending->text() : "did not end in ten minutes") + ": " + said,
-            "run by hand: tact-prep " + words.front());
+            "tact-prep " + (ending ? ending->text() : "did not exit within ten minutes") + ": " + output,
+            "run by hand: tact-prep " + arguments.front());
     return numbers;
 }
 
@@ -43,7 +43,7 @@ std::vector<TouchStep> touch_along(const SurfaceMesh& surface, const std::vector
     meta.kind = SceneKind::surface;
     meta.world_per_model = world_per_model;
     std::vector<TouchStep> steps(path_model_m.size());
-    const auto go = [&](int pass) {
+    const auto run_pass = [&](int pass) {
         SurfaceModel model(meta, surface, settings, forest);
         ToolState tool;
         tool.T_world_tool.p_m = world_per_model * path_model_m.front();
@@ -76,9 +76,9 @@ std::vector<TouchStep> touch_along(const SurfaceMesh& surface, const std::vector
     };
     for (int pass = 0; pass < passes && !path_model_m.empty(); ++pass) {
         if (paced && pass == 0)
-            run_as_loop(kServoPriority, [&] { go(0); });
+            run_as_loop(kServoPriority, [&] { run_pass(0); });
         else
-            go(pass);
+            run_pass(pass);
     }
     return steps;
 }
@@ -96,10 +96,10 @@ Percentiles best_times_us(const std::vector<TouchStep>& steps) {
 }
 
 std::uint64_t jammed_cycles(const std::vector<TouchStep>& steps) {
-    std::uint64_t row = 0, jammed = 0;
+    std::uint64_t series = 0, jammed = 0;
     for (const TouchStep& s : steps) {
-        row = s.stands ? row + 1 : 0;
-        if (row >= kJammedRow) jammed += row == kJammedRow ? kJammedRow : 1;
+        series = s.stands ? series + 1 : 0;
+        if (series >= kJammedRow) jammed += series == kJammedRow ? kJammedRow : 1;
     }
     return jammed;
 }

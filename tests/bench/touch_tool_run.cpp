@@ -17,7 +17,7 @@ constexpr double kTurnRadStep = 0.5e-3;
 TouchTool bake_tool_to_measure(const std::string& name) {
     const ScratchFolder scratch;
     const auto scene = scratch.path() / "tool.tact";
-    // The surface of this scene is not used.
+    // Only the tool of this scene is used.
     static_cast<void>(bake_to_measure(
         {"demo", "touch", "--shape", "sphere", "--parts", "4", "--tool", name, "--tool-points", "1000"},
         scene));
@@ -49,7 +49,7 @@ std::vector<TouchStep> touch_tool_along(const SurfaceMesh& surface, const TouchT
     meta.kind = SceneKind::surface;
     meta.world_per_model = 1.0;
     std::vector<TouchStep> steps(path.size());
-    const auto go = [&](int pass) {
+    const auto run_pass = [&](int pass) {
         ToolModel model(meta, surface, tool, settings, forest);
         ToolState hand;
         hand.T_world_tool = path.front();
@@ -78,9 +78,9 @@ std::vector<TouchStep> touch_tool_along(const SurfaceMesh& surface, const TouchT
     };
     for (int pass = 0; pass < passes && !path.empty(); ++pass) {
         if (paced && pass == 0)
-            run_as_loop(kServoPriority, [&] { go(0); });
+            run_as_loop(kServoPriority, [&] { run_pass(0); });
         else
-            go(pass);
+            run_pass(pass);
     }
     return steps;
 }

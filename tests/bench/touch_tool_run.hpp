@@ -1,7 +1,7 @@
-// As touch_run.hpp, for a mesh tool.
+// Like touch_run.hpp, for a mesh tool.
 //
-// Path   The path of a point becomes one of the tool: its lowest point follows that path, its y axis points
-//        outward, and it rotates about it by half a radian per second.
+// Path   converted from the path of a point: the lowest point of the tool follows that path, its y axis points outward,
+//        and the tool rotates about this axis by half a radian per second
 #pragma once
 
 #include <string>
@@ -13,14 +13,14 @@
 
 namespace tact::launch {
 
-// Bakes one of tact-prep's own tools, with 1000 points.
+// Bakes one of the synthetic tools of tact-prep, sampled with 1000 points.
 TouchTool bake_tool_to_measure(const std::string& name);
 
 std::vector<Pose> tool_path(const std::vector<WanderPlace>& path, const TouchTool& tool);
-// surface: star-shaped about the origin.
+// For a surface that is star-shaped about the origin.
 std::vector<Pose> tool_path(const std::vector<Vec3>& path_model_m, const TouchTool& tool);
 
-// The model is as large as in its file. forest, paced: as touch_along.
+// The model has the size in its file. forest, paced: as in touch_along().
 std::vector<TouchStep> touch_tool_along(const SurfaceMesh& surface, const TouchTool& tool,
                                         const std::vector<Pose>& path, const SurfaceSettings& settings,
                                         int passes, const VertexForest* forest = nullptr, bool paced = false);

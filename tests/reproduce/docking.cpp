@@ -23,7 +23,8 @@ int reproduce(const DockingExperiment& e) {
         try {
             add(mesh_figures(e.out, scratch.path()));
         } catch (const StartupError& error) {
-            // The rates do not depend on the meshes; table and exit code report the failure.
+            // The rates do not depend on the meshes, so the experiment continues; table and exit code report the
+            // failure.
             std::fprintf(stderr, "tact: %s\n", error.what());
             add({{"3, 4", "meshes", "1250 to 8, 12835 to 200", "NOT MADE", error.what()}});
             exit_code = 1;
@@ -38,7 +39,7 @@ int reproduce(const DockingExperiment& e) {
     const nlohmann::json report{{"rates", json_of(*rates)}, {"summary", json_of(rows)}};
     write_whole(e.out / "docking.json", report.dump(2) + "\n");
     draw_figures(e.out);
-    std::printf("\n%s\nwrote %s, CSV and PNG beside it\n", table_of(rows).c_str(),
+    std::printf("\n%s\nwrote %s and CSV and PNG files in the same folder\n", table_of(rows).c_str(),
                 (e.out / "docking.json").c_str());
     return exit_code;
 }
@@ -46,7 +47,7 @@ int reproduce(const DockingExperiment& e) {
 }  // namespace
 
 int reproduce_docking(const DockingExperiment& experiment) {
-    // Fail now rather than after two minutes.
+    // Checks now that the folder is writable, not after two minutes.
     write_whole(experiment.out / ".writable", "");
     std::filesystem::remove(experiment.out / ".writable");
     return in_own_session([&](Precedence reached) {

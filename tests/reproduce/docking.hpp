@@ -1,8 +1,8 @@
-// tact reproduce docking: figures 3 to 8 of the docking paper on this machine, beside the published values.
+// tact reproduce docking: figures 3 to 8 of the docking paper, compared with the published values.
 //
 // Writes   CSV and PNG of every figure, docking.json with all numbers, conditions and the summary table
 // Prints   the summary table, with differences and their reasons
-// Thread   one; blocks for about a minute and a half. Fails by StartupError; leaves no process behind.
+// Thread   one; blocks for about a minute and a half. Fails by StartupError. Ends all child processes.
 #pragma once
 
 #include <filesystem>

@@ -2,13 +2,15 @@
 //
 //     docking_finds FOLDER [starts [name]]
 //
-// FOLDER holds the maps and structures named below. Without it the program exits with 77, which CTest counts as
-// skipped. `name` selects the rows whose names contain it. Seeded starts, 15 A and 30 degrees (and 8 A and 15
-// degrees) from the known pose, climb the reduced correlation of all atoms by steepest ascent. A start succeeds
-// if it ends within one voxel and 5 degrees of the known pose or of a pose equal to it by the structure's symmetry.
-// Force maps: the density, its Laplacian (at 20 A or the map's resolution, as in rt/force/docking/force_map.hpp),
-// and both with the other parts of the assembly subtracted. Also printed: the mean distance of the ends from the
-// known pose.
+// FOLDER contains the maps and structures named below. Without it the program exits with code 77, which CTest counts as
+// skipped. `name` selects the rows whose names contain it.
+//
+// Method  from random starts with fixed seeds, 15 A and 30 degrees (and 8 A and 15 degrees) from the known pose,
+//         steepest ascent maximizes the reduced correlation of all atoms. A start succeeds if it ends within one voxel
+//         and 5 degrees of the known pose, or of a pose that is equivalent by the symmetry of the structure.
+// Maps    the density; its Laplacian (at 20 A or the resolution of the map, as in rt/force/docking/force_map.hpp); both
+//         with the other parts of the assembly subtracted
+// Prints  the number of successes, and the mean distance of the end poses from the known pose
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <chrono>
@@ -51,8 +53,8 @@ double gyration_m(const Structure& s) {
     return std::sqrt(sum);
 }
 
-// Steepest ascent. A rotation counts as the distance that it moves the atoms (radius of gyration). The step
-// doubles after a success and halves after a failure, until it is below a thousandth of an angstrom.
+// Steepest ascent. Rotations are scaled by the radius of gyration to a displacement of the atoms. The step doubles
+// after a success and halves after a failure, until it is below a thousandth of an angstrom.
 Pose climb(const DensityMap& map, const Structure& s, Pose pose) {
     const PointsView points = points_of(s);
     const double radius_m = gyration_m(s);
@@ -76,8 +78,8 @@ Pose climb(const DensityMap& map, const Structure& s, Pose pose) {
     return pose;
 }
 
-// The poses that are equal by symmetry: each chain onto the first one, if all chains are alike.
-std::vector<Pose> equal_places(const Structure& s) {
+// The poses equivalent by symmetry, which map the first chain onto each chain, if all chains are alike.
+std::vector<Pose> equivalent_poses(const Structure& s) {
     std::vector<std::vector<std::size_t>> chain(s.chain_names.size());
     for (std::size_t i = 0; i < s.size(); ++i) chain[s.chain[i]].push_back(i);
     const auto matrix = [&](const std::vector<std::size_t>& of) {
@@ -87,15 +89,15 @@ std::vector<Pose> equal_places(const Structure& s) {
         }
         return m;
     };
-    std::vector<Pose> places{Pose{}};
+    std::vector<Pose> poses{Pose{}};
     for (std::size_t c = 1; c < chain.size(); ++c) {
         if (chain[c].size() != chain[0].size()) return {Pose{}};
         const Eigen::Matrix4d t = Eigen::umeyama(matrix(chain[0]), matrix(chain[c]), false);
-        places.push_back({t.topRightCorner<3, 1>(), Quat(Eigen::Matrix3d(t.topLeftCorner<3, 3>()))});
-        // Only a symmetry about the centre of the whole maps the whole onto itself.
-        if (places.back().p_m.norm() > 2.0 * kA) return {Pose{}};
+        poses.push_back({t.topRightCorner<3, 1>(), Quat(Eigen::Matrix3d(t.topLeftCorner<3, 3>()))});
+        // Only a symmetry about the centre of the structure maps the structure onto itself.
+        if (poses.back().p_m.norm() > 2.0 * kA) return {Pose{}};
     }
-    return places;
+    return poses;
 }
 
 struct Row {
@@ -103,7 +105,7 @@ struct Row {
     std::string map;
     double resolution_a;
     Structure body;
-    std::vector<Structure> neighbours;  // at home
+    std::vector<Structure> neighbours;  // at their home poses
 };
 
 struct Variant {
@@ -119,18 +121,18 @@ constexpr Variant kVariants[] = {
 
 struct Ends {
     int found = 0;
-    double away_a = 0.0, turned_deg = 0.0;  // mean, from the nearest equal pose
+    double away_a = 0.0, turned_deg = 0.0;  // mean, from the nearest equivalent pose
 };
 
 Ends ends(const DensityMap& map, const Structure& s, double offset_m, double turn_rad, int starts) {
-    const std::vector<Pose> equal = equal_places(s);
+    const std::vector<Pose> equivalent = equivalent_poses(s);
     Ends out;
     for (int k = 1; k <= starts; ++k) {
         const Pose end =
             climb(map, s, start_pose(s.home(), offset_m, turn_rad, static_cast<std::uint64_t>(k)));
         Pose nearest;
-        double least = 1e300;  // metres of atom movement
-        for (const Pose& e : equal) {
+        double least = 1e300;  // displacement of the atoms (m)
+        for (const Pose& e : equivalent) {
             const Pose place = s.home() * e;
             const double d = (end.p_m - place.p_m).norm() + gyration_m(s) * end.q.angularDistance(place.q);
             if (d < least) least = d, nearest = place;
@@ -150,24 +152,26 @@ void run(const Row& row, const std::filesystem::path& folder, int starts) {
     for (const Structure& s : row.neighbours) placed.push_back({&s, s.home()});
     for (const Variant& v : kVariants) {
         if (v.subtract && placed.empty()) continue;
-        DensityGrid felt = grid;
+        DensityGrid force_map = grid;
         double scale = 0.0, explained = 0.0;
         const auto begin = std::chrono::steady_clock::now();
         if (v.subtract) {
             SubtractedMap m = subtract_placed(grid, statistics.background, placed, row.resolution_a * kA);
-            felt = std::move(m.grid), scale = m.scale, explained = m.explained;
+            force_map = std::move(m.grid), scale = m.scale, explained = m.explained;
         }
         double background = statistics.background, sigma = statistics.sigma;
         if (v.laplacian) {
-            felt = laplacian_map(felt, background, std::max(row.resolution_a * kA, kContourResolutionM));
-            background = 0.0, sigma = rms_of(felt);
+            force_map =
+                laplacian_map(force_map, background, std::max(row.resolution_a * kA, kContourResolutionM));
+            background = 0.0, sigma = rms_of(force_map);
         }
-        const DensityMap map(felt, background, sigma);
+        const DensityMap map(force_map, background, sigma);
         const std::chrono::duration<double, std::milli> made = std::chrono::steady_clock::now() - begin;
         const Ends far = ends(map, row.body, 15.0 * kA, 30.0 * kDegreeRad, starts);
         const Ends near = ends(map, row.body, 8.0 * kA, 15.0 * kDegreeRad, starts);
         std::printf(
-            "%-28s %-23s %2d (%2d) of %d, %5.1f A %5.1f deg (%4.1f A %4.1f deg) away, map made in %3.0f ms",
+            "%-28s %-23s %2d (%2d) of %d, mean error %5.1f A %5.1f deg (%4.1f A %4.1f deg), map made in "
+            "%3.0f ms",
             row.name.c_str(), v.name, far.found, near.found, starts, far.away_a, far.turned_deg, near.away_a,
             near.turned_deg, made.count());
         if (v.subtract) std::printf(", scale %.3g, explained %.2f", scale, explained);
@@ -178,7 +182,7 @@ void run(const Row& row, const std::filesystem::path& folder, int starts) {
 
 Structure read(const std::filesystem::path& path) { return import_structure(path).structure; }
 
-// A structure of these atoms at the given positions.
+// A structure from the given atoms at the given positions.
 Structure placed_at(const Structure& from, const std::vector<std::size_t>& atoms,
                     const std::vector<Vec3>& place_m) {
     Structure s;
@@ -215,7 +219,7 @@ Structure moved(const Structure& from, const Pose& home) {
     return placed_at(from, atoms, place_m);
 }
 
-// Domains of one chain, each with the four others subtracted.
+// The domains of one chain, each with the other four as neighbours.
 void add_1gte(const std::filesystem::path& folder, std::vector<Row>& rows) {
     std::vector<Structure> domains;
     for (int d = 1; d <= 5; ++d)
@@ -228,7 +232,7 @@ void add_1gte(const std::filesystem::path& folder, std::vector<Row>& rows) {
     }
 }
 
-// Both rings of GroEL: the seven chains of 1OEL, moved by one placement per ring from the answers file.
+// Both rings of GroEL: the seven chains of 1OEL, moved by one placement per ring (from the answers file).
 std::vector<Structure> groel_chains(const std::filesystem::path& folder) {
     const Structure ring = read(folder / "1oel.pdb.gz");
     std::ifstream file(folder / "answers_emd_1080_1oel.json");
@@ -264,7 +268,7 @@ std::vector<Structure> groel_chains(const std::filesystem::path& folder) {
     return chains;
 }
 
-// One chain among the thirteen others, at the pose of its authors (1KP8) and from the answers file (1OEL).
+// One chain with the thirteen others as neighbours, at the pose of its authors (1KP8) and from the answers file (1OEL).
 void add_groel(const std::filesystem::path& folder, std::vector<Row>& rows) {
     const char* const map = "emd_1080_groel_11.5A.mrc";
     Row fitted{"EMD-1080, 1KP8 chain A", map, 11.5, read(folder / "1kp8A_fitted_in_emd_1080.pdb"), {}};
@@ -281,8 +285,9 @@ void add_groel(const std::filesystem::path& folder, std::vector<Row>& rows) {
     if (answer.body.size() > 0) rows.push_back(std::move(answer));
 }
 
-// F-actin: the other subunits of the filament, -166.6 degrees and 27.6 A apart along the axis through the middle of
-// the map, climbed from there. Subunits beyond the box have no density to subtract.
+// F-actin, with the other subunits of the filament as neighbours. Their start poses are -166.6 degrees and 27.6 A apart
+// along the axis through the middle of the map; climb() refines them. Subunits outside the box are excluded, because
+// there is no density to subtract.
 void add_actin(const std::filesystem::path& folder, const char* file, std::vector<Row>& rows) {
     Row row{std::string("EMD-5168, ") + std::string(file).substr(0, 4),
             "emd_5168_factin.map",
@@ -311,7 +316,7 @@ int main(int argc, char** argv) {
     using namespace tact;
     const std::filesystem::path folder = argc > 1 ? argv[1] : "";
     if (!std::filesystem::is_directory(folder)) {
-        std::printf("skipped, no folder of maps given. Usage: docking_finds FOLDER [starts [name]]\n");
+        std::printf("skipped: no folder with maps. Usage: docking_finds FOLDER [starts [name]]\n");
         return 77;
     }
     const int starts = argc > 2 ? std::max(1, std::atoi(argv[2])) : 10;

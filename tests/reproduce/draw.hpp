@@ -5,8 +5,8 @@
 
 namespace tact::launch {
 
-// Runs PREFIX/share/tact/reproduce/draw.py on `folder`; PREFIX/bin is the folder of the running program (also in a build
-// folder). Without Python, matplotlib or the script, prints how to get the figures.
+// Runs PREFIX/share/tact/reproduce/draw.py on `folder`; PREFIX/bin is the folder of the running program (also in a
+// build folder). Without Python, matplotlib or the script, prints how to draw the figures by hand.
 void draw_figures(const std::filesystem::path& folder);
 
 }  // namespace tact::launch

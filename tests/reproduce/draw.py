@@ -1,10 +1,9 @@
-#!/usr/bin/python3
 """Draws the figures of tact-reproduce from the CSV and JSON files in a folder.
 
-    draw.py FOLDER          draws every figure with available data, as PNG beside the data
-    draw.py --self-test     draws each kind of figure from synthetic data in a temporary folder
+    python3 draw.py FOLDER          draws every figure whose data are in FOLDER, as PNG files in FOLDER
+    python3 draw.py --self-test     draws each kind of figure from synthetic data in a temporary folder
 
-Exit codes: 0 done; 1 error; 77 matplotlib is missing. tact-reproduce starts it; by hand it redraws figures after a change here.
+Exit codes: 0 done; 1 error; 77 matplotlib is missing. tact-reproduce starts the script. Start it by hand to redraw the figures after a change here.
 """
 import csv
 import json
@@ -23,7 +22,7 @@ import matplotlib.pyplot as plt  # noqa: E402
 from matplotlib.lines import Line2D  # noqa: E402
 from matplotlib.patches import Patch  # noqa: E402
 
-# Okabe and Ito's colours, distinguishable with every kind of colour vision.
+# Colours of Okabe and Ito, distinguishable with every kind of colour vision.
 COLOURS = ["#0072b2", "#d55e00", "#009e73", "#e69f00", "#56b4e9", "#cc79a7", "#000000"]
 WINDOW_S = 0.1
 SETTLE_S = 0.3
@@ -46,7 +45,7 @@ def read_rows(path):
 
 def start(title, remark, panels, height=3.6, width=11.0):
     figure, axes = plt.subplots(panels, 1, sharex=True, squeeze=False, figsize=(width, 1.1 + height * panels), layout="constrained")
-    # A title of two lines; the second, smaller one gives the conditions.
+    # The title has two lines; the second, in smaller type, states the conditions.
     figure.suptitle(title, x=0.012, ha="left", fontsize=14)
     axes[0][0].set_title(remark, loc="left", color="#666666", pad=10)
     return figure, [a[0] for a in axes]
@@ -73,7 +72,7 @@ class Runs:
         self.case = {}
         for row in read_rows(os.path.join(folder, "rates.csv")):
             self.case.setdefault(row["case"], []).append(row)
-        self.remark = "each point: the rate over 0.1 s"
+        self.remark = "each point: rate over 0.1 s"
         report = os.path.join(folder, "docking.json")
         if os.path.exists(report):
             with open(report, encoding="utf-8") as f:
@@ -93,22 +92,22 @@ class Runs:
 
     @staticmethod
     def part(row):
-        """Part of the run: start, no_load or load. Files of former versions do not name it."""
+        """Returns the part of the run: start, no_load or load. Files of earlier versions lack this column."""
         return row.get("part") or ("load" if row["external_load"] else "no_load")
 
     @staticmethod
     def reused(row):
-        """The updates of this window reused a part of their former work."""
+        """Returns whether the updates of this window reused a part of earlier work."""
         return row.get("step_work_done_anew", 1.0) < 0.9995
 
     def load(self, case):
-        """Begin and end of the external load; without one, infinity and the last time."""
+        """Returns start and end of the external load; without a load, infinity and the last time."""
         times = [r["t_s"] for r in self.case[case] if r["external_load"]]
         return (min(times), max(times)) if times else (math.inf, self.end(case))
 
 
 def worst_rows(rows):
-    """The row with the lowest rate of each part of a run, but for its start."""
+    """Returns the row with the lowest rate of each part of a run, except the start."""
     worst = {}
     for row in rows:
         part = Runs.part(row)
@@ -121,12 +120,12 @@ def worst_label(worst):
     def one(row):
         rate, goal = row["force_rate_100ms_hz"], row["goal_hz"]
         return f"{rate:.0f} Hz" + (f" ({100.0 * rate / goal:.0f} %)" if goal > 0 else "")
-    said = [f"{one(worst[part])} {name}" for part, name in (("no_load", "without load"), ("load", "with load")) if part in worst]
-    return "\nworst 0.1 s: " + ",\n".join(said) if said else ""
+    parts = [f"{one(worst[part])} {name}" for part, name in (("no_load", "without load"), ("load", "with load")) if part in worst]
+    return "\nworst 0.1 s: " + ",\n".join(parts) if parts else ""
 
 
 def spans(rows, holds):
-    """Stretches of time whose windows have this property, joined where windows overlap."""
+    """Returns the time intervals of the windows for which `holds` is true; overlapping intervals are merged."""
     joined = []
     for row in rows:
         if holds(row):
@@ -139,7 +138,7 @@ def spans(rows, holds):
 
 
 def rate_figure(runs, folder, name, title, curves, goals, load_of=None, until=None):
-    """curves: (case, label, colour); goals: (Hz, label); until: case -> last time to draw."""
+    """Draws rates and triangles. curves: (case, label, colour); goals: (Hz, label); until: case -> last time to draw."""
     figure, (rates, triangles) = start(title, runs.remark, 2)
     disturbed = reused = started = False
     for number, (case, label, colour) in enumerate(curves):
@@ -202,13 +201,13 @@ def draw_rates(folder):
     if "on" in runs.case:
         curves = [("off", "no adaptation", 0), ("on", f"law {runs.law('on')}\n(paper: stays near its goal)", 1)]
         if "on_paper" in runs.case:
-            curves.append(("on_paper", "law sensitus, the paper's own", 3))
+            curves.append(("on_paper", "law sensitus, as in the paper", 3))
         rate_figure(runs, folder, "fig8_load_with_law.png", "Figure 8: force rate under an external load, with adaptation", curves,
                     [(runs.goal("on"), f"goal {runs.goal('on'):.0f} Hz")], load_of="on")
 
 
 # Forces of a burr (drilling: figures 2 to 4).
-def ways(row, quantity):
+def methods(row, quantity):
     """Yields (column, label, dashed) for each block size."""
     for column in row:
         if column.startswith(quantity + "_"):
@@ -216,12 +215,12 @@ def ways(row, quantity):
             yield column, ("voxel by voxel" if size == "voxels" else f"smallest block {size.replace('R', ' R')}"), size == "voxels"
 
 
-def burr_panel(axes, rows, radius, quantity, value, last_too=True):
+def burr_panel(axes, rows, radius, quantity, value, include_voxels=True):
     some = [r for r in rows if r["radius_mm"] == radius]
-    for number, (column, label, dashed) in enumerate(ways(rows[0], quantity)):
-        if dashed and not last_too:
+    for number, (column, label, dashed) in enumerate(methods(rows[0], quantity)):
+        if dashed and not include_voxels:
             continue
-        # Each curve is thinner than the one before, so that coinciding curves are all visible.
+        # Each curve is thinner than the previous one, so that coinciding curves remain visible.
         axes.plot([r["penetration_mm"] / radius for r in some], [value(r, column) for r in some], color=COLOURS[number],
                   linestyle="--" if dashed else "-", linewidth=3.4 - 0.8 * number, label=label)
     axes.margins(x=0.01)
@@ -245,9 +244,9 @@ def draw_drilling(folder):
     def error(row, column):
         return 100.0 * (row[column] / row["true_n"] - 1.0) if row["true_n"] > 0.05 else math.nan
     figure, axes = start("Figure 2b: error of the force",
-                         "against sums over 512 points in each voxel of the ball's surface; paper: a few percent or below", len(ends))
+                         "reference: sums over 512 points in each voxel at the surface of the ball; paper: a few percent or below", len(ends))
     for panel, radius in zip(axes, ends):
-        burr_panel(panel, rows, radius, "force_n", error, last_too=False)
+        burr_panel(panel, rows, radius, "force_n", error, include_voxels=False)
         panel.set_ylabel(f"R = {radius:.0f} mm\nerror (%)")
         legend(panel)
     axes[-1].set_xlabel("penetration / R")
@@ -263,15 +262,15 @@ def draw_drilling(folder):
     axes[-1].set_xlabel("penetration / R")
     save(figure, folder, "fig3_time.png")
 
-    figure, (panel,) = start("Figure 4: time for one force by the radius of the burr",
-                             "half of R in the bone; paper: 1 to 6 mm, voxel by voxel beyond 1 ms from 2 mm on", 1, height=4.6)
-    for number, (column, label, dashed) in enumerate(ways(growth[0], "us")):
+    figure, (panel,) = start("Figure 4: time for one force against burr radius",
+                             "penetration R / 2; paper: 1 to 6 mm, voxel by voxel above 1 ms from 2 mm on", 1, height=4.6)
+    for number, (column, label, dashed) in enumerate(methods(growth[0], "us")):
         panel.plot([r["radius_mm"] for r in growth], [r[column] for r in growth], color=COLOURS[number], marker="o", markersize=4,
                    linestyle="--" if dashed else "-", label=label)
     panel.axhline(1000.0, color="#222222", linestyle=":", linewidth=1.4, label="1 ms")
     panel.set_yscale("log")
     panel.set_ylabel("time (µs)")
-    panel.set_xlabel("radius R of the burr (mm)")
+    panel.set_xlabel("burr radius R (mm)")
     legend(panel)
     save(figure, folder, "fig4_growth.png")
 
@@ -279,7 +278,7 @@ def draw_drilling(folder):
 # Force rates on surfaces (surface: table 1 and figure 3).
 def draw_table(folder):
     rows = [r for r in read_rows(os.path.join(folder, "table1.csv")) if r["hand"] == "slow"]
-    figure, (rates, times) = start("Table 1: force rate by the size of the mesh", "one core; a point and a ball, moving at 55 mm/s", 2)
+    figure, (rates, times) = start("Table 1: force rate against mesh size", "one core; a point and a ball, moving at 55 mm/s", 2)
     number = 0
     for mode in ("off-tree", "off-brute", "chr"):
         for tool in ("point", "3 mm"):
@@ -308,7 +307,7 @@ def draw_table(folder):
 
 def draw_filters(folder):
     rows = read_rows(os.path.join(folder, "filters.csv"))
-    figure, (axes,) = start("Figure 3: allowed error of the surface by the distance from the probe",
+    figure, (axes,) = start("Figure 3: allowed error of the surface against distance from the probe",
                             "full detail within 3 mm; distance: maximum of |dx|, |dy| and |dz|", 1, height=4.6)
     distance = [r["distance_mm"] for r in rows]
     for number, (column, label) in enumerate((("exact_um", "1 - exp(-x²)"), ("bell_um", "bell, as computed"), ("frustums_um", "multiple frustums"))):
@@ -362,14 +361,14 @@ def draw(folder):
 
 
 def self_test():
-    """Draws every kind of figure from a few rows, including gaps, a single run, and values that are not numbers."""
+    """Draws each kind of figure from a few rows, including gaps, a single run, and values that are not numbers."""
     def write(folder, name, header, rows):
         with open(os.path.join(folder, name), "w", encoding="utf-8", newline="") as f:
             writer = csv.writer(f)
             writer.writerow(header.split(","))
             writer.writerows(rows)
     with tempfile.TemporaryDirectory() as folder:
-        # The worst window with load comes right after the load begins; without load at 5.2 s; the start does not count.
+        # The worst window with load is right after the start of the load; without load, at 5.2 s. The start is excluded.
         def rate(i, with_load):
             return 100 if i < 40 else 700 if i == 260 else (450 if i < 420 else 600) if with_load and i > 400 else 900
 
@@ -396,11 +395,11 @@ def self_test():
         worst = worst_rows([r for r in Runs(folder).case["on"] if r["t_s"] > SETTLE_S])
         rates = {part: row["force_rate_100ms_hz"] for part, row in worst.items()}
         if rates != {"no_load": 700.0, "load": 450.0}:
-            print(f"FAIL worst windows {rates}")
+            print(f"FAIL wrong worst windows: {rates}")
             return 1
         missing = [n for n in wanted if not os.path.exists(os.path.join(folder, n + ".png"))]
         for name in missing:
-            print(f"FAIL {name}.png was not drawn")
+            print(f"FAIL missing figure: {name}.png")
         return 1 if missing else 0
 
 

@@ -17,9 +17,9 @@ namespace tact::launch {
 namespace {
 
 constexpr double kVoxelMm = 0.3;
-constexpr double kFeltN = 0.05;  // smaller forces are left out of the error
+constexpr double kForceMinN = 0.05;  // smaller forces are excluded from the error
 
-// Solid below half of its height, and so wide that a burr does not reach a side.
+// Solid below half of its height, and wide enough that the burr does not reach its sides.
 struct FlatBone {
     BoneBricks bricks;
     std::vector<std::uint8_t> density;
@@ -54,22 +54,23 @@ double least_us(int repeats, double& force_n, const F& force) {
     return least;
 }
 
-std::string way_name(std::size_t way) {
-    return way < kDrillBlocks.size() ? text("l = %.1f R", kDrillBlocks[way]) : std::string("voxel by voxel");
+std::string method_name(std::size_t method) {
+    return method < kDrillBlocks.size() ? text("l = %.1f R", kDrillBlocks[method])
+                                        : std::string("voxel by voxel");
 }
 
-double error_at(const DrillingRow& r, std::size_t way) {
-    return r.true_n > kFeltN ? 100.0 * (r.force_n[way] / r.true_n - 1.0) : std::nan("");
+double error_at(const DrillingRow& r, std::size_t method) {
+    return r.true_n > kForceMinN ? 100.0 * (r.force_n[method] / r.true_n - 1.0) : std::nan("");
 }
 
 struct Spread {
     double mean = 0.0, most = 0.0;
 };
-Spread error_of(const std::vector<DrillingRow>& rows, std::size_t way) {
+Spread error_of(const std::vector<DrillingRow>& rows, std::size_t method) {
     Spread s;
     int count = 0;
     for (const DrillingRow& r : rows) {
-        const double off = std::abs(error_at(r, way));
+        const double off = std::abs(error_at(r, method));
         if (std::isnan(off)) continue;
         s.mean += off;
         s.most = std::max(s.most, off);
@@ -82,9 +83,10 @@ Spread error_of(const std::vector<DrillingRow>& rows, std::size_t way) {
 std::string csv_of(const std::vector<DrillingRow>& rows) {
     std::string csv = "radius_mm,penetration_mm,true_n";
     for (const char* const what : {"force_n", "us"})
-        for (std::size_t way = 0; way < kDrillWays; ++way)
+        for (std::size_t method = 0; method < kDrillWays; ++method)
             csv += "," + std::string(what) +
-                   (way < kDrillBlocks.size() ? text("_%.1fR", kDrillBlocks[way]) : std::string("_voxels"));
+                   (method < kDrillBlocks.size() ? text("_%.1fR", kDrillBlocks[method])
+                                                 : std::string("_voxels"));
     csv += "\n";
     for (const DrillingRow& r : rows) {
         csv += text("%.3f,%.5f,%.6f", r.radius_mm, r.penetration_mm, r.true_n);
@@ -98,11 +100,11 @@ std::string csv_of(const std::vector<DrillingRow>& rows) {
 std::vector<SummaryRow> summary_of(const std::vector<DrillingRow>& rows,
                                    const std::vector<DrillingRow>& growth) {
     std::vector<SummaryRow> table;
-    for (std::size_t way = 0; way < kDrillBlocks.size(); ++way) {
-        const Spread s = error_of(rows, way);
+    for (std::size_t method = 0; method < kDrillBlocks.size(); ++method) {
+        const Spread s = error_of(rows, method);
         table.push_back(
             {.figure = "2b",
-             .quantity = "error of the force, " + way_name(way),
+             .quantity = "error of the force, " + method_name(method),
              .published = "a few percent or below",
              .measured = text("%.2f %% on average, %.2f %% at most", s.mean, s.most),
              .differs = "partly covered blocks are cut by planes; the paper replaces them by balls"});
@@ -127,14 +129,14 @@ std::vector<DrillingRow> drilling_rows(double radius_mm, int depths, int repeats
     for (int i = 1; i <= depths; ++i) {
         DrillingRow row{.radius_mm = radius_mm};
         row.penetration_mm = half_in_alone ? 0.5 * radius_mm : radius_mm * i / depths;
-        // Off the grid's planes of symmetry, and sideways with depth, as a hand moves.
+        // Off the symmetry planes of the grid; moves sideways with depth, like a hand.
         const Vec3 at(middle + 0.13 + 0.9 * i / depths, middle - 0.27 + 0.4 * i / depths,
                       bone.surface + radius - row.penetration_mm / kVoxelMm);
         row.true_n = elastic_of(radius_mm, ball_moments_exact(octree, at, radius));
-        for (std::size_t way = 0; way < kDrillBlocks.size(); ++way)
-            row.us[way] = least_us(repeats, row.force_n[way], [&] {
+        for (std::size_t method = 0; method < kDrillBlocks.size(); ++method)
+            row.us[method] = least_us(repeats, row.force_n[method], [&] {
                 return elastic_of(radius_mm, ball_moments(octree, best_brick_kernels(), at, radius,
-                                                          kDrillBlocks[way] * radius));
+                                                          kDrillBlocks[method] * radius));
             });
         row.us.back() = least_us(std::max(repeats / 10, 1), row.force_n.back(), [&] {
             return elastic_of(radius_mm, ball_moments_exact(octree, at, radius, 2));
@@ -145,7 +147,7 @@ std::vector<DrillingRow> drilling_rows(double radius_mm, int depths, int repeats
 }
 
 int reproduce_drilling(const DrillingExperiment& e) {
-    // Fail now rather than after some seconds.
+    // Checks now that the folder is writable, not after some seconds.
     write_whole(e.out / ".writable", "");
     std::filesystem::remove(e.out / ".writable");
     const int depths = e.quick ? 12 : 150, repeats = e.quick ? 3 : 30;
@@ -165,7 +167,7 @@ int reproduce_drilling(const DrillingExperiment& e) {
     write_whole(e.out / "drilling.json", nlohmann::json{{"summary", json_of(table)}}.dump(2) + "\n");
     draw_figures(e.out);
     const int exit_code = e.pictures ? drilling_pictures(e.out, e.quick) : 0;
-    std::printf("\n%s\nwrote %s, CSV and PNG beside it\n", table_of(table).c_str(),
+    std::printf("\n%s\nwrote %s and CSV and PNG files in the same folder\n", table_of(table).c_str(),
                 (e.out / "drilling.json").c_str());
     return exit_code;
 }

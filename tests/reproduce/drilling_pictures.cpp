@@ -24,7 +24,7 @@ int drilling_pictures(const std::filesystem::path& out, bool quick) {
     run.screenshot = out / "fig1_drilling.png";
     run.json = out / "fig1_run.json";
     let_the_hands_drill(run);
-    // The frame rate does not matter here, only the content of the frames.
+    // Only the content of the frames matters here, not the frame rate.
     run.controller.insert(run.controller.end(),
                           {"--hand-at-mm", kMastoidMm, "--law", "fixed", "--level", "gui.particles=0.5"});
     run.visual = {"--picture-every", std::to_string(every_s), "--zoom", "1.5"};

@@ -1,7 +1,8 @@
-// Figure 1 of the drilling paper: a surgeon and a suction tube at work in the synthetic temporal bone, six screenshots of a run.
+// Figure 1 of the drilling paper: six screenshots of a run of the scripted surgeon and the suction tube in the
+// synthetic temporal bone.
 //
-// Writes   fig1_drilling-01.png to -06.png, the view only, at equal intervals, the first before the burr is in the bone;
-//          fig1_drilling.png, the whole window at the end; fig1_run.json
+// Writes   fig1_drilling-01.png to -06.png: the view alone, at equal intervals, the first before the burr enters the
+//          bone; fig1_drilling.png: the whole window at the end; fig1_run.json
 // Fails by StartupError if programs are missing
 #pragma once
 

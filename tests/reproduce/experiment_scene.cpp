@@ -18,9 +18,9 @@
 namespace tact::launch {
 namespace {
 
-void bake(std::vector<std::string> words, const std::filesystem::path& scene) {
-    words.insert(words.end(), {"-o", scene.string()});
-    run_prep(words, scene.string() + ".log", "baking " + scene.string());
+void bake(std::vector<std::string> arguments, const std::filesystem::path& scene) {
+    arguments.insert(arguments.end(), {"-o", scene.string()});
+    run_prep(arguments, scene.string() + ".log", "baking " + scene.string());
 }
 
 std::string pdb_of(const Structure& s) {
@@ -67,7 +67,7 @@ Structure repeated(const Structure& s, int times) {
     const std::size_t n = s.size();
     again(out.x_m, n), again(out.y_m, n), again(out.z_m, n);
     again(out.mass_fraction, n), again(out.element, n), again(out.chain, n), again(out.residue, n);
-    out.trace.resize(n * static_cast<std::size_t>(times), 0);  // drawn once
+    out.trace.resize(n * static_cast<std::size_t>(times), 0);  // the trace is drawn once
     return out;
 }
 
@@ -100,9 +100,9 @@ ExperimentScene make_experiment_scene(const std::filesystem::path& folder, const
     write_grid(out, grid);
     const Structure heavy = repeated(structure, scale.atom_repeats);
     write_structure(out, 0, heavy);
-    // A structure of this size needs one coarse level as a fallback. With this single level, every knob level above zero sums
-    // all points (the two are blended), so the work is constant; with less than 200 vectors, the knob starts at all
-    // points.
+    // A structure of this size requires one coarse level as a fallback. With a single level, every knob level above
+    // zero blends it with the sum over all points, so the work is constant. With fewer than 200 vectors, the knob
+    // starts at all points.
     Codebook coarse = read_codebook(demo, 0);
     std::erase_if(coarse.levels, [](const Codebook::Level& l) { return l.size() >= 200; });
     if (coarse.levels.size() > 1) coarse.levels.erase(coarse.levels.begin(), coarse.levels.end() - 1);

@@ -1,9 +1,9 @@
-// The demo scene, with a workload that is heavy enough for a current processor core.
+// The demo scene with a workload that loads a current processor core.
 //
-// Surface  of the same map, resampled on a finer grid by its spline and baked by tact-prep
-// Force    every atom several times, with a fraction of its mass: the same wrench, at a multiple of the work. One level of
-//          the codebook stays, so that only the rendering detail can be reduced (see the .cpp).
-// Fit      without the map's resolution, so that the visual process computes no correlation
+// Surface  isosurface of the same map, resampled on a finer grid by its spline and baked by tact-prep
+// Force    each atom is repeated with a fraction of its mass: the wrench stays the same, the work is multiplied. Only
+//          one level of the codebook is kept, so that only the rendering detail can be reduced (see the .cpp).
+// Fit      the scene has no map resolution, so that the visual process computes no correlation
 #pragma once
 
 #include <cstdint>
@@ -12,8 +12,8 @@
 namespace tact::launch {
 
 struct SceneScale {
-    int map_finer = 3;      // voxels per side for each one of the demo's
-    int atom_repeats = 40;  // number of copies of every atom
+    int map_finer = 3;      // voxels per voxel of the demo, along each axis
+    int atom_repeats = 40;  // number of copies of each atom
 };
 
 struct ExperimentScene {

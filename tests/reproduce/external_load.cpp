@@ -20,8 +20,8 @@
 namespace tact::launch {
 namespace {
 
-// Random numbers summed and counted in a table larger than the caches near the core, like those of a
-// Monte Carlo simulation: the load uses processor time and cache.
+// Sums random numbers and counts them in a table larger than the caches near the core, like a Monte Carlo simulation:
+// the load uses processor time and cache.
 [[noreturn]] void crunch() {
     std::vector<std::uint32_t> counts(std::size_t{1} << 21U);  // 8 MB
     std::uint64_t x = 88172645463325252ULL;
@@ -35,7 +35,7 @@ namespace {
             ++counts[x % counts.size()];
         }
         if (sum + counts[0] == 0.123456789 || getppid() == 1)
-            _exit(0);  // uses the results, and leaves no process behind
+            _exit(0);  // uses the results; exits if the parent is gone
     }
 }
 

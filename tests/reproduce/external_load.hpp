@@ -1,10 +1,10 @@
-// Another program on the same core: endless random-number arithmetic, as in the paper's experiment, over a table that is
-// larger than the caches near the core.
+// Another program on the same core, as in the experiment of the paper: computes random numbers in an endless loop, with
+// a table larger than the caches near the core.
 //
-// Session  that of tact, so that it gets the fair share of one more process. In a session of its own, where the kernel
-//          groups processes by session, it got half of the core beside a display at full detail and starved beside one
-//          at coarse detail (Linux 6.18, 2026-11-20).
-// Life     ended by stop() or the destructor, and by the kernel if tact dies.
+// Session   the same as that of tact, so that it gets the fair share of one more process. In a separate session, the
+//           kernel, which groups processes by session, gave it half of the core at full rendering detail and almost
+//           nothing at coarse detail (Linux 6.18, 2026-11-20).
+// Lifetime  until stop() or the destructor; the kernel ends it if tact dies
 #pragma once
 
 #include <sys/types.h>
@@ -21,7 +21,7 @@ public:
     ExternalLoad& operator=(const ExternalLoad&) = delete;
     [[nodiscard]] pid_t pid() const { return pid_; }
     void stop() noexcept;
-    // Fraction of its core while it ran; valid after stop().
+    // Fraction of the core used while it ran; valid after stop().
     [[nodiscard]] double share() const { return share_; }
 
 private:

@@ -22,15 +22,17 @@ void add_docking(CLI::App& reproduce, int& exit_code, const char* name, const ch
     command->add_option("--out", e->out, "Folder for CSV, PNG and JSON files")->required();
     command
         ->add_option("--core", e->rates.core.core,
-                     "Processor core that all processes share; -1: the last core; default -1")
+                     "Processor core shared by all processes; -1: the last core; default -1")
         ->check(CLI::Range(-1, 1023));
     command->add_option("--fps-max", e->rates.core.fps_max, "Maximum frame rate (frames/s)")
         ->check(CLI::Range(1.0, 240.0))
         ->capture_default_str();
-    command->add_option("--law", e->rates.law, "Law of the governor in the adaptive runs")
+    command->add_option("--law", e->rates.law, "Governor law in the adaptive runs")
         ->check(CLI::IsMember({"elastic", "sensitus"}))
         ->capture_default_str();
-    command->add_option("--goal", e->rates.goal_hz, "Force rate to hold under load (Hz); 0: measured first")
+    command
+        ->add_option("--goal", e->rates.goal_hz,
+                     "Goal of the force rate under load (Hz); 0: derived from a measurement; default 0")
         ->check(CLI::Range(0.0, 1e6));
     command->add_flag("--quick", e->rates.quick, "Short run of a few seconds, as a check");
     command->callback([e, &exit_code] { exit_code = reproduce_docking(*e); });
@@ -39,11 +41,11 @@ void add_docking(CLI::App& reproduce, int& exit_code, const char* name, const ch
 void add_surface(CLI::App& reproduce, int& exit_code) {
     auto* const command =
         reproduce.add_subcommand("surface",
-                                 "Reproduce table 1 of the surface paper, with meshes of up to 10 million "
-                                 "triangles; takes minutes and 4 GB of memory");
+                                 "Reproduce table 1 of the surface paper with meshes of up to 10 million "
+                                 "triangles; takes several minutes and 4 GB of memory");
     const auto e = std::make_shared<SurfaceExperiment>();
     command->add_option("--out", e->out, "Folder for CSV, PNG and JSON files")->required();
-    command->add_option("--mesh", e->meshes, "Meshes to touch; default: synthetic meshes")
+    command->add_option("--mesh", e->meshes, "Mesh files to measure; default: synthetic meshes")
         ->check(CLI::ExistingFile);
     command->add_option("--unit", e->unit, "Unit of length of the mesh files")->capture_default_str();
     command
@@ -59,9 +61,9 @@ void add_drilling(CLI::App& reproduce, int& exit_code) {
         reproduce.add_subcommand("drilling", "Reproduce figures 1 to 4 of the drilling paper");
     const auto e = std::make_shared<DrillingExperiment>();
     command->add_option("--out", e->out, "Folder for CSV, PNG and JSON files")->required();
-    command->add_flag("--quick", e->quick, "Short run at fewer positions, as a check");
+    command->add_flag("--quick", e->quick, "Short run with fewer positions, as a check");
     command->add_flag("!--no-pictures", e->pictures,
-                      "Leave out figure 1, which runs a window for half a minute");
+                      "Skip figure 1, which needs a run of half a minute with a window");
     command->callback([e, &exit_code] { exit_code = reproduce_drilling(*e); });
 }
 

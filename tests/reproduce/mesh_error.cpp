@@ -23,7 +23,7 @@ double to_segment2(const Vec3& p, const Vec3& a, const Vec3& b) {
     return (p - a - t * ab).squaredNorm();
 }
 
-// Squared distance: to the plane above the face, else to the nearest edge.
+// Squared distance to a triangle: to its plane if p projects into the triangle, otherwise to the nearest edge.
 double to_triangle2(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c) {
     const Vec3 n = (b - a).cross(c - a);
     const bool over = n.dot((b - a).cross(p - a)) >= 0.0 && n.dot((c - b).cross(p - b)) >= 0.0 &&
@@ -33,7 +33,7 @@ double to_triangle2(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c) 
     return std::min({to_segment2(p, a, b), to_segment2(p, b, c), to_segment2(p, c, a)});
 }
 
-// Triangles with bounding balls, which exclude most of them without an exact test.
+// Triangles with bounding spheres, which exclude most triangles without an exact test.
 class Surface {
 public:
     explicit Surface(const TriangleMesh& mesh) {

@@ -1,4 +1,4 @@
-// Distances between a simplified mesh and its original: of all vertices of each to the surface of the other.
+// Distances between a simplified mesh and its original: from all vertices of each mesh to the surface of the other.
 #pragma once
 
 #include "ipc/scene/mesh/progressive_mesh.hpp"
@@ -6,13 +6,13 @@
 namespace tact::launch {
 
 struct MeshError {
-    double rms_m = 0.0, max_m = 0.0;  // of the original's vertices to the simplified surface
-    double back_max_m = 0.0;          // of the simplified vertices to the original surface
-    double border_max_m = 0.0;        // of the original's border vertices to the simplified border; 0: closed
-    double diagonal_m = 0.0;          // of the original's box, as the unit of the others
+    double rms_m = 0.0, max_m = 0.0;  // from the original vertices to the simplified surface
+    double back_max_m = 0.0;          // from the simplified vertices to the original surface
+    double border_max_m = 0.0;        // from the original border vertices to the simplified border; 0: closed
+    double diagonal_m = 0.0;          // diagonal of the original's bounding box, as a reference length
 };
 
-// Tests every pair of vertex and triangle: seconds for ten thousand vertices.
+// Compares every vertex with every triangle; takes seconds for ten thousand vertices.
 [[nodiscard]] MeshError mesh_error(const TriangleMesh& original, const TriangleMesh& simplified);
 
 }  // namespace tact::launch

@@ -40,7 +40,7 @@ struct Simplifier {
 struct Row {
     std::string figure, name;
     std::size_t vertices_wanted;
-    double weight;  // negative: the original
+    double weight;  // border weight; negative: the original mesh
     TriangleMesh mesh;
     MeshError error;
 };
@@ -72,36 +72,34 @@ std::vector<SummaryRow> figure_3(const Simplifier& simplified, std::string& csv,
                             kept ? kPublishedWeight : 0.0,
                             simplified(whole, n, kept ? kPublishedWeight : 0.0),
                             {}});
-    MeshPicture picture{
-        .title = "Figure 3: an open mesh, its border with and without protection",
-        .remark =
-            "sizes as in the paper, border planes weighted by f = 1000 as in the paper; distances: "
-            "maximum, in percent of the "
-            "box's diagonal",
-        .eye = Vec3(0.5, -1.2, 1.1),
-        .panel_px = 380,
-        .panel_height_px = 270};
+    MeshPicture picture{.title = "Figure 3: an open mesh, its border with and without protection",
+                        .remark =
+                            "sizes and weight of the border planes (f = 1000) as in the paper; distances: "
+                            "maximum, in percent of the diagonal of the bounding box",
+                        .eye = Vec3(0.5, -1.2, 1.1),
+                        .panel_px = 380,
+                        .panel_height_px = 270};
     for (Row& r : rows) {
         if (r.weight >= 0.0) r.error = mesh_error(whole, r.mesh);
         append(csv, r);
         picture.panels.push_back({&r.mesh, r.name + ": " + std::to_string(r.mesh.vertices()) + " vertices",
                                   r.weight < 0.0
                                       ? std::to_string(r.mesh.triangles()) + " triangles"
-                                      : "border off by " + percent_of(r.error.border_max_m, r.error) +
-                                            ", surface by " + percent_of(r.error.max_m, r.error),
+                                      : "border error " + percent_of(r.error.border_max_m, r.error) +
+                                            ", surface error " + percent_of(r.error.max_m, r.error),
                                   r.weight >= 0.0});
     }
     save(picture, out, "fig3_border");
     const auto border = [&](std::size_t i) { return percent_of(rows[i].error.border_max_m, rows[i].error); };
     const std::string counts =
         text("%zu to %zu and %zu", rows[0].mesh.vertices(), rows[3].mesh.vertices(), rows[4].mesh.vertices());
-    return {
-        {"3", "open mesh, vertices", "1250 to 100 and 8", counts,
-         "another bent sheet, because the paper's mesh is not published"},
-        {"3", "border, no protection", "zig-zag at 100, lost at 8",
-         "off by " + border(1) + " and " + border(2), "maximum distance, in percent of the mesh's diagonal"},
-        {"3", "border, protected (f = 1000)", "kept at 100 and 8",
-         "off by " + border(3) + " and " + border(4), ""}};
+    return {{"3", "open mesh, vertices", "1250 to 100 and 8", counts,
+             "a different bent sheet, because the mesh of the paper is not published"},
+            {"3", "border, no protection", "zig-zag at 100, lost at 8",
+             "error " + border(1) + " and " + border(2),
+             "maximum distance, in percent of the diagonal of the bounding box"},
+            {"3", "border, protected (f = 1000)", "kept at 100 and 8",
+             "error " + border(3) + " and " + border(4), ""}};
 }
 
 std::vector<SummaryRow> figure_4(const Simplifier& simplified, std::string& csv,
@@ -118,8 +116,8 @@ std::vector<SummaryRow> figure_4(const Simplifier& simplified, std::string& csv,
                         {}});
     MeshPicture picture{.title = "Figure 4: a chaperonin-like isosurface at three sizes",
                         .remark =
-                            "two rings of eight, made in code; sizes as in the paper; flat shaded; distances "
-                            "in percent of the box's diagonal",
+                            "two rings of eight subunits, synthetic; sizes as in the paper; flat shaded; "
+                            "distances in percent of the diagonal of the bounding box",
                         .eye = Vec3(0.5, -1.6, 0.9),
                         .panel_px = 560};
     const char* letter = "abc";
@@ -129,19 +127,19 @@ std::vector<SummaryRow> figure_4(const Simplifier& simplified, std::string& csv,
         picture.panels.push_back(
             {&r.mesh,
              text("(%c) %zu vertices, %zu triangles", *letter++, r.mesh.vertices(), r.mesh.triangles()),
-             r.weight < 0.0 ? "by marching cubes"
-                            : "off by " + percent_of(r.error.rms_m, r.error) + " (root mean square), " +
+             r.weight < 0.0 ? "from marching cubes"
+                            : "error " + percent_of(r.error.rms_m, r.error) + " (root mean square), " +
                                   percent_of(r.error.max_m, r.error) + " (maximum)",
              r.weight >= 0.0});
     }
     save(picture, out, "fig4_chaperonin");
     const auto off = [&](std::size_t i) {
-        return text("%zu vertices, off by ", rows[i].mesh.vertices()) +
+        return text("%zu vertices, error ", rows[i].mesh.vertices()) +
                percent_of(rows[i].error.rms_m, rows[i].error) + " rms, " +
                percent_of(rows[i].error.max_m, rows[i].error) + " maximum";
     };
     return {{"4", "chaperonin, vertices", "12835", std::to_string(rows[0].mesh.vertices()),
-             text("another closed isosurface: marching cubes gave %zu vertices, of which %zu were contracted",
+             text("a different closed isosurface: %zu vertices from marching cubes, %zu of them contracted",
                   made.vertices(), made.vertices() - rows[0].mesh.vertices())},
             {"4", "about 86 % fewer", "2000, most detail kept", off(1), "in percent of the diagonal"},
             {"4", "98 % fewer", "200, peaks and seam still visible", off(2), "in percent of the diagonal"}};
@@ -183,7 +181,7 @@ std::vector<SummaryRow> adapted_figure(const ProgressiveMesh& mesh, std::uint32_
     const double fewer =
         100.0 * (1.0 - static_cast<double>(some.triangles()) / static_cast<double>(all.triangles()));
     save({.title = "Figure 6: the surface without and with adaptation",
-          .remark = "the map of the rate experiment, with the mean level of detail at goal B of figure 5",
+          .remark = "the map of the rate experiment, at the mean level of detail of curve B in figure 5",
           .panels = {{&all, text("(a) %zu triangles", all.triangles()), "paper: 10140", false},
                      {&some, text("(b) %zu triangles, %.0f %% fewer", some.triangles(), fewer),
                       text("paper: 2776, 72 %% fewer; error %.2f A",
@@ -195,7 +193,7 @@ std::vector<SummaryRow> adapted_figure(const ProgressiveMesh& mesh, std::uint32_
          out, "fig6_triangles");
     return {{"6", "triangles before and after", "10140 to 2776",
              text("%zu to %zu", all.triangles(), some.triangles()),
-             "a finer surface, so that drawing it loads a current core"}};
+             "a finer surface, so that its rendering loads a current core"}};
 }
 
 }  // namespace tact::launch

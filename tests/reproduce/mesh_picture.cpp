@@ -44,7 +44,7 @@ struct Camera {
         centre = 0.5 * (low + high);
     }
     [[nodiscard]] Vec3 turned(const Vec3& p) const { return {right.dot(p), up.dot(p), toward.dot(p)}; }
-    // Pixels, y down, z towards the eye.
+    // Pixel coordinates: y down, z towards the eye.
     [[nodiscard]] Vec3 at(const Vec3& p, int width, int height) const {
         const Vec3 t = (turned(p) - centre) * px_per_m;
         return {0.5 * width + t.x(), 0.5 * height - t.y(), t.z()};

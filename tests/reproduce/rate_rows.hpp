@@ -1,8 +1,8 @@
-// The windows of a run as rates.csv holds them and the figures show them, and the worst of each part of the run.
+// The windows of a run, as in rates.csv and in the figures, and the worst window of each part of the run.
 //
-// Rows   one for each sample with a whole window behind it; none is left out, so the worst row is the worst window
-// Parts  start: windows that begin before the run has settled; no_load: later ones; load: windows that end while the
-//        external load runs, from its first sample on
+// Rows   one for each sample that ends a complete window; no window is omitted, so the worst row is the worst window
+// Parts  start: windows that begin before the run has settled; no_load: later windows; load: windows that end while the
+//        external load runs, beginning with the first sample under load
 #pragma once
 
 #include <vector>
@@ -16,17 +16,17 @@ inline constexpr const char* kRunPartNames[] = {"start", "no_load", "load"};
 
 struct RateRow {
     RateSample sample;
-    RateWindow100 window;  // that ends at the sample
+    RateWindow100 window;  // ends at the sample
     RunPart part = RunPart::start;
 };
-// fast_s: as windows().
+// fast_s: as in windows().
 [[nodiscard]] std::vector<RateRow> rate_rows(const std::vector<RateSample>& samples, double settle_s,
                                              double fast_s = 0.0);
 
-// All zero where the part has no rows.
+// All zero if the part has no rows.
 struct WorstWindow {
-    double rate_hz = 0.0, t_s = 0.0;  // lowest rate, and where its window ends
-    double quiet_rate_hz = 0.0;       // lowest of the windows without a disturbance; 0: all had one
+    double rate_hz = 0.0, t_s = 0.0;  // lowest rate, and end of its window
+    double quiet_rate_hz = 0.0;       // lowest rate of the undisturbed windows; 0: all were disturbed
     double recomputed_fraction_least = 0.0;
 };
 [[nodiscard]] WorstWindow worst_window(const std::vector<RateRow>& rows, RunPart part);

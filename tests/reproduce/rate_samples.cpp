@@ -29,7 +29,7 @@ double foreign_of(const RateSample& a, const RateSample& b) {
     return std::clamp(1.0 - used / s, 0.0, 1.0);
 }
 
-// Values between an instant in [a, b] and c.
+// Increments from an instant in [a, b] to c.
 struct Between {
     double cycles, controller_s, given_up, foreign_share;
 };
@@ -57,14 +57,14 @@ std::vector<RateWindow100> windows(const std::vector<RateSample>& samples, doubl
         while (a + 1 < b && in[a + 1].t_s <= window_from_s + 1e-9) ++a;
         if (b == 0 || in[a].t_s > window_from_s + 1e-9) continue;
         const Between w = between(in[a], in[a + 1], window_from_s, in[b]);
-        RateWindow100 seen{
+        RateWindow100 window{
             .t_s = in[b].t_s, .rate_hz = w.cycles / window_s, .foreign_share = w.foreign_share};
         if (w.cycles > 0.0) {
-            seen.recomputed_fraction = std::clamp(1.0 - w.given_up / w.cycles, 0.0, 1.0);
-            seen.update_s =
-                w.controller_s / (w.cycles * (kFixedPart + (1.0 - kFixedPart) * seen.recomputed_fraction));
+            window.recomputed_fraction = std::clamp(1.0 - w.given_up / w.cycles, 0.0, 1.0);
+            window.update_s =
+                w.controller_s / (w.cycles * (kFixedPart + (1.0 - kFixedPart) * window.recomputed_fraction));
         }
-        all.push_back(seen);
+        all.push_back(window);
     }
     if (fast_s <= 0.0) fast_s = fast_update_s(all);
     for (RateWindow100& w : all)

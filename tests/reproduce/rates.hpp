@@ -1,14 +1,15 @@
 // Load balancing of the docking paper (figures 5, 7 and 8) on this machine.
 //
-// Set-up   shared_core.hpp: all parties on one core with the same priority
-// Scale    a current core is some hundred times faster, so every atom is summed many times and the surface is finer
-//          (experiment_scene.hpp), such that the goal under load is about a thousand updates per second.
-// Goals    without load 1.45 times the unadapted rate, like the published 800 Hz and 550 Hz, and 2.2 times, like the
-//          published 1200 Hz; with load 0.92 of the rate with the coarsest rendering, which is measured first.
-// FIFO     if rights permit, the same load again with the force loop at the goal's rate before all others: then the
-//          load takes no share from the loop, adapted or not, and the law controls the frame rate
-// Thread   one; blocks for about a minute, a tenth of that with quick.
-// Fails by StartupError; leaves no process behind.
+// Set-up   all parties run on one core with the same priority (shared_core.hpp)
+// Scale    a current core is some hundred times faster than that of the paper. Therefore each atom is summed many times
+//          and the surface is finer (experiment_scene.hpp), so that the goal under load is about 1000 updates per
+//          second.
+// Goals    without load: 1.45 times the rate without adaptation (published: 800 Hz and 550 Hz), and 2.2 times
+//          (published: 1200 Hz); with load: 0.92 times the rate at the coarsest rendering, which is measured first
+// FIFO     if rights permit, the runs under load are repeated with the force loop at the goal rate and FIFO priority.
+//          Then the load takes no time from the loop, adapted or not, and the law controls the frame rate.
+// Thread   one; blocks for about a minute, a tenth of that with quick
+// Fails by StartupError. Ends all child processes.
 #pragma once
 
 #include <filesystem>
@@ -27,9 +28,9 @@ namespace tact::launch {
 
 struct RatesSettings {
     SharedCoreSettings core{};
-    std::string law = "elastic";  // of the adapted runs; the paper's own law runs too
-    double goal_hz = 0.0;         // under load; 0: measured
-    bool quick = false;           // shorter and not scaled: a check without meaningful results
+    std::string law = "elastic";  // of the adaptive runs; the law of the paper runs too
+    double goal_hz = 0.0;         // force rate under load; 0: derived from a measurement
+    bool quick = false;  // shorter and not scaled: checks the program; the results are not meaningful
     Precedence precedence = Precedence::none;
 };
 
@@ -39,23 +40,23 @@ struct Rates {
     bool finely_shared = false;  // see tick_source.hpp
     SceneScale scale{};
     ExperimentScene scene{};
-    std::shared_ptr<const ProgressiveMesh> mesh{};  // surface of the scene
-    double reach_hz = 0.0;                          // with the coarsest rendering under load
+    std::shared_ptr<const ProgressiveMesh> mesh{};  // surface in the scene
+    double reach_hz = 0.0;                          // force rate at the coarsest rendering under load
     Run off{}, low{}, high{}, on{}, on_published{};
-    Run fifo_off{}, fifo_on{};  // with FIFO scheduling, if rights permit; else not run
-    // Time of an update on a fast core, from all runs with that scheduling; with FIFO the loop wakes up with other cache
-    // contents.
+    Run fifo_off{}, fifo_on{};  // with FIFO scheduling; empty without the rights
+    // Time of an update on a fast core, from all runs with the same scheduling. It differs with FIFO, because the
+    // contents of the caches differ at wake-up.
     double fast_update_s = 0.0, fifo_fast_update_s = 0.0;
     [[nodiscard]] double fast_s(const Run& run) const {
         return run.fifo ? fifo_fast_update_s : fast_update_s;
     }
-    // Triangles of the surface with that number of vertices.
+    // Number of triangles of the surface at this number of vertices.
     [[nodiscard]] double triangles(double vertices) const;
     [[nodiscard]] std::vector<const Run*> runs() const;
-    void tell_disturbed_windows();  // after all runs
+    void mark_disturbed_windows();  // after all runs
 };
 
-// Nothing: a signal requested the end.
+// Empty: a signal requested the end.
 std::optional<Rates> measure_rates(const RatesSettings& settings);
 
 // Writes rates.csv into the folder.

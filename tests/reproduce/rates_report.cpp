@@ -1,4 +1,4 @@
-// Numbers, curves and texts of the rate experiments.
+// CSV, JSON and summary of the rate experiments.
 #include <algorithm>
 #include <cmath>
 
@@ -47,11 +47,11 @@ nlohmann::json json_of(const WorstWindow& w, double goal_hz) {
     return j;
 }
 
-// The note, and how much was disturbed.
+// Appends the percentage of disturbed windows to the note.
 std::string disturbed(const std::string& note, const RateSummary& s) {
     if (s.disturbed_percent <= 0.0) return note;
     return note + (note.empty() ? "" : "; ") +
-           text("%.0f %% of the windows were disturbed by other programs or a core slower than at its best",
+           text("%.0f %% of the windows were disturbed by other programs or by a slower core",
                 s.disturbed_percent);
 }
 
@@ -64,18 +64,18 @@ std::string worst(const char* part, const WorstWindow& w, double goal_hz) {
                 quiet.c_str());
 }
 
-// Mean rate once settled, and the worst window of each part, of a run with a goal.
+// For a run with a goal: mean rate after settling, and the worst window of each part.
 std::string held(const Run& run, const RateSummary& s) {
     return text("%.0f of %.0f (%+.1f %%)", s.rate_mean_hz, run.goal_hz,
                 off_percent(s.rate_mean_hz, run.goal_hz)) +
            worst("without", run.worst_free, run.goal_hz) + worst("with", run.worst_loaded, run.goal_hz) +
-           text("; %.0f %% of each step's work done anew", 100.0 * s.recomputed_fraction_mean);
+           text("; %.0f %% of the work of each step recomputed", 100.0 * s.recomputed_fraction_mean);
 }
 
 }  // namespace
 
 void write_rates(const Rates& r, const std::filesystem::path& out) {
-    // The role of a run in the figures (draw.py).
+    // Identifiers of the runs in the figures (draw.py).
     const std::pair<const Run*, const char*> kCases[] = {{&r.off, "off"},
                                                          {&r.low, "low"},
                                                          {&r.high, "high"},
@@ -146,17 +146,17 @@ std::vector<SummaryRow> summary_of(const Rates& r) {
     };
     std::vector<SummaryRow> rows{
         {"5", "C: updates/s without adaptation", "about 550", whole(r.off.free.rate_mean_hz),
-         disturbed("a current core is faster: every atom is summed " + std::to_string(r.scale.atom_repeats) +
+         disturbed("a current core is faster: each atom is summed " + std::to_string(r.scale.atom_repeats) +
                        " times (" + std::to_string(r.scene.points_summed) +
                        " points instead of the published 200) and the surface has " +
                        whole(r.triangles(r.scene.vertices)) + " triangles",
                    r.off.free)},
         {"5", "B: goal 800", "held", held(r.low, r.low.free),
-         disturbed("the goal is 1.45 times C, as there", r.low.free)},
+         disturbed("the goal is 1.45 times C, as in the paper", r.low.free)},
         {"5", "A: goal 1200", "not reached",
-         text("%.0f of %.0f, %.0f %% of each step's work recomputed", r.high.free.rate_mean_hz,
+         text("%.0f of %.0f, %.0f %% of the work of each step recomputed", r.high.free.rate_mean_hz,
               r.high.goal_hz, 100.0 * r.high.free.recomputed_fraction_mean),
-         "the coarsest rendering still needs " + text("%.0f %% of the core (%.0f frames/s)",
+         "the coarsest rendering still takes " + text("%.0f %% of the core (%.0f frames/s)",
                                                       100.0 * r.high.free.used_share[1],
                                                       r.high.free.fps_mean)},
         {"5, 6", "reduction of triangles at goal 800, percent", "72", whole(fewer(r.low.free, r.off.free)),
@@ -166,9 +166,8 @@ std::vector<SummaryRow> summary_of(const Rates& r) {
         {"7", "updates/s with load, no adaptation", "300 to 400 (-27 to -45 %)",
          text("%.0f (-%.0f %%)", r.off.loaded.rate_mean_hz, fall), disturbed("", r.off.loaded)},
         {"8", "updates/s with load, law " + r.settings.law, "near its goal", held(r.on, r.on.loaded),
-         disturbed(text("without adaptation %.0f %% below this goal; settled %.1f s after the load began; "
-                        "%.0f %% fewer "
-                        "triangles",
+         disturbed(text("without adaptation %.0f %% below this goal; settled %.1f s after the start of the "
+                        "load; %.0f %% fewer triangles",
                         -off_percent(r.off.loaded.rate_mean_hz, r.on.goal_hz), r.on.settled_loaded_s,
                         fewer(r.on.loaded, r.off.loaded)),
                    r.on.loaded)}};
@@ -179,16 +178,16 @@ std::vector<SummaryRow> summary_of(const Rates& r) {
     if (!r.fifo_on.samples.empty()) {
         const auto row = [&](const Run& run, const std::string& name, const std::string& differs) {
             rows.push_back({"8", name, "not tried",
-                            held(run, run.loaded) + text("; %.1f pictures/s", run.loaded.fps_mean), differs});
+                            held(run, run.loaded) + text("; %.1f frames/s", run.loaded.fps_mean), differs});
         };
         row(r.fifo_off, "the same with FIFO, no adaptation",
-            "with priority over others the force loop needs no law, at the cost of the frame rate");
+            "with priority, the force loop needs no law, at the cost of the frame rate");
         row(r.fifo_on, "the same with FIFO, law " + r.settings.law,
-            text("the law holds the display's goal of 15 frames/s, with %.0f %% fewer triangles",
+            text("the law holds the display goal of 15 frames/s with %.0f %% fewer triangles",
                  fewer(r.fifo_on.loaded, r.fifo_off.loaded)));
     }
     rows.push_back(
-        {"7, 8", "share of the core for the load, percent", "not published",
+        {"7, 8", "share of the core used by the load, percent", "not published",
          text("%.0f without adaptation, %.0f with", 100.0 * r.off.load_share, 100.0 * r.on.load_share), ""});
     return rows;
 }

@@ -18,10 +18,10 @@ void run_prep(const std::vector<std::string>& arguments, const std::filesystem::
     ::close(s.output_fd);
     const auto& ending = prep.wait(std::chrono::seconds(60));
     if (!ending || !ending->clean())
-        throw StartupError(
-            attempt,
-            "tact-prep " + (ending ? ending->text() : "did not end in a minute") + ": " + read_small(log),
-            "run by hand: tact-prep " + arguments.front());
+        throw StartupError(attempt,
+                           "tact-prep " + (ending ? ending->text() : "did not exit within a minute") + ": " +
+                               read_small(log),
+                           "run by hand: tact-prep " + arguments.front());
 }
 
 }  // namespace tact::launch

@@ -1,4 +1,4 @@
-// Runs tact-prep for an experiment: without output, with a time limit, and with its output in the error.
+// Runs tact-prep for an experiment, with a time limit. Its output appears only in the message of an error.
 #pragma once
 
 #include <filesystem>
@@ -7,7 +7,8 @@
 
 namespace tact::launch {
 
-// Writes its output to the file `log`. Throws StartupError "attempt: ..." if it fails or takes a minute.
+// Writes the output to the file `log`. Throws StartupError "attempt: ..." if tact-prep fails or runs longer than a
+// minute.
 void run_prep(const std::vector<std::string>& arguments, const std::filesystem::path& log,
               const std::string& attempt);
 

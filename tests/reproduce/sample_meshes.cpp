@@ -30,7 +30,7 @@ TriangleMesh open_sheet() {
 namespace {
 
 // Domains of one subunit, by height above the plane between the rings: equatorial, intermediate and apical domain,
-// and the peak at the end. Angstroms: distance from the axis, height, width of the Gaussian; and the weight.
+// and the peak at the end. Distance from the axis, height and width of the Gaussian in angstrom; weight.
 struct Domain {
     double out_a, up_a, width_a, weight;
 };
@@ -55,7 +55,7 @@ DensityGrid chaperonin_map(double step_a) {
             for (std::size_t d = 0; d < kSubunit.size(); ++d) {
                 const Domain& m = kSubunit[d];
                 const double side = ring == 0 ? 1.0 : -1.0;
-                // The subunits of both rings are back to back and lean slightly.
+                // The subunits of the two rings are back to back and slightly tilted.
                 const double angle = 2.0 * std::numbers::pi * k / 8.0 + side * 0.003 * m.up_a;
                 const Vec3 at =
                     Vec3(m.out_a * std::cos(angle), m.out_a * std::sin(angle), side * m.up_a) * kAngstromM;
@@ -88,7 +88,7 @@ TriangleMesh chaperonin(std::size_t vertices_min) {
     double step_a = 12.0;
     TriangleMesh mesh = isosurface(chaperonin_map(step_a), kLevel);
     for (int i = 0; i < 60 && mesh.vertices() < vertices_min; ++i) {
-        // The number of vertices grows with 1 / step^2; aim a percent lower, to avoid overshooting.
+        // The number of vertices grows with 1 / step^2. Each iteration reduces the step by at least 0.5 %.
         const double times = std::sqrt(static_cast<double>(std::max<std::size_t>(mesh.vertices(), 100)) /
                                        static_cast<double>(vertices_min));
         step_a *= std::min(times, 0.995);

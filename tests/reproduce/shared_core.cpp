@@ -35,7 +35,7 @@ int last_core() {
     return 0;
 }
 
-// Processor time of a process; 0 if it is gone.
+// Processor time of a process; 0 if it does not exist.
 double used_s(pid_t pid) {
     clockid_t clock{};
     timespec t{};
@@ -51,10 +51,10 @@ struct SharedCore::Parts {
           core(s.core >= 0 ? s.core : last_core()),
           x(scratch.path(), 640, 480),
           tick_source(core) {
-        // The device's watchdog tolerates a loop that waits for the processor.
+        // The watchdog of the device tolerates a loop that waits for the processor.
         const std::string device = "[device]\nhand = \"wander\"\nwatchdog_us = 1e6\n";
         write_whole(scratch.path() / "fifo.toml", device);
-        // Free running: no limit on a step's time.
+        // Free running: no limit on the time of a step.
         write_whole(scratch.path() / "tact.toml", "[servo]\nmodel_us_max = 100000\n" + device);
         log = FileDescriptor(
             open((scratch.path() / "log").c_str(), O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC, 0600));
@@ -73,7 +73,7 @@ struct SharedCore::Parts {
         return s;
     }
 
-    std::vector<std::string> words_of(const Run& run) const {
+    std::vector<std::string> arguments_of(const Run& run) const {
         std::vector<std::string> w{scene.path.string(),
                                    "--session",
                                    kSession,
@@ -96,23 +96,22 @@ struct SharedCore::Parts {
         return w;
     }
 
-    bool up(Observer& observer, Child& controller, Child& visual) {
+    bool wait_until_drawing(Observer& observer, Child& controller, Child& visual) {
         const Instant end = Monotonic::now() + std::chrono::seconds(30);
         while (Monotonic::now() < end) {
             if (signals.wait(kSampleMs) != 0) return false;
-            alive(controller, visual);
+            require_running(controller, visual);
             observer.poll();
             if (!observer.seen()) continue;
             const auto h = newest(observer.region().health);
             if (h && h->gui_attached != 0 && h->gui_vertices > 0 && h->gui_fps > 0.0) return true;
         }
         throw StartupError(
-            "starting the experiment",
-            "the visual process did not draw within 30 s: " + observer.status_text(),
+            "starting the experiment", "tact-gui drew no frame within 30 s: " + observer.status_text(),
             "start tact-gui by hand to see the cause; output:\n" + read_small(scratch.path() / "log"));
     }
 
-    void alive(Child& controller, Child& visual) const {
+    void require_running(Child& controller, Child& visual) const {
         for (Child* const c : {&controller, &visual})
             if (c->poll())
                 throw StartupError(
@@ -120,7 +119,7 @@ struct SharedCore::Parts {
                     "run it alone to see the cause; output:\n" + read_small(scratch.path() / "log"));
     }
 
-    bool watch(Run& run, Observer& observer, Child& controller, Child& visual) {
+    bool record(Run& run, Observer& observer, Child& controller, Child& visual) {
         given_up = 0.0;
         trace = {.next = observer.region().trace.pushed() + 1, .missed = 0};
         const double on_s = run.phase.load_on_s(), end_s = run.phase.end_s();
@@ -128,11 +127,11 @@ struct SharedCore::Parts {
         const Instant begin = Monotonic::now();
         for (double t = 0.0; t <= end_s; t = to_s(Monotonic::now() - begin)) {
             if (signals.wait(kSampleMs) != 0) return false;
-            alive(controller, visual);
+            require_running(controller, visual);
             observer.poll();
             if (!load && run.phase.loaded_s > 0.0 && t >= on_s) load.emplace(core);
-            take(run, observer, begin,
-                 {controller.pid(), visual.pid(), load ? load->pid() : -1, tick_source.pid()});
+            take_sample(run, observer, begin,
+                        {controller.pid(), visual.pid(), load ? load->pid() : -1, tick_source.pid()});
         }
         if (load) {
             load->stop();
@@ -141,11 +140,12 @@ struct SharedCore::Parts {
         return true;
     }
 
-    void take(Run& run, const Observer& observer, Instant begin, const std::array<pid_t, kParties>& party) {
-        TraceTopic update{};  // about five since the last sample; the ring holds seconds
+    void take_sample(Run& run, const Observer& observer, Instant begin,
+                     const std::array<pid_t, kParties>& party) {
+        TraceTopic update{};  // about five per sample; the ring holds several seconds
         while (observer.region().trace.next(trace, update))
             given_up += 1.0 - std::min(1.0, update.items / static_cast<double>(scene.points_summed));
-        const auto b = newest(observer.region().bodies);  // of every cycle
+        const auto b = newest(observer.region().bodies);  // published in every cycle
         RateSample s{.t_s = to_s(Monotonic::now() - begin)};
         for (std::size_t i = 0; i < kParties; ++i) s.used_s[i] = used_s(party[i]);
         const auto h = newest(observer.region().health);
@@ -181,22 +181,23 @@ bool SharedCore::finely_shared() const { return parts_->tick_source.running(); }
 const std::filesystem::path& SharedCore::folder() const { return parts_->scratch.path(); }
 void SharedCore::scene(const ExperimentScene& scene) { parts_->scene = scene; }
 
-bool SharedCore::go(Run& run) {
+bool SharedCore::execute(Run& run) {
     std::printf("%s ...\n", run.name.c_str());
     std::fflush(stdout);
     Parts& p = *parts_;
-    Child controller("tact-rt", find_program("tact-rt"), p.child(p.words_of(run)));
+    Child controller("tact-rt", find_program("tact-rt"), p.child(p.arguments_of(run)));
     Child visual("tact-gui", find_program("tact-gui"),
                  p.child({p.scene.path.string(), "--session", kSession, "--size", "320x240", "--fps-max",
                           std::to_string(p.settings.fps_max)}));
     Observer observer(kSession);
-    const bool went = p.up(observer, controller, visual) && p.watch(run, observer, controller, visual);
+    const bool completed =
+        p.wait_until_drawing(observer, controller, visual) && p.record(run, observer, controller, visual);
     visual.stop();
     visual.wait(std::chrono::seconds(5));
     controller.stop();
     controller.wait(std::chrono::seconds(5));
     run.summarize_with(0.0);
-    return went;
+    return completed;
 }
 
 void Run::summarize_with(double fast_s) {

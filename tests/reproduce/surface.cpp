@@ -20,7 +20,7 @@
 namespace tact::launch {
 namespace {
 
-// The synthetic meshes, with the values of the paper's table for that size (without and with adaptation).
+// The synthetic meshes, with the values for each size in the table of the paper (without and with adaptation).
 struct Size {
     const char *name, *shape;
     int parts;
@@ -36,7 +36,7 @@ constexpr Size kSizes[] = {
     {"2 M", "sphere", 316, 1'997'120, "", ""},
     {"10 M", "sphere", 707, 9'996'980, "", ""},
 };
-// Smooth spheres of the smallest published size and of a dense one.
+// Smooth spheres: the smallest published size and a dense mesh.
 constexpr int kSmoothParts[] = {10, 158};
 
 std::vector<DirectionRow> directions(const std::filesystem::path& scene, bool quick) {
@@ -45,7 +45,7 @@ std::vector<DirectionRow> directions(const std::filesystem::path& scene, bool qu
     const VertexForest forest = read_forest(file, surface.all_positions_m(), surface.all_corners());
     std::vector<DirectionRow> rows;
     for (const double pace : {1.0, 4.0}) {
-        const std::vector<Vec3> path = touch_path_m(surface, TouchWay::slide, pace, quick ? 2000 : 10000);
+        const std::vector<Vec3> path = touch_path_m(surface, TouchPath::slide, pace, quick ? 2000 : 10000);
         for (const TouchBall& tool : kTouchBalls) {
             for (const SurfaceMode mode : {SurfaceMode::off_tree, SurfaceMode::chr}) {
                 SurfaceSettings settings = settings_to_measure(tool.radius_m);
@@ -57,7 +57,7 @@ std::vector<DirectionRow> directions(const std::filesystem::path& scene, bool qu
                 row.mode = kSurfaceModeNames[static_cast<std::size_t>(mode)];
                 row.speed_mm_s = 55.0 * pace;
                 rows.push_back(row);
-                std::printf("  smooth sphere %9zu  %-6s %3.0f mm/s %-9s direction off by %.3f deg (99 %%)\n",
+                std::printf("  smooth sphere %9zu  %-6s %3.0f mm/s %-9s direction error %.3f deg (99 %%)\n",
                             row.triangles, tool.name, row.speed_mm_s, row.mode.c_str(), row.p99_deg);
                 std::fflush(stdout);
             }
@@ -66,7 +66,7 @@ std::vector<DirectionRow> directions(const std::filesystem::path& scene, bool qu
     return rows;
 }
 
-// Figure 3: the filters of the paper, a bell and the frustums that replace it.
+// Figure 3: the filters of the paper, a bell and its replacement by frustums.
 std::string filters_csv() {
     constexpr float kRadius = 3e-3F, kWidth = 4e-3F, kFar = 1e-4F;
     const RefineFilter bell = RefineFilter::bell(kRadius, kWidth, kFar);
@@ -88,7 +88,7 @@ std::string filters_csv() {
 
 std::string rate_text(const TouchRow& r) { return text("%.0f Hz, %s", r.rate_hz, quality(r).c_str()); }
 
-// Measured rates beside the published ones of the same size, for the slow hand as in the paper.
+// Compares measured and published rates of the same mesh size, for the slow hand as in the paper.
 std::vector<SummaryRow> summary_of(const std::vector<TouchRow>& rows) {
     std::vector<SummaryRow> table;
     for (const TouchRow& r : rows) {
@@ -99,7 +99,8 @@ std::vector<SummaryRow> summary_of(const std::vector<TouchRow>& rows) {
                 if (r.mesh != size.name || *size.published_off == '\0') continue;
                 row.published = std::string(size.published_off) + " -> " + size.published_on;
                 row.differs =
-                    "another mesh of the same size; published: without -> with adaptation; measured: without";
+                    "a different mesh of the same size; published: without -> with adaptation; measured: "
+                    "without";
             }
             table.push_back(row);
         }
@@ -109,7 +110,7 @@ std::vector<SummaryRow> summary_of(const std::vector<TouchRow>& rows) {
     return table;
 }
 
-// The largest deviation per size, over all tools and hands.
+// Largest direction error per mesh size, over all tools and speeds.
 std::vector<SummaryRow> summary_of(const std::vector<DirectionRow>& rows) {
     std::vector<SummaryRow> table;
     double worst_deg = 0.0;
@@ -118,7 +119,7 @@ std::vector<SummaryRow> summary_of(const std::vector<DirectionRow>& rows) {
         if (i + 1 < rows.size() && rows[i + 1].triangles == rows[i].triangles) continue;
         table.push_back({.figure = "-",
                          .quantity = text("direction, sphere of %zu", rows[i].triangles),
-                         .measured = text("off by at most %.2f degrees, 99 %% of steps", worst_deg),
+                         .measured = text("error at most %.2f degrees in 99 %% of the steps", worst_deg),
                          .differs = "not published"});
         worst_deg = 0.0;
     }
@@ -128,14 +129,14 @@ std::vector<SummaryRow> summary_of(const std::vector<DirectionRow>& rows) {
 }  // namespace
 
 int reproduce_surface(const SurfaceExperiment& e) {
-    // Fail now rather than after some minutes.
+    // Checks now that the folder is writable, not after some minutes.
     write_whole(e.out / ".writable", "");
     std::filesystem::remove(e.out / ".writable");
     const ScratchFolder scratch;
     const auto scene = scratch.path() / "surface.tact";
     std::vector<TouchRow> rows;
-    const auto add = [&](const std::string& name, const std::vector<std::string>& words) {
-        static_cast<void>(bake_to_measure(words, scene));
+    const auto add = [&](const std::string& name, const std::vector<std::string>& arguments) {
+        static_cast<void>(bake_to_measure(arguments, scene));
         const std::vector<TouchRow> more = touch_in_all_modes(name, scene, e.quick);
         rows.insert(rows.end(), more.begin(), more.end());
     };
@@ -163,7 +164,7 @@ int reproduce_surface(const SurfaceExperiment& e) {
         {"rows", json_of(rows)}, {"direction", json_of(smooth)}, {"summary", json_of(table)}};
     write_whole(e.out / "surface.json", report.dump(2) + "\n");
     draw_figures(e.out);
-    std::printf("\n%s\nwrote %s, CSV and PNG beside it\n", table_of(table).c_str(),
+    std::printf("\n%s\nwrote %s and CSV and PNG files in the same folder\n", table_of(table).c_str(),
                 (e.out / "surface.json").c_str());
     return 0;
 }

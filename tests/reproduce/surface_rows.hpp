@@ -1,4 +1,4 @@
-// Results for one mesh, tool, hand and mode: rate, times, behaviour of the proxy.
+// Results for one mesh, tool, hand and mode: rate, times and progress of the proxy.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -12,20 +12,20 @@ namespace tact::launch {
 struct TouchRow {
     std::string mesh, tool, mode, hand;
     std::size_t triangles = 0, steps = 0;
-    double rate_hz = 0.0;  // one over the mean time of a step
+    double rate_hz = 0.0;  // reciprocal of the mean time of a step
     double p50_us = 0.0, p99_us = 0.0, p999_us = 0.0, max_us = 0.0;
     double over_1ms = 0.0;  // fraction of the steps
     double touching = 0.0;  // fraction of the steps with a force
     double unsettled = 0.0;
     std::uint64_t jammed = 0;
     double adaptive = 0.0;  // fraction of the steps on the adaptive surface
-    // Difference of the force from that of another mode in the same steps: mean and maximum relative to the mean force in
-    // contact, and the angle not exceeded in 99 % of the steps in contact. Negative: not compared.
+    // Difference from the force of another mode in the same steps: mean and maximum, relative to the mean force in
+    // contact, and 99th percentile of the angle in the steps in contact. Negative: not compared.
     double error_mean = -1.0, error_max = -1.0, angle_p99_deg = -1.0;
 };
 
 TouchRow row_of(const std::vector<TouchStep>& steps);
-// reference: at least as many steps.
+// reference: has at least as many steps.
 void compare(TouchRow& row, const std::vector<TouchStep>& steps, const std::vector<TouchStep>& reference);
 
 // See surface.hpp, Quality.

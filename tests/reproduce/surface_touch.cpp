@@ -18,37 +18,38 @@ struct Hand {
 };
 constexpr Hand kHands[] = {{kSlowHand, 0.055}, {"fast", 0.22}};
 constexpr int kPasses = 3;
-constexpr std::size_t kBruteMost = 600'000;  // triangles; above, a step takes tens of milliseconds and more
+constexpr std::size_t kBruteMost = 600'000;  // triangles; beyond, a step takes tens of milliseconds or more
 
-// The number of steps in which all triangles can be queried three times each within some seconds.
+// Number of steps of off-brute that take some seconds. Each step queries all triangles.
 std::size_t brute_steps(std::size_t triangles, std::size_t most) {
     return std::clamp<std::size_t>(100'000'000 / std::max<std::size_t>(triangles, 1), 10, most);
 }
 
-// A mesh tool moves over the model at its true size; for balls the path is scaled.
+// For the mesh tool the model has its true size; for balls the path is scaled.
 constexpr const char* kMeshTool = "block";
 constexpr std::size_t kToolBruteMost = 100'000, kToolBruteQueries = 50;
 
-struct Asked {
+struct TouchRequest {
     SurfaceSettings settings;
     std::size_t steps;
     int passes;
 };
-using Touched = std::function<std::vector<TouchStep>(const Asked&)>;
+using RunTouch = std::function<std::vector<TouchStep>(const TouchRequest&)>;
 
-// Runs one tool in all modes. looks: queries of every triangle per step of off-brute, which is left out beyond brute_most.
-void in_all_modes(std::vector<TouchRow>& rows, const TouchRow& about, const Asked& whole,
-                  std::size_t brute_most, std::size_t looks, const Touched& touched) {
+// Runs one tool in all modes. queries: queries per triangle in a step of off-brute, which is skipped beyond brute_most
+// triangles.
+void in_all_modes(std::vector<TouchRow>& rows, const TouchRow& about, const TouchRequest& whole,
+                  std::size_t brute_most, std::size_t queries, const RunTouch& run_touch) {
     std::vector<TouchStep> by_tree;
     for (const SurfaceMode mode : {SurfaceMode::off_tree, SurfaceMode::off_brute, SurfaceMode::chr}) {
-        Asked asked = whole;
-        asked.settings.mode = mode;
+        TouchRequest request = whole;
+        request.settings.mode = mode;
         if (mode == SurfaceMode::off_brute) {
             if (about.triangles > brute_most) continue;
-            asked.steps = brute_steps(looks * about.triangles, whole.steps);
-            asked.passes = 1;
+            request.steps = brute_steps(queries * about.triangles, whole.steps);
+            request.passes = 1;
         }
-        const std::vector<TouchStep> steps = touched(asked);
+        const std::vector<TouchStep> steps = run_touch(request);
         TouchRow row = row_of(steps);
         if (mode == SurfaceMode::off_tree)
             by_tree = steps;
@@ -97,21 +98,21 @@ std::vector<TouchRow> touch_in_all_modes(const std::string& name, const std::fil
         for (const TouchBall& tool : kTouchBalls) {
             about.tool = tool.name;
             in_all_modes(rows, about, {settings_to_measure(tool.radius_m), steps, quick ? 1 : kPasses},
-                         kBruteMost, 1, [&](const Asked& a) {
+                         kBruteMost, 1, [&](const TouchRequest& a) {
                              return touch_along(
                                  surface, {path.begin(), path.begin() + static_cast<std::ptrdiff_t>(a.steps)},
                                  a.settings, a.passes, world_per_model, &forest);
                          });
         }
         about.tool = "1000 points";
-        const std::vector<Pose> way = tool_path(
+        const std::vector<Pose> tool_poses = tool_path(
             wander(surface, {.speed_m_s = hand.speed_m_s, .seed = 7, .even_m = 1e-2}, steps), points);
         in_all_modes(rows, about, {settings_to_measure(0.0), steps, quick ? 1 : kPasses}, kToolBruteMost,
-                     kToolBruteQueries, [&](const Asked& a) {
+                     kToolBruteQueries, [&](const TouchRequest& a) {
                          return touch_tool_along(
                              surface, points,
-                             {way.begin(), way.begin() + static_cast<std::ptrdiff_t>(a.steps)}, a.settings,
-                             a.passes, &forest);
+                             {tool_poses.begin(), tool_poses.begin() + static_cast<std::ptrdiff_t>(a.steps)},
+                             a.settings, a.passes, &forest);
                      });
     }
     return rows;

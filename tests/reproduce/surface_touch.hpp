@@ -1,8 +1,8 @@
-// Touches one mesh with every tool, with a slow and a fast hand, in the three modes: rows of table 1.
+// Measures contact with one mesh for every tool, a slow and a fast hand and the three modes: rows of table 1.
 //
 // Tools     a point, balls, and a block of 1000 points (TOOLS.md of rt/force/surface)
-// Off-brute only up to a number of triangles, with fewer steps for larger meshes
-// Thread    one. Fails by StartupError: the scene is not a surface with a forest.
+// Off-brute only up to a maximum number of triangles, with fewer steps for larger meshes
+// Thread    one. Fails by StartupError if the scene is not a surface with a forest.
 #pragma once
 
 #include <filesystem>

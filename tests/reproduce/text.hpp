@@ -6,7 +6,7 @@
 
 namespace tact::launch {
 
-// As printf; truncated to 511 bytes.
+// Formats like printf; truncates to 511 bytes.
 template <class... A>
 std::string text(const char* format, A... a) {
     char line[512];

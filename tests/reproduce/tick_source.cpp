@@ -15,7 +15,8 @@
 namespace tact::launch {
 
 TickSource::TickSource(int core) {
-    // Requested here to detect a refusal; the child keeps FIFO scheduling, and this process returns to ordinary scheduling.
+    // FIFO scheduling is requested before the fork, to detect a refusal. The child keeps it; this process returns to
+    // ordinary scheduling.
     const sched_param high{.sched_priority = 1}, ordinary{.sched_priority = 0};
     if (sched_setscheduler(0, SCHED_FIFO, &high) != 0) return;
     const pid_t parent = getpid();

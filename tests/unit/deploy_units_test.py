@@ -25,6 +25,15 @@ ANALYZE = shutil.which("systemd-analyze")
 PTRACE_SEIZE, PTRACE_INTERRUPT, PTRACE_DETACH = 0x4206, 0x4207, 17
 
 
+def end_group(process):
+    """Kills what a failed test left behind: strace ignores SIGTERM, and ctest waits for every process that holds its pipe."""
+    try:
+        os.killpg(process.pid, signal.SIGKILL)
+    except ProcessLookupError:
+        pass
+    process.wait()
+
+
 def unit(name):
     """Returns [(key, value)] of all sections."""
     with open(os.path.join(UNITS, name), encoding="utf-8") as f:
@@ -230,7 +239,8 @@ class Service(unittest.TestCase):
         self.start()
         self.until("READY=1")
         metrics = subprocess.Popen(["strace", "-f", "-qq", "-o", trace, f"{BIN}/tact", "metrics", "--port", "0"], text=True,
-                                   env=dict(os.environ, TACT_RUNTIME_DIR=self.dir), stderr=subprocess.PIPE)
+                                   env=dict(os.environ, TACT_RUNTIME_DIR=self.dir), stderr=subprocess.PIPE, start_new_session=True)
+        self.addCleanup(end_group, metrics)
         address = re.match(r"http://\S+/metrics", metrics.stderr.readline())[0]
         end, page = time.monotonic() + PATIENCE_S, b""
         while b"tact_up{session=\"default\"} 1" not in page:
