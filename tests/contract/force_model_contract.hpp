@@ -34,7 +34,6 @@ struct ForceModelCase {
     // items depend on the surroundings. Their items may fall by a hundredth from level to level.
     double items_tolerance = 0.0;
     [[nodiscard]] double items_slack() const { return items_tolerance > 0.0 ? 0.99 : 1.0; }
-    bool predicts = true;  // predict() is implemented
     // Reason why all levels give the same force in this case; null: a lower level has a larger error.
     const char* error_free = nullptr;
 };
@@ -181,7 +180,6 @@ TEST_P(ForceModelContract, the_knob_changes_work_and_force_and_the_error_bounds_
 }
 
 TEST_P(ForceModelContract, predicted_cost_and_items_rise_and_the_predicted_error_falls_with_the_knob) {
-    if (!GetParam().predicts) GTEST_SKIP() << "predict() is not implemented yet";
     double costs = 0.0, coarse_costs = 0.0, errors = 0.0, coarse_errors = 0.0, most_error_n = 0.0;
     const KnobRun full = run(1.0F, [&](const ForceModel& model) {
         PathLoad before = model.predict(0.0F);

@@ -178,6 +178,13 @@ class Process(unittest.TestCase):
                               text=True, timeout=PATIENCE_S)
         self.assertEqual(good.returncode, 0, good.stderr)
 
+    def test_the_floor_of_a_level_is_accepted_as_it_is_printed_and_nothing_below_it(self):
+        for level, code in (("0.17", 0), ("0.16", 1)):
+            child = self.start("--level", f"gui.molecules={level}", "--seconds", "0.2")
+            out, _ = child.communicate(timeout=PATIENCE_S)
+            self.assertEqual(child.returncode, code, out)
+            self.assertEqual("the level is outside" in out, code == 1, out)
+
     def test_the_servo_thread_makes_no_system_call_but_sleep(self):
         if not shutil.which("strace"):
             self.skipTest("strace is not installed")

@@ -255,6 +255,18 @@ class Service(unittest.TestCase):
         self.assertIn("recvmsg", calls)
         self.assertFalse(calls - allowed)
 
+    def test_the_first_request_after_the_address_gets_a_page(self):
+        for _ in range(10):
+            metrics = subprocess.Popen([f"{BIN}/tact", "metrics", "--port", "0"], text=True, stderr=subprocess.PIPE,
+                                       env=dict(os.environ, TACT_RUNTIME_DIR=self.dir), start_new_session=True)
+            try:
+                address = re.match(r"http://\S+/metrics", metrics.stderr.readline())[0]
+                with urllib.request.urlopen(address, timeout=PATIENCE_S) as answer:
+                    self.assertIn(b"tact_up", answer.read())
+            finally:
+                end_group(metrics)
+                metrics.stderr.close()
+
     def test_journal_lines_have_a_level_and_no_time(self):
         read, write = os.pipe()
         what = os.fstat(write)
