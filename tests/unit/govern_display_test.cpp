@@ -153,6 +153,56 @@ TEST(Governor, raises_first_what_costs_least_for_its_loss) {
     EXPECT_LT(governor.level(0), 0.8F);
 }
 
+TEST(Governor, a_path_whose_loss_is_great_is_spared_although_it_would_buy_most) {
+    Governor governor = of_display();
+    const PlainDisplay display{0.0, {0.014, 0.003, 0.020}};  // gain over loss: 14, 3 and 20 / 4
+    for (int i = 0; i < 4 && governor.level(0) == 1.0F; ++i) static_cast<void>(display.frame(governor));
+    EXPECT_LT(governor.level(0), 0.9F);
+    EXPECT_EQ(governor.level(2), 1.0F);
+}
+
+TEST(Governor, a_little_spare_time_goes_to_the_path_that_costs_least_for_its_loss) {
+    Governor governor = of_display();
+    const PlainDisplay slow{0.010, {0.200, 0.200, 0.200}};
+    for (int i = 0; i < 100; ++i) static_cast<void>(slow.frame(governor));
+    std::array<float, 3> before{};
+    for (std::size_t i = 0; i < 3; ++i) before[i] = governor.level(i);
+    // Gain over loss: 30, 10 and 60 / 4 of the level; 2 % below the time up to which a frame may grow.
+    PlainDisplay quick{0.0, {0.030, 0.010, 0.060}};
+    quick.rest_s = 0.85 / 30.0 / 1.02 - quick.frame_s(governor);
+    ASSERT_GT(quick.rest_s, 0.0);
+    for (int i = 0; i < 100 && governor.level(0) == before[0] && governor.level(1) == before[1]; ++i) {
+        static_cast<void>(quick.frame(governor));
+        static_cast<void>(governor.step(1500.0, kStep));
+    }
+    EXPECT_GT(governor.level(1), before[1]);
+    EXPECT_EQ(governor.level(0), before[0]);
+    EXPECT_EQ(governor.level(2), before[2]);
+}
+
+TEST(Governor, paths_are_balanced_again_when_their_costs_change_and_the_frame_time_stays) {
+    Governor governor = of_display();
+    const PlainDisplay before{0.006, {0.030, 0.004, 0.004}};
+    const auto run = [&](const PlainDisplay& display) {
+        for (int i = 0; i < 100; ++i) {
+            static_cast<void>(display.frame(governor));
+            static_cast<void>(governor.step(1000.0, kStep));
+        }
+    };
+    run(before);
+    const auto mesh = static_cast<double>(governor.level(0));
+    ASSERT_LT(mesh, 0.9);
+    ASSERT_EQ(governor.level(1), 1.0F);
+    // The same time at these levels, but now nearly all of it is spent on the molecules.
+    PlainDisplay after{0.006, {0.004 / mesh, 0.0, 0.002}};
+    const double time_s = before.frame_s(governor);
+    after.path_s[1] = time_s - after.frame_s(governor);
+    run(after);
+    EXPECT_LT(governor.level(1), 0.95F);
+    EXPECT_GT(static_cast<double>(governor.level(0)), mesh);
+    EXPECT_LT(after.frame_s(governor), 1.06 / 30.0);
+}
+
 TEST(Governor, a_display_at_rest_neither_gives_nor_takes) {
     Governor governor = with({.goal_hz = 1000.0, .display_goal_hz = 30.0}, {kMesh, kForce});
     for (int i = 0; i < 4; ++i)
