@@ -13,8 +13,8 @@
 // Knob     "surface.force": maximum number of proxy moves per step, 4 to 24. A proxy that needs more lags and catches up in
 //          later steps. Most steps need two (README.md), so usually all levels are equal. predict() uses the moves of
 //          the last half second and the levels that would have lagged in it (lag_record.hpp).
-// Error    of a step that lagged: twice the force. It fades with the tool's displacement and ends when the proxy is free,
-//          because until then the proxy may be held elsewhere than without the lag.
+// Error    of a step that lagged: twice the force, until the proxy is free again, because until then it may be held
+//          elsewhere than without the lag.
 // Modes    off_brute: every triangle in every step; off_tree: search in the tree over the full mesh; chr: search in the
 //          surface that slow_update() refines around the tool (adaptive_surface.hpp), or in the full tree if that
 //          surface does not contain the search radius. The force is the same; regime() tells which one was used. In
@@ -118,7 +118,7 @@ private:
                                double gone_m) noexcept TACT_RT;
     void choose_surface(const Vec3& goal_m, float fidelity) noexcept TACT_RT;
     void use_full_surface() noexcept TACT_RT;
-    void forget_lag(double gone_m) noexcept TACT_RT;
+    void note_lag() noexcept TACT_RT;
 
     SceneMeta meta_;
     SurfaceSettings settings_;
@@ -128,7 +128,7 @@ private:
     PacedTurn<Vec3> turn_;  // by shading
     LagRecord lag_;
     double depth_m_ = 0.0;  // from the tool to the proxy in the last step, model metres
-    double lagged_ = 0.0;   // remaining weight of the last lag, 1 to 0
+    bool lagged_ = false;   // since the proxy was last free
     bool asked_ = false;    // reset() was called
     bool seated_ = false;   // the proxy has a valid position
     std::uint64_t grips_ = 0;
