@@ -19,7 +19,7 @@ bool CommandSender::send(const Command& wanted, std::int64_t now_ns) {
     std::copy_n(wanted.T_model_body.p_m.data(), 3, command.pos_model_m);
     std::copy_n(q.data(), 4, command.quat_model_body_xyzw);
     std::memcpy(command.text, wanted.text.data(), wanted.text.size());
-    ring_.push(command);
+    queue_.push(command);
     kind_ = wanted.kind;
     sent_at_ns_ = now_ns;
     stage_ = Stage::sent;

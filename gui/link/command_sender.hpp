@@ -7,8 +7,7 @@
 #include <string>
 
 #include "ipc/base/pose.hpp"
-#include "ipc/shm/ring.hpp"
-#include "ipc/topics/command.hpp"
+#include "ipc/topics/command_queue.hpp"
 #include "ipc/topics/health.hpp"
 
 namespace tact {
@@ -26,7 +25,7 @@ public:
     static constexpr std::int64_t kPatience_ns = 2'000'000'000;
     enum class Stage : std::uint8_t { none, sent, done, refused, unanswered };
 
-    explicit CommandSender(Ring<CommandTopic, 64>& ring) : ring_(ring) {}
+    explicit CommandSender(CommandQueue& queue) : queue_(queue) {}
 
     // Returns false and sends nothing if the text is longer than the topic allows.
     bool send(const Command& wanted, std::int64_t now_ns);
@@ -40,7 +39,7 @@ public:
     [[nodiscard]] std::uint64_t sequence() const { return sequence_; }
 
 private:
-    Ring<CommandTopic, 64>& ring_;
+    CommandQueue& queue_;
     std::uint64_t sequence_ = 0;
     std::int64_t sent_at_ns_ = 0;
     CommandKind kind_ = CommandKind::none;

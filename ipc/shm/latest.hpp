@@ -33,8 +33,9 @@ public:
         newest_.store(n, std::memory_order_release);            // pairs with count()
     }
 
-    // For any reader. False: nothing published yet, or the writer lapped every try.
-    [[nodiscard]] bool read(T& value) const noexcept TACT_RT {
+    // For any reader. False: nothing published yet, or the writer lapped every try. `number` becomes count() as of
+    // the value.
+    [[nodiscard]] bool read(T& value, std::uint64_t* number = nullptr) const noexcept TACT_RT {
         for (int i = 0; i < kTries; ++i) {
             const std::uint64_t n = count();
             if (n == 0) return false;
@@ -45,6 +46,7 @@ public:
             // After the words, which are loaded with acquire; pairs with the odd store in publish().
             if (slot.sequence.load(std::memory_order_relaxed) != 2 * n) continue;
             value = copy;
+            if (number != nullptr) *number = n;
             return true;
         }
         return false;

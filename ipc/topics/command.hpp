@@ -47,7 +47,7 @@ enum class CommandResult : std::uint16_t {
 };
 
 struct CommandTopic {
-    static constexpr TopicInfo kInfo{.name = "command", .version = 2, .writer = Writer::gui};
+    static constexpr TopicInfo kInfo{.name = "command", .version = 3, .writer = Writer::gui};
     std::uint64_t sequence;  // from 1
     std::int64_t taken_at_ns;
     double value;

@@ -8,7 +8,7 @@
 #include "ipc/shm/ring.hpp"
 #include "ipc/shm/topic_list.hpp"
 #include "ipc/topics/bodies.hpp"
-#include "ipc/topics/command.hpp"
+#include "ipc/topics/command_queue.hpp"
 #include "ipc/topics/device.hpp"
 #include "ipc/topics/drill.hpp"
 #include "ipc/topics/event.hpp"
@@ -63,7 +63,7 @@ struct GuiRegion {
     static constexpr char kName[] = "tact.gui";
     Latest<LoadTopic> load;
     Latest<FramesTopic> frames;
-    Ring<CommandTopic, 64> commands;
+    CommandQueue commands;
     using Topics = TopicList<LoadTopic, FramesTopic, CommandTopic>;
 };
 

@@ -20,14 +20,15 @@ namespace tact {
 
 class CostSpread {
 public:
-    static constexpr double kTail = 1e-3;        // fraction above the quantile
+    // Fraction above each quantile: half of the whole for usual steps, half for interrupted ones.
+    static constexpr double kTail = 5e-4;
     static constexpr double kInterrupted = 1.6;  // times the usual cost and kInterruptLeast_s above it
     static constexpr double kInterruptLeast_s = 5e-6;
 
     void restart() noexcept TACT_RT {
         *this = {};
-        ratio_[bin(1.0)] = kPrior * (1.0 - 2.0 * kTail);
-        ratio_[bin(kPriorSpread)] = kPrior * 2.0 * kTail;
+        ratio_[bin(1.0)] = kPrior * (1.0 - kPriorTail);
+        ratio_[bin(kPriorSpread)] = kPrior * kPriorTail;
         total_ = kPrior;
     }
     enum class Kind { usual, interrupted, changed };
@@ -85,7 +86,8 @@ public:
     }
 
 private:
-    static constexpr double kStep = 0.004, kPrior = 2000.0, kPriorSpread = 1.15, kMemory = 16000.0;
+    static constexpr double kStep = 0.004, kPrior = 2000.0, kPriorSpread = 1.15, kPriorTail = 2e-3,
+                            kMemory = 16000.0;
     static constexpr double kLeast = 0.5, kWidth = 0.02;  // smallest ratio; bin width in ln
     static constexpr double kExcessWidth = 0.2231;        // ln 1.25
     static constexpr std::size_t kBins = 72, kExcessBins = 48;

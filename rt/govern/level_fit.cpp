@@ -64,14 +64,14 @@ double LevelFit::cost_at(float level) const noexcept {
     return count_ > 0 ? rows_[count_ - 1].cost_s : 0.0;
 }
 
-double LevelFit::predicted_s(std::size_t row) const noexcept {
-    return spread_.speed() * spread_.spread() * rows_[row].cost_s;
+double LevelFit::predicted_s(std::size_t row, double interrupts_s_most) const noexcept {
+    const double usual_s = spread_.speed() * rows_[row].cost_s;
+    return std::max(usual_s * spread_.spread(), usual_s + std::min(spread_.interrupt_s(), interrupts_s_most));
 }
 
 bool LevelFit::fits(std::size_t row, const Limits& limits, double part) const noexcept {
     const double budget_s = kUse * limits.period_s * limits.budget;
-    const double interrupts_s = std::min(spread_.interrupt_s(), kInterruptShare * budget_s);
-    return predicted_s(row) + interrupts_s + rest_s_ <= part * budget_s;
+    return predicted_s(row, kInterruptShare * budget_s) + rest_s_ <= part * budget_s;
 }
 
 std::size_t LevelFit::best(const Limits& limits, double part, double cost_s_most) const noexcept {

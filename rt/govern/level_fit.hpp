@@ -5,13 +5,14 @@
 // Cost        the cost of a whole step: a step that was cut by its deadline counts as cost / work_done. Three
 //             statistics correct the prediction while the loop runs:
 //               speed      median of measured / predicted cost; follows within 0.1 s
-//               spread     p99.9 of measured / (speed x predicted) over some thousands of cycles
-//               interrupts p99.9 of the excess of steps that cost more than kInterrupted times the usual. A level
-//                          does not change the length of an interrupt, so the excess is added, not multiplied, and
-//                          takes at most kInterruptShare of the budget
-// Fits        speed x spread x predicted + interrupts + rest of the cycle <= kUse x period. The present row may
-//             use all of that, and falls after it exceeded that for kOver_s; a newly chosen row may use only kRise of
-//             it, so the level does not hunt
+//               spread     of measured / (speed x predicted), the quantile that one step in 2000 exceeds
+//               interrupts the same quantile of the excess of steps that cost more than kInterrupted times the usual.
+//                          A level does not change the length of an interrupt, so the excess is added, not
+//                          multiplied, and takes at most kInterruptShare of the budget
+// Fits        max(speed x spread x predicted, speed x predicted + interrupts) + rest of the cycle <= kUse x period:
+//             one step in a thousand exceeds it, because an interrupt seldom hits a step that is slow by itself. The
+//             present row may use all of that, and falls after it exceeded that for kOver_s; a newly chosen row may
+//             use only kRise of it, so the level does not hunt
 // Deadline    about one miss in a thousand cycles is what the quantile permits; the third within as many lowers the
 //             level at once, to at most kMissRetreat of the present cost. An interrupted step counts less, since it
 //             would have missed at any level
@@ -82,11 +83,11 @@ public:
     // Updates the statistics without choosing a level (the law "fixed").
     CostSpread::Kind learn(const Sample& sample) noexcept TACT_RT;
 
-    // p99.9 cost of the model's step.
-    [[nodiscard]] double predicted_s(std::size_t row) const noexcept TACT_RT;
     [[nodiscard]] std::size_t row() const noexcept TACT_RT { return row_; }
 
 private:
+    // p99.9 cost of the model's step, interrupts included up to `interrupts_s_most`.
+    [[nodiscard]] double predicted_s(std::size_t row, double interrupts_s_most) const noexcept;
     [[nodiscard]] double cost_at(float level) const noexcept;
     [[nodiscard]] bool fits(std::size_t row, const Limits& limits, double part) const noexcept;
     [[nodiscard]] std::size_t best(const Limits& limits, double part, double cost_s_most) const noexcept;

@@ -84,11 +84,6 @@ CheckedCommand check_command(const CommandTopic& command, std::span<const std::s
 
 namespace {
 
-bool overtakes(const CommandTopic& command) {
-    const auto kind = static_cast<CommandKind>(command.kind);
-    return kind == CommandKind::arm || kind == CommandKind::disarm;
-}
-
 // False: refused. The servo answers all commands, so that the answers come in order: a refused one goes as kind none.
 bool pass(const CommandTopic& command, std::span<const std::string> path_names, ServoOrders& orders) {
     const CheckedCommand checked = check_command(command, path_names);
@@ -105,20 +100,16 @@ bool pass(const CommandTopic& command, std::span<const std::string> path_names, 
 
 }  // namespace
 
-std::uint64_t CommandFeed::pass_on(const Commands& commands, std::span<const std::string> path_names,
+std::uint64_t CommandFeed::pass_on(const CommandQueue& commands, std::span<const std::string> path_names,
                                    ServoOrders& orders) {
     std::uint64_t bad = 0;
     CommandTopic command{};
-    for (std::uint64_t i = 0; i < Commands::kCapacity && commands.next(first_, command); ++i)
-        if (overtakes(command) && !pass(command, path_names, orders)) ++bad;
-    const std::uint64_t missed = all_.missed;
-    for (int i = 0; i < kOthersPerTurn && commands.next(all_, command); ++i) {
-        // Lapped since, this cursor may be ahead of the other one.
-        const bool passed_on = all_.next <= first_.next && overtakes(command);
-        if (!passed_on && !pass(command, path_names, orders)) ++bad;
-        first_.next = std::max(first_.next, all_.next);
-    }
-    return bad + all_.missed - missed;
+    for (int i = 0; i < 2 && commands.next_arm_or_disarm(cursor_, command); ++i)
+        bad += pass(command, path_names, orders) ? 0 : 1;
+    const std::uint64_t missed = cursor_.others.missed;
+    for (int i = 0; i < kOthersPerTurn && commands.next_other(cursor_, command); ++i)
+        bad += pass(command, path_names, orders) ? 0 : 1;
+    return bad + cursor_.others.missed - missed;
 }
 
 }  // namespace tact

@@ -109,7 +109,7 @@ protected:
     std::unique_ptr<launch::XServer> x_server_;
     std::unique_ptr<fake::Controller> controller_;
     pid_t gui_ = 0;
-    RingCursor commands_place_;
+    CommandQueue::Cursor commands_place_;
     CommandTopic last_{};
 };
 

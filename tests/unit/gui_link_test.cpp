@@ -283,7 +283,7 @@ TEST(CommandSender, numbers_commands_and_reports_their_results) {
     using Stage = CommandSender::Stage;
     ASSERT_TRUE(sender.send({.kind = CommandKind::arm}, 100));
     ASSERT_TRUE(sender.send({.kind = CommandKind::set_law, .text = "fixed"}, 200));
-    RingCursor cursor;
+    CommandQueue::Cursor cursor;
     CommandTopic command{};
     ASSERT_TRUE(region->commands.next(cursor, command));
     EXPECT_EQ(command.sequence, 1U);
@@ -432,14 +432,14 @@ TEST(StatusText, every_grade_has_a_text) {
 }
 
 TEST(CommandSender, carries_the_body_and_its_pose) {
-    Ring<CommandTopic, 64> ring;
-    CommandSender sender(ring);
+    CommandQueue queue{};
+    CommandSender sender(queue);
     Command place{.kind = CommandKind::place_body, .body = 7};
     place.T_model_body = {Vec3(1e-9, 2e-9, -3e-9), Quat(0.5, 0.5, -0.5, 0.5)};
     ASSERT_TRUE(sender.send(place, 100));
-    RingCursor cursor;
+    CommandQueue::Cursor cursor;
     CommandTopic command{};
-    ASSERT_TRUE(ring.next(cursor, command));
+    ASSERT_TRUE(queue.next(cursor, command));
     EXPECT_EQ(command.body, 7U);
     EXPECT_EQ(command.pos_model_m[2], -3e-9);
     EXPECT_EQ(command.quat_model_body_xyzw[1], -0.5);

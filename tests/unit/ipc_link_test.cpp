@@ -89,7 +89,7 @@ TEST_F(Link, both_sides_read_the_region_of_the_other) {
     EXPECT_EQ(health.cycle, 77U);
     const auto gui = MappedRegion<GuiRegion>::map(std::move(at_server.gui_fd), refusal);
     ASSERT_FALSE(gui.empty()) << refusal;
-    RingCursor cursor;
+    CommandQueue::Cursor cursor;
     CommandTopic command{};
     command.sequence = 1;
     gui_->commands.push(command);

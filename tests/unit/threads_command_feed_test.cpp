@@ -1,4 +1,4 @@
-// From the ring of the visual process to the servo's orders: arm and disarm past a flood.
+// From the queue of the visual process to the servo's orders: arm and disarm past a flood.
 #include "rt/threads/command_feed.hpp"
 
 #include <gtest/gtest.h>
@@ -16,9 +16,9 @@ protected:
         c.sequence = ++sequence_;
         c.kind = static_cast<std::uint16_t>(kind);
         c.value = value;
-        ring_->push(c);
+        queue_->push(c);
     }
-    std::uint64_t turn() { return feed_.pass_on(*ring_, {}, orders_); }
+    std::uint64_t turn() { return feed_.pass_on(*queue_, {}, orders_); }
     // 0: none was passed on.
     std::uint64_t taken(CommandKind kind) {
         ServoOrder order{};
@@ -31,8 +31,9 @@ protected:
         return n;
     }
 
-    std::unique_ptr<CommandFeed::Commands> ring_{new CommandFeed::Commands{}};
+    std::unique_ptr<CommandQueue> queue_{new CommandQueue{}};
     CommandFeed feed_;
+    CommandQueue::Cursor cursor_of_queue_;
     ServoOrders orders_;
     RingCursor cursor_;
     std::uint64_t sequence_ = 0;
@@ -50,11 +51,40 @@ TEST_F(CommandFeedTest, a_disarm_behind_a_flood_is_passed_on_in_the_next_turn) {
     }
 }
 
-TEST_F(CommandFeedTest, a_disarm_in_front_of_others_within_the_ring_is_passed_on_in_the_next_turn) {
-    push(CommandKind::disarm);
-    for (int i = 0; i < 60; ++i) push(CommandKind::mark);
+TEST_F(CommandFeedTest, a_disarm_in_front_of_a_flood_is_passed_on_in_the_next_turn) {
+    for (const int flood : {10, 60, 70, 10'000}) {
+        push(CommandKind::disarm);
+        const std::uint64_t sequence = sequence_;
+        for (int i = 0; i < flood; ++i) push(CommandKind::mark);
+        turn();
+        EXPECT_EQ(taken(CommandKind::disarm), sequence) << flood;
+    }
+}
+
+TEST_F(CommandFeedTest, of_arm_and_disarm_in_one_turn_both_come_the_older_first) {
+    for (const bool arm_first : {true, false}) {
+        push(arm_first ? CommandKind::arm : CommandKind::disarm);
+        push(arm_first ? CommandKind::disarm : CommandKind::arm);
+        CommandTopic first{}, second{};
+        CommandQueue::Cursor cursor = cursor_of_queue_;
+        ASSERT_TRUE(queue_->next(cursor, first));
+        ASSERT_TRUE(queue_->next(cursor, second));
+        EXPECT_EQ(first.sequence + 1, second.sequence);
+        EXPECT_FALSE(queue_->next(cursor, first));
+        cursor_of_queue_ = cursor;
+        turn();
+        EXPECT_EQ(taken(CommandKind::arm), sequence_ - (arm_first ? 1 : 0));
+        EXPECT_EQ(taken(CommandKind::disarm), sequence_ - (arm_first ? 0 : 1));
+    }
+}
+
+// A hostile window may write anything anywhere: what is not an order to arm or disarm is checked like any other.
+TEST_F(CommandFeedTest, a_turn_takes_two_orders_to_arm_or_disarm_at_most) {
+    for (int i = 0; i < 1000; ++i) push(i % 2 == 0 ? CommandKind::arm : CommandKind::disarm);
     turn();
-    EXPECT_EQ(taken(CommandKind::disarm), 1U);
+    EXPECT_EQ(taken(CommandKind::arm), 999U);
+    EXPECT_EQ(taken(CommandKind::disarm), 1000U);
+    EXPECT_EQ(others(), 0);
 }
 
 TEST_F(CommandFeedTest, the_others_come_in_order_so_many_a_turn_and_each_command_once) {
@@ -95,7 +125,7 @@ TEST_F(CommandFeedTest, refused_and_missed_commands_are_counted_and_a_refused_on
 TEST_F(CommandFeedTest, what_was_commanded_before_is_not_for_this_controller) {
     push(CommandKind::arm);
     push(CommandKind::mark);
-    feed_.restart(*ring_);
+    feed_.restart(*queue_);
     turn();
     EXPECT_EQ(taken(CommandKind::arm), 0U);
     EXPECT_EQ(others(), 0);

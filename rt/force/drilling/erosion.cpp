@@ -14,7 +14,8 @@ struct Erosion::Way {
     Vec3 from, way;
     double radius, per_way2;  // 1 / |way|^2; 0: it stands
     std::uint64_t key;
-    std::uint32_t groups, mask;
+    std::uint32_t groups;
+    std::uint64_t mask;  // CuttingBall's, repeated every `groups` bits
     ErodeJob job;
 
     // Of the centre of a block from the ball's way.
@@ -27,7 +28,26 @@ struct Erosion::Way {
 
 namespace {
 constexpr double kHalfDiagonalOf = 0.8660254037844387;
+
+// A fixed partition in which neighbours differ. A group is the low bits of this number.
+constexpr std::uint32_t group_number(std::uint32_t x, std::uint32_t y, std::uint32_t z) noexcept {
+    return x + 3 * y + 5 * z;
 }
+
+// Groups of the eight bricks of a block, relative to that of the first.
+constexpr std::uint64_t kGroupsOfBlock = [] {
+    std::uint64_t bits = 0;
+    for (std::uint32_t k = 0; k < 8; ++k) bits |= 1ULL << group_number(k & 1U, k >> 1U & 1U, k >> 2U);
+    return bits;
+}();
+
+std::uint64_t repeated(std::uint64_t mask, std::uint32_t groups) noexcept {
+    mask &= (1ULL << groups) - 1;
+    for (std::uint32_t bits = groups; bits < 64; bits *= 2) mask |= mask << bits;
+    return mask;
+}
+
+}  // namespace
 
 Erosion::Erosion(MomentOctree& octree, std::span<std::uint8_t> density, std::span<std::uint32_t> revision,
                  std::uint64_t seed)
@@ -55,7 +75,7 @@ void Erosion::cut(const BrickKernels& kernels, const CuttingBall& ball) noexcept
     w.way = ball.to_voxels - ball.from_voxels;
     w.radius = ball.radius_voxels;
     w.groups = ball.groups;
-    w.mask = ball.mask;
+    w.mask = repeated(ball.mask, ball.groups);
     if (w.way.squaredNorm() < 1e-8 * w.radius * w.radius) {  // the bend would be lost in rounding
         w.from += 0.5 * w.way;
         w.way.setZero();
@@ -91,15 +111,18 @@ void Erosion::cut(const BrickKernels& kernels, const CuttingBall& ball) noexcept
 
 void Erosion::visit(const Way& way, std::uint32_t level, std::uint32_t x, std::uint32_t y,
                     std::uint32_t z) noexcept {
+    // Without a brick of these groups there is nothing to do. Blocks of more than eight bricks have all groups.
+    if (level < 2) {
+        const std::uint32_t scale = 1U << level, of_first = group_number(scale * x, scale * y, scale * z);
+        const std::uint64_t groups = way.mask >> (of_first & (way.groups - 1));
+        if ((groups & (level == 0 ? 1U : kGroupsOfBlock)) == 0) return;
+    }
     const std::size_t i = octree_.index(level, x, y, z);
     if (level == 0 ? octree_.brick(i).m0 == 0 : octree_.block(level, i).m0 == 0) return;
     const double edge = static_cast<double>(8U << level), reach = way.radius + kHalfDiagonalOf * edge;
     const Vec3 centre((x + 0.5) * edge - 0.5, (y + 0.5) * edge - 0.5, (z + 0.5) * edge - 0.5);
     if (way.distance2(centre) >= reach * reach) return;
-    if (level == 0) {
-        if ((way.mask >> ((x + 3 * y + 5 * z) & (way.groups - 1)) & 1U) != 0) cut_brick(way, x, y, z);
-        return;
-    }
+    if (level == 0) return cut_brick(way, x, y, z);
     const auto& n = octree_.blocks(level - 1);
     for (std::uint32_t k = 0; k < 8; ++k) {
         const std::uint32_t cx = 2 * x + (k & 1U), cy = 2 * y + (k >> 1U & 1U), cz = 2 * z + (k >> 2U);
