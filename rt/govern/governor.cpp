@@ -224,9 +224,11 @@ bool Governor::set_goal_hz(double goal_hz) noexcept {
 bool Governor::set_level(std::size_t path, double level) noexcept {
     if (path >= count_) return false;
     GovernedPath& p = paths_[path];
-    if (!(level >= static_cast<double>(p.knob.floor) && level <= 1.0)) return false;
+    const auto requested = static_cast<float>(level);  // a floor as it is printed is at the floor
+    if (!(requested >= p.knob.floor && level <= 1.0)) return false;
     if (settings_.law != Law::fixed) set_law(Law::fixed);
-    p.requested = static_cast<float>(level);
+    p.requested = requested;
+    p.reason = LevelReason::by_command;
     return true;
 }
 

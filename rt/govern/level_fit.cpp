@@ -15,6 +15,11 @@ constexpr double kPartLeast = 0.02;  // limits the scaling of a partial cost to 
 // interrupted step counts less, since no level would have met the deadline.
 constexpr double kMissKept = 0.999, kInterruptedMiss = 0.4, kMissesMost = 2.2;
 
+// Of the whole step.
+double part_of(const LevelFit::Sample& s) noexcept {
+    return std::clamp(std::min(s.work_done, s.recomputed), kPartLeast, 1.0);
+}
+
 }  // namespace
 
 bool LevelFit::set_rows(std::span<const Row> rows) noexcept {
@@ -29,9 +34,10 @@ bool LevelFit::set_rows(std::span<const Row> rows) noexcept {
         rows_[count_++] = row;
     }
     tries_ = 0;
-    tried_s_.fill(1e9);
+    tried_s_.fill(0.0);
     row_ = 0;
     since_fall_s_ = 1e9;
+    leapt_ = false;
     spread_.restart();
     return count_ > 0;
 }
@@ -47,21 +53,33 @@ bool LevelFit::calibrating(float& level) const noexcept {
 void LevelFit::calibrate(double model_s, double rest_s) noexcept {
     if (tries_ >= kTries * count_) return;
     const std::size_t row = tries_ / kTries;
-    tried_s_[row] = std::min(tried_s_[row], model_s);
+    tried_s_[row] = tries_ % kTries == 0 ? model_s : std::min(tried_s_[row], model_s);
     rest_s_ = std::max(rest_s, kRestLeast_s);
     if (++tries_ % kTries != 0) return;
     rows_[row].cost_s = std::max(rows_[row].cost_s, tried_s_[row]);
 }
 
-double LevelFit::cost_at(float level) const noexcept {
+bool LevelFit::renew(std::size_t i, double cost_s, double error, double dt_s) noexcept {
+    if (i >= count_ || !std::isfinite(cost_s) || !std::isfinite(error)) return false;
+    Row& row = rows_[i];
+    const double kept = std::exp(-dt_s / kKept_s), before = row.cost_s;
+    row.cost_s = std::max({cost_s, tried_s_[i], kept * before});
+    row.error = std::max(error, kept * row.error);
+    const bool leapt = row.cost_s > kLeapt * before;
+    leapt_ = leapt_ || (leapt && i == row_);
+    return leapt;
+}
+
+template <class ValueOf>
+double LevelFit::at(float level, ValueOf value_of) const noexcept {
     for (std::size_t i = 0; i < count_; ++i) {
         if (level > rows_[i].level + 1e-5F) continue;
-        if (i == 0 || level >= rows_[i].level - 1e-5F) return rows_[i].cost_s;
+        if (i == 0 || level >= rows_[i].level - 1e-5F) return value_of(i);
         const double s = static_cast<double>(level - rows_[i - 1].level) /
                          static_cast<double>(rows_[i].level - rows_[i - 1].level);
-        return (1.0 - s) * rows_[i - 1].cost_s + s * rows_[i].cost_s;
+        return (1.0 - s) * value_of(i - 1) + s * value_of(i);
     }
-    return count_ > 0 ? rows_[count_ - 1].cost_s : 0.0;
+    return count_ > 0 ? value_of(count_ - 1) : 0.0;
 }
 
 double LevelFit::predicted_s(std::size_t row, double interrupts_s_most) const noexcept {
@@ -90,11 +108,20 @@ float LevelFit::choose(const Limits& limits) noexcept {
 }
 
 CostSpread::Kind LevelFit::learn(const Sample& s) noexcept {
-    const double part = std::clamp(std::min(s.work_done, s.recomputed), kPartLeast, 1.0);
-    const CostSpread::Kind kind = spread_.add(s.model_s / part, cost_at(s.level), kSpeedLeast);
+    const double part = part_of(s);
+    const double of_row_s = at(s.level, [this](std::size_t row) { return rows_[row].cost_s; });
+    CostSpread::Kind kind = CostSpread::Kind::usual;
+    if (!(s.predicted_s > 0.0))
+        kind = spread_.add(s.model_s / part, of_row_s, kSpeedLeast);
+    else if (s.predicted_s >= kTelling * of_row_s)
+        kind = spread_.add(
+            s.model_s / part,
+            std::max(s.predicted_s, at(s.level, [this](std::size_t row) { return tried_s_[row]; })),
+            kSpeedLeast);
     follow_rest(s.rest_s);
     since_fall_s_ += s.dt_s;
     misses_ *= kMissKept;
+    misses_in_a_row_ = s.deadline_missed ? misses_in_a_row_ + 1 : 0;
     if (s.deadline_missed) misses_ += kind == CostSpread::Kind::interrupted ? kInterruptedMiss : 1.0;
     ++cycle_;
     return kind;
@@ -110,15 +137,18 @@ LevelFit::Choice LevelFit::add(const Sample& s, const Limits& limits) noexcept {
     if (count_ == 0) return {.level = s.level};
     const CostSpread::Kind kind = learn(s);
     const std::size_t before = row_;
-    const bool changed_cost = kind == CostSpread::Kind::changed, due = cycle_ % kEvery == 0 || changed_cost;
+    const bool changed_cost = kind == CostSpread::Kind::changed,
+               due = cycle_ % kEvery == 0 || changed_cost || leapt_;
     LevelReason reason = LevelReason::hold;
     if (due) over_s_ = fits(row_, limits, 1.0) ? 0.0 : over_s_ + kEvery * s.dt_s;
-    if (s.deadline_missed && row_ > 0 && misses_ > kMissesMost) {
-        row_ = best(limits, 1.0, kMissRetreat * rows_[row_].cost_s);
+    if (s.deadline_missed && row_ > 0 && (misses_ > kMissesMost || misses_in_a_row_ > 1)) {
+        const double share = misses_in_a_row_ > 1 ? kUse * limits.period_s * part_of(s) / s.model_s : 1.0;
+        row_ = best(limits, 1.0, std::min(share, kMissRetreat) * rows_[row_].cost_s);
         reason = LevelReason::deadline_missed;
         misses_ = 0.0;
     } else if (due) {
-        const bool over = over_s_ > kOver_s || (changed_cost && over_s_ > 0.0);
+        const bool over = over_s_ > kOver_s || ((changed_cost || leapt_) && over_s_ > 0.0);
+        leapt_ = false;
         if (over || rows_[row_].level > limits.level_max) {
             row_ = best(limits, kRise, 1e9);
             reason = LevelReason::cost_high;
@@ -126,7 +156,8 @@ LevelFit::Choice LevelFit::add(const Sample& s, const Limits& limits) noexcept {
             const std::size_t better = best(limits, kRise, 1e9);
             // With equal errors the higher level wins: its cost fits.
             const double gain = rows_[row_].error - rows_[better].error;
-            if (gain > kSameError || (gain >= -kSameError && better > row_)) {
+            if (gain > kWorthGain * rows_[row_].error + kSameError ||
+                (std::abs(gain) <= kSameError && better > row_)) {
                 row_ = better;
                 reason = LevelReason::cost_low;
             }

@@ -1,10 +1,14 @@
 // Chooses the level of a haptic path: the smallest error among the levels whose predicted cost fits the period.
 //
 // Rows        candidate levels with the cost and error that the model predicts. Dry cycles measure the cost of each
-//             row (calibrate), so the first armed cycle already has its level.
+//             row (calibrate), so the first armed cycle already has its level. A model may predict more in contact:
+//             rows are renewed in turn and keep their largest cost and error, fading within kKept_s. If the present row's
+//             cost leaps, all are renewed and the level falls at once if it does not fit
 // Cost        the cost of a whole step: a step that was cut by its deadline counts as cost / work_done. Three
 //             statistics correct the prediction while the loop runs:
-//               speed      median of measured / predicted cost; follows within 0.1 s
+//               speed      median of measured / predicted cost of the steps whose predicted cost is at least kTelling
+//                          of their row's: cheap steps in free space tell nothing of steps in contact. Follows
+//                          within 0.1 s
 //               spread     of measured / (speed x predicted), the quantile that one step in 2000 exceeds
 //               interrupts the same quantile of the excess of steps that cost more than kInterrupted times the usual.
 //                          A level does not change the length of an interrupt, so the excess is added, not
@@ -15,8 +19,8 @@
 //             use only kRise of it, so the level does not hunt
 // Deadline    about one miss in a thousand cycles is what the quantile permits; the third within as many lowers the
 //             level at once, to at most kMissRetreat of the present cost. An interrupted step counts less, since it
-//             would have missed at any level
-// Holds       the level rises kHold_s after a fall at the earliest; a fall after a rise doubles the hold, up to
+//             would have missed at any level. The second miss in a row lowers it to what would have fitted
+// Holds       the level rises kHold_s after a fall at the earliest, and only if that takes kWorthGain off its error; a fall after a rise doubles the hold, up to
 //             kHoldMost_s. A fall more than kHoldForgotten_s after the previous one restores kHold_s
 // Thread      servo; constant time, no allocation
 #pragma once
@@ -42,6 +46,10 @@ public:
     static constexpr double kSpeedLeast = 0.7;
     static constexpr std::uint32_t kTries = 3;  // dry steps per row
     static constexpr double kOver_s = 0.1;
+    static constexpr double kKept_s = 10.0;
+    static constexpr double kTelling = 0.3;
+    static constexpr double kLeapt = 1.1;
+    static constexpr double kWorthGain = 0.15;
     static constexpr double kMissRetreat = 0.85;  // cost limit after a miss, relative to the present cost
 
     struct Row {
@@ -52,6 +60,7 @@ public:
     struct Sample {
         float level = 1.0F;
         double model_s = 0.0;
+        double predicted_s = 0.0;  // by the model for this step; 0: that of its row
         double work_done = 1.0, recomputed = 1.0;
         double rest_s = 0.0;  // cost of the previous cycle without the models
         double dt_s = 0.0;
@@ -70,6 +79,10 @@ public:
     // Dry cycles: the level to measure next; false when every row has been measured.
     [[nodiscard]] bool calibrating(float& level) const noexcept TACT_RT;
     void calibrate(double model_s, double rest_s) noexcept TACT_RT;
+    // The model's present prediction for a row, dt_s after the previous one. True: its cost leapt.
+    bool renew(std::size_t row, double cost_s, double error, double dt_s) noexcept TACT_RT;
+    // The row to renew in this cycle: each in turn.
+    [[nodiscard]] std::size_t due() const noexcept TACT_RT { return count_ > 0 ? cycle_ % count_ : 0; }
     // Selects the best row that fits, whatever the present row.
     float choose(const Limits& limits) noexcept TACT_RT;
 
@@ -88,13 +101,15 @@ public:
 private:
     // p99.9 cost of the model's step, interrupts included up to `interrupts_s_most`.
     [[nodiscard]] double predicted_s(std::size_t row, double interrupts_s_most) const noexcept;
-    [[nodiscard]] double cost_at(float level) const noexcept;
+    // Of a value of each row, between rows in proportion.
+    template <class ValueOf>
+    [[nodiscard]] double at(float level, ValueOf value_of) const noexcept;
     [[nodiscard]] bool fits(std::size_t row, const Limits& limits, double part) const noexcept;
     [[nodiscard]] std::size_t best(const Limits& limits, double part, double cost_s_most) const noexcept;
     void follow_rest(double rest_s) noexcept;
 
     std::array<Row, kRowsMax> rows_{};
-    std::array<double, kRowsMax> tried_s_{};  // smallest cost measured per row
+    std::array<double, kRowsMax> tried_s_{};  // smallest cost measured per row; 0: none
     std::size_t count_ = 0, row_ = 0;
     std::uint32_t tries_ = 0;
     CostSpread spread_;
@@ -103,6 +118,8 @@ private:
     bool rose_ = false;    // the level rose since the last fall
     double over_s_ = 0.0;  // time for which the present row has not fitted
     double misses_ = 0.0;  // decaying count
+    std::uint32_t misses_in_a_row_ = 0;
+    bool leapt_ = false;  // the predicted cost of the present row, since the last choice
     std::uint32_t cycle_ = 0;
 };
 

@@ -25,11 +25,27 @@ LevelFit::Sample sample_of(const CycleState& c) noexcept {
         work_done = std::min(work_done, static_cast<double>(c.hand[i].step.load.work_done));
     return {.level = c.budget.fidelity,
             .model_s = to_s(c.model_cost),
+            .predicted_s = to_s(c.hand[0].step.load.cost_predicted),
             .work_done = work_done,
             .recomputed = c.recomputed_fraction,
             .rest_s = c.govern.other_s,
             .dt_s = to_s(c.dt),
             .deadline_missed = c.deadline_missed};
+}
+
+void renew_rows(CycleState& c) noexcept {
+    LevelFit& fit = c.govern.fit;
+    const std::size_t rows = fit.rows().size();
+    const auto renew = [&](std::size_t row, double dt_s) {
+        const PathLoad load = c.hand[0].model->predict(fit.rows()[row].level);
+        return fit.renew(row, to_s(load.cost_predicted), load.error, dt_s);
+    };
+    if (rows == 0) return;
+    if (renew(fit.row(), 0.0)) {
+        for (std::size_t i = 0; i < rows; ++i) static_cast<void>(renew(i, 0.0));
+    } else {
+        static_cast<void>(renew(fit.due(), static_cast<double>(rows) * to_s(c.dt)));
+    }
 }
 
 }  // namespace
@@ -77,6 +93,7 @@ void choose_level(CycleState& c, const ServoSettings& settings) noexcept {
 }
 
 bool fit_level(CycleState& c, const ServoSettings& settings) noexcept {
+    renew_rows(c);
     if (c.governor.settings().law == Law::fixed) {
         static_cast<void>(c.govern.fit.learn(sample_of(c)));
         return false;

@@ -161,6 +161,41 @@ TEST(DrillLevels, work_predicted_from_another_level_is_right_within_a_factor_of_
     }
 }
 
+// The level of a hand in free space must fit when it touches: it may not be chosen by the cost of free space.
+TEST(DrillLevels, in_free_space_a_level_is_predicted_to_cost_what_a_typical_contact_costs) {
+    for (const double radius_m : {3e-3, 8e-3}) {
+        for (const float level : {0.0F, 0.5F, 1.0F}) {
+            Drilled d(radius_m);
+            d.begin(stroke_m(radius_m, -0.5));
+            const double free_us = to_us(d.model->predict(level).cost_predicted);
+            double contact_us = 0.0;
+            for (int i = 0; i < 600; ++i) {
+                const double t_s = 1e-3 * i;
+                contact_us =
+                    std::max(contact_us, to_us(d.step(stroke_m(radius_m, t_s), level).load.cost_predicted));
+            }
+            EXPECT_GT(free_us, 0.5 * contact_us) << radius_m << " m at " << level;
+            EXPECT_LT(free_us, 3.0 * contact_us) << radius_m << " m at " << level;
+        }
+    }
+}
+
+// A burr that starts cuts one group a step: what the others will cost is expected from the first.
+TEST(DrillLevels, the_first_group_tells_what_all_will_cost) {
+    Drilled d(8e-3);
+    Vec3 place = stroke_m(8e-3, 0.3);
+    ToolState tool;
+    tool.T_world_tool.p_m = place;
+    d.model->reset(tool);
+    double first = 0.0, all = 0.0;
+    for (int i = 0; i < 20; ++i) {
+        (void)d.step(place, 1.0F);
+        if (i == 1) first = d.model->predict(1.0F).items;
+        all = d.model->predict(1.0F).items;
+    }
+    EXPECT_NEAR(first, all, 0.3 * all);
+}
+
 TEST(DrillLevels, a_deadline_that_passes_while_bone_is_cut_leaves_the_rest_for_later) {
     constexpr double kRadiusM = 16e-3;  // of 53 voxels: 16 groups in two passes at least
     Drilled on_time(kRadiusM, 120), late(kRadiusM, 120);

@@ -1,4 +1,4 @@
-// Tools given as meshes: sampling, section, contact, force and torque.
+// Tools given as meshes: contact, force and torque, levels.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -6,289 +6,15 @@
 #include <memory>
 #include <numbers>
 
-#include "ipc/base/error.hpp"
 #include "ipc/base/random.hpp"
-#include "prep/surface/build_surface.hpp"
-#include "prep/surface/sample_tool.hpp"
-#include "prep/synthetic/made_tool.hpp"
-#include "prep/synthetic/rough_sphere.hpp"
-#include "rt/force/surface/tool_model.hpp"
 #include "tests/contract/force_model_contract.hpp"
+#include "tests/unit/force_tool_fixture.hpp"
 
 namespace tact {
 namespace {
 
-constexpr double kStiffness = 500.0, kWorldPerModel = 10.0;
+using namespace tool_test;
 
-TriangleMesh box_mesh(const Vec3& half_m) {
-    TriangleMesh mesh;
-    for (int i = 0; i < 8; ++i)
-        for (int axis = 0; axis < 3; ++axis)
-            mesh.position_m.push_back(
-                static_cast<float>((i >> axis & 1) != 0 ? half_m[axis] : -half_m[axis]));
-    mesh.triangle = {0, 2, 3, 0, 3, 1, 4, 5, 7, 4, 7, 6, 0, 1, 5, 0, 5, 4,
-                     2, 6, 7, 2, 7, 3, 0, 4, 6, 0, 6, 2, 1, 3, 7, 1, 7, 5};
-    return mesh;
-}
-
-void append_box(TriangleMesh& to, const Vec3& middle_m, const Vec3& half_m) {
-    const auto first = static_cast<std::uint32_t>(to.vertices());
-    const TriangleMesh box = box_mesh(half_m);
-    for (std::size_t i = 0; i < box.position_m.size(); ++i)
-        to.position_m.push_back(box.position_m[i] +
-                                static_cast<float>(middle_m[static_cast<Eigen::Index>(i % 3)]));
-    for (const std::uint32_t c : box.triangle) to.triangle.push_back(first + c);
-}
-
-// A square of 0.2 m, y up, of 2 * parts^2 triangles.
-TriangleMesh plane_mesh(std::uint32_t parts = 40) {
-    TriangleMesh mesh;
-    for (std::uint32_t i = 0; i <= parts; ++i)
-        for (std::uint32_t k = 0; k <= parts; ++k)
-            for (const double x : {0.2 * i / parts - 0.1, 0.0, 0.2 * k / parts - 0.1})
-                mesh.position_m.push_back(static_cast<float>(x));
-    for (std::uint32_t i = 0; i < parts; ++i) {
-        for (std::uint32_t k = 0; k < parts; ++k) {
-            const std::uint32_t a = i * (parts + 1) + k, b = a + parts + 1;
-            mesh.triangle.insert(mesh.triangle.end(), {a, b + 1, b, a, a + 1, b + 1});
-        }
-    }
-    return mesh;
-}
-
-TriangleMesh scaled(TriangleMesh mesh, double by) {
-    for (float& x : mesh.position_m) x *= static_cast<float>(by);
-    return mesh;
-}
-
-// A scene in memory; sizes are in world metres.
-struct World {
-    std::vector<std::byte> bytes;
-    std::unique_ptr<SceneFile> file;
-    SurfaceMesh mesh;
-    TouchTool tool;
-    SceneMeta meta{};
-    std::unique_ptr<ToolModel> model(const SurfaceSettings& settings) const {
-        return std::make_unique<ToolModel>(meta, mesh, tool, settings);
-    }
-    [[nodiscard]] double ball_world_m() const { return kWorldPerModel * tool.ball_m; }
-};
-
-std::unique_ptr<World> world(const TriangleMesh& surface, const TriangleMesh& tool,
-                             ToolSampling sampling = {}) {
-    auto w = std::make_unique<World>();
-    SceneWriter out;
-    write_surface(out, build_surface(scaled(surface, 1.0 / kWorldPerModel)));
-    write_touch_tool(out, sample_tool(scaled(tool, 1.0 / kWorldPerModel), sampling));
-    w->bytes = out.to_bytes();
-    w->file = std::make_unique<SceneFile>(SceneFile::from_bytes(w->bytes, "test.tact"));
-    w->mesh = read_surface(*w->file);
-    w->tool = read_touch_tool(*w->file);
-    w->meta.kind = SceneKind::surface;
-    w->meta.world_per_model = kWorldPerModel;
-    return w;
-}
-
-// A box of 0.03 x 0.01 x 0.02 m over a plane. Few points are enough, because its corners decide.
-const World& box_on_plane() {
-    static const auto made =
-        world(plane_mesh(), box_mesh({0.015, 0.005, 0.01}), {.points = 300, .grip_in_middle = true});
-    return *made;
-}
-
-// A thin bar of 0.04 m along x over two blocks at x = -0.01 and x = 0.015.
-const World& bar_on_blocks() {
-    static const auto made = [] {
-        TriangleMesh blocks;
-        append_box(blocks, {-0.01, -0.01, 0.0}, {0.001, 0.01, 0.02});
-        append_box(blocks, {0.015, -0.01, 0.0}, {0.001, 0.01, 0.02});
-        return world(blocks, box_mesh({0.02, 0.001, 0.001}), {.points = 2000});
-    }();
-    return *made;
-}
-
-const World& scaler_on_rough() {
-    static const auto made = world(rough_sphere(60), made_tool("scaler"), {.grip_in_middle = false});
-    return *made;
-}
-
-SurfaceSettings plain(double friction = 0.0) {
-    return {.stiffness_n_m = kStiffness, .damping_n_s_m = 0.0, .friction = friction, .shading = false};
-}
-
-ToolState at(const Vec3& p, const Quat& q = Quat::Identity()) {
-    ToolState tool;
-    tool.T_world_tool = {p, q};
-    return tool;
-}
-
-struct Hand {
-    std::unique_ptr<ToolModel> model;
-    Pose place;
-    Wrench felt;
-    Hand(const World& w, const SurfaceSettings& settings, const Pose& start)
-        : model(w.model(settings)), place(start) {
-        model->reset(at(start.p_m, start.q));
-        for (int i = 0; i < ForceFade::ramp_steps(1e-3) + 8; ++i) (void)step(start);
-    }
-    const Wrench& step(const Pose& pose) {
-        place = pose;
-        felt = model->step(at(pose.p_m, pose.q), {}).wrench_world;
-        return felt;
-    }
-    // Moves in steps of 0.1 mm or 0.01 rad, then rests.
-    const Wrench& lead(const Pose& to, int rest = 300) {
-        const Pose from = place;
-        const int steps = 1 + static_cast<int>(std::max((to.p_m - from.p_m).norm() / 1e-4,
-                                                        from.q.angularDistance(to.q) / 1e-2));
-        for (int i = 1; i <= steps; ++i) {
-            const double s = static_cast<double>(i) / steps;
-            (void)step({from.p_m + s * (to.p_m - from.p_m), from.q.slerp(s, to.q)});
-        }
-        for (int i = 0; i < rest; ++i) (void)step(to);
-        return felt;
-    }
-    [[nodiscard]] Pose proxy() const {
-        Pose p = model->contact().proxy();
-        p.p_m *= kWorldPerModel;
-        return p;
-    }
-};
-
-Pose pose(const Vec3& p, const Vec3& turn_rad = Vec3::Zero()) {
-    return {p, quat_from_rotation_vector(turn_rad)};
-}
-
-TEST(TouchTool, every_prefix_of_the_points_is_an_even_sampling) {
-    const TriangleMesh mesh = box_mesh({0.015, 0.005, 0.01});
-    const TouchTool tool = sample_tool(mesh, {.points = 600});
-    ASSERT_EQ(tool.points(), 600U);
-    SeededRandom random(5);
-    for (const std::size_t n : {8U, 40U, 200U, 600U}) {
-        const double cover = tool.cover_m[n - 1], ball = tool.ball_m;
-        double nearest = 1e9, farthest = 0.0;
-        for (std::size_t i = 0; i < n; ++i)
-            for (std::size_t k = 0; k < i; ++k)
-                nearest = std::min(nearest, (tool.at_m(i) - tool.at_m(k)).norm());
-        for (int i = 0; i < 2000; ++i) {  // a point on the surface
-            Vec3 p = random.direction();
-            p = p.cwiseAbs().maxCoeff() > 0.0 ? Vec3(p / p.cwiseAbs().maxCoeff()) : p;
-            p = p.cwiseProduct(Vec3(0.015, 0.005, 0.01));
-            double least = 1e9;
-            for (std::size_t k = 0; k < n; ++k) least = std::min(least, (tool.at_m(k) - p).norm());
-            farthest = std::max(farthest, least);
-        }
-        EXPECT_LE(farthest, 1.15 * cover + 3.0 * ball) << n;
-        EXPECT_GE(nearest, 0.66 * cover - 4.0 * ball) << n;
-    }
-    // The first points include all corners; every ball is inside and touches the surface.
-    std::size_t corners = 0, stick_out = 0;
-    for (std::size_t i = 0; i < tool.points(); ++i) {
-        const Vec3 below = Vec3(0.015, 0.005, 0.01) - tool.at_m(i).cwiseAbs();
-        if (i < 60 && below.maxCoeff() < 1.3 * tool.ball_m) ++corners;
-        if (below.minCoeff() < 0.97 * tool.ball_m) ++stick_out;
-        EXPECT_GT(below.minCoeff(), 0.0);
-        EXPECT_LT(below.minCoeff(), 1.3 * tool.ball_m);
-    }
-    EXPECT_EQ(corners, 8U);
-    EXPECT_LT(stick_out, 12U);
-}
-
-TEST(TouchTool, the_same_mesh_gives_the_same_tool_and_the_section_holds_it) {
-    const TriangleMesh mesh = made_tool("scaler");
-    SceneWriter out;
-    const TouchTool a = sample_tool(mesh, {.points = 400, .grip_in_middle = false}),
-                    b = sample_tool(mesh, {.points = 400, .grip_in_middle = false});
-    EXPECT_EQ(a.point_m, b.point_m);
-    write_touch_tool(out, a);
-    const auto bytes = out.to_bytes();
-    const TouchTool read = read_touch_tool(SceneFile::from_bytes(bytes, "t"));
-    EXPECT_EQ(read.point_m, a.point_m);
-    EXPECT_EQ(read.normal, a.normal);
-    EXPECT_EQ(read.parent, a.parent);
-    EXPECT_EQ(read.cover_m, a.cover_m);
-    EXPECT_EQ(read.drawn, a.drawn);
-    EXPECT_EQ(read.ball_m, a.ball_m);
-}
-
-TEST(TouchTool, a_wrong_section_is_refused) {
-    const TouchTool good = sample_tool(box_mesh({0.01, 0.01, 0.01}), {.points = 20});
-    const auto refused = [&](auto change) {
-        TouchTool tool = good;
-        change(tool);
-        SceneWriter out;
-        write_touch_tool(out, tool);
-        const auto bytes = out.to_bytes();
-        const SceneFile file = SceneFile::from_bytes(bytes, "t");
-        EXPECT_THROW((void)read_touch_tool(file), StartupError);
-    };
-    refused([](TouchTool& t) { t.parent[3] = 3; });
-    refused([](TouchTool& t) { t.parent[0] = 1; });
-    refused([](TouchTool& t) { t.ball_m = 0.0; });
-    refused([](TouchTool& t) { t.ball_m = std::nan(""); });
-    refused([](TouchTool& t) { t.point_m[4] = std::nanf(""); });
-    refused([](TouchTool& t) { t.cover_m[5] = 2.0F * t.cover_m[4] + 1.0F; });
-    refused([](TouchTool& t) { t.drawn[2] = 8; });
-    refused([](TouchTool& t) { t.point_m.pop_back(); });
-    refused([](TouchTool& t) { t.parent.clear(); });
-}
-
-TEST(TouchTool, made_tools_are_closed_and_turned_outward) {
-    for (const char* name : kMadeTools) {
-        const TriangleMesh mesh = made_tool(name);
-        EXPECT_TRUE(build_surface(mesh).closed) << name;
-        double volume = 0.0;
-        const auto at = [&](std::size_t i) {
-            const float* p = mesh.position_m.data() + 3 * mesh.triangle[i];
-            return Vec3(p[0], p[1], p[2]);
-        };
-        for (std::size_t t = 0; t < mesh.triangle.size(); t += 3)
-            volume += at(t).dot(at(t + 1).cross(at(t + 2)));
-        EXPECT_GT(volume, 0.0) << name;
-    }
-    EXPECT_EQ(made_tool("none").triangles(), 0U);
-}
-
-TEST(TwistHalfSpaces, the_solution_is_the_nearest_twist_inside_all_half_spaces) {
-    SeededRandom random(11);
-    const auto number = [&] { return 2.0 * random.uniform() - 1.0; };
-    for (int trial = 0; trial < 60; ++trial) {
-        TwistHalfSpaces half_spaces;
-        const int count = 1 + static_cast<int>(random.below(40));
-        std::vector<std::pair<Vec6, double>> plane;
-        for (int i = 0; i < count; ++i) {
-            const Vec3 n = random.direction(), lever(number(), number(), number());
-            TriangleQueries look{};
-            for (std::size_t axis = 0; axis < 3; ++axis)
-                look.away[axis][0] = static_cast<float>(n[static_cast<Eigen::Index>(axis)]);
-            const auto slack = static_cast<float>(0.3 * random.uniform());
-            ASSERT_TRUE(half_spaces.add(0, 0, lever.cast<float>(), look, 0, slack, slack, false));
-            Vec6 normal;
-            normal << n, lever.cross(n);
-            plane.emplace_back(normal, static_cast<double>(slack));
-        }
-        Vec6 goal;
-        for (double& x : goal) x = number();
-        TwistHalfSpaces::Solution s = TwistHalfSpaces::fresh(goal);
-        half_spaces.solve(goal, 1e-6, s);
-        ASSERT_TRUE(s.exact);
-        Vec6 pushed = goal;
-        for (std::size_t i = 0; i < s.active_count; ++i) {
-            EXPECT_GE(s.active[i].weight_m, 0.0);
-            EXPECT_NEAR(s.active[i].normal.dot(s.move_m) + s.active[i].slack_m, 0.0, 2e-6);
-            pushed += s.active[i].weight_m * s.active[i].normal;
-        }
-        EXPECT_LT((pushed - s.move_m).norm(),
-                  1e-9);  // with the weights above: the optimum (Karush-Kuhn-Tucker)
-        for (const auto& [normal, slack] : plane) EXPECT_GT(normal.dot(s.move_m) + slack, -3e-6);
-    }
-}
-
-// Flat on a ball that pokes between the points: here they matter.
-const World& box_on_rough() {
-    static const auto made = world(rough_sphere(40), box_mesh({0.015, 0.005, 0.01}), {.points = 1000});
-    return *made;
-}
 ForceModelCase tool_case(const char* name, const World& (*on)(), double grip_y_m, const Pose& touch) {
     ForceModelCase c;
     c.name = name;
@@ -596,6 +322,37 @@ TEST(Tool, shading_leaves_a_plane_and_an_edge_as_they_are) {
     EXPECT_GT(b.force_n.norm(), 0.02);
     EXPECT_LT((a.force_n - b.force_n).norm(), 1e-9);
     EXPECT_LT((a.torque_n_m - b.torque_n_m).norm(), 1e-9);
+}
+
+// On its flat side and fast, a box needs many queries in a step.
+TEST(Tool, a_level_limits_the_queries_of_a_step) {
+    std::uint32_t most = 0;
+    double costliest_us = 0.0;
+    for (const float fidelity : {0.05F, 0.5F, 0.75F, 1.0F}) {
+        const std::uint32_t queries = ToolModel::queries(fidelity);
+        EXPECT_GT(to_us(box_on_rough().model({})->predict(fidelity).cost_predicted), costliest_us);
+        costliest_us = to_us(box_on_rough().model({})->predict(fidelity).cost_predicted);
+        Hand hand(box_on_rough(), {}, pose({0.004, 0.075, 0.003}));
+        (void)hand.lead(pose({0.004, 0.053, 0.003}));
+        most = 0;
+        for (int i = 0; i < 400; ++i) {
+            const Vec3 p = Eigen::AngleAxisd(2e-3 * i, Vec3::UnitZ()) * Vec3(0.004, 0.053, 0.003);
+            Budget budget;
+            budget.fidelity = fidelity;
+            (void)hand.model->step(at(p), budget);
+            most = std::max({most, hand.model->tool_touch().looked, hand.model->tool_touch().asked});
+            // A query that finds too many triangles is repeated with a smaller reach.
+            ASSERT_LE(hand.model->tool_touch().looked, queries + 6) << fidelity << ", step " << i;
+            ASSERT_LE(hand.model->tool_touch().asked, queries + 1) << fidelity << ", step " << i;
+        }
+        EXPECT_GE(most, std::min(queries, 150U)) << fidelity;
+    }
+    EXPECT_EQ(ToolModel::queries(0.0F), ToolModel::kQueriesLeast);
+    EXPECT_EQ(ToolModel::queries(1.0F), ToolContact::kQueriesMost);
+    // All points before more queries.
+    const auto model = box_on_rough().model({});
+    EXPECT_EQ(model->items(ToolModel::kAllPointsAt), model->contact().points().size());
+    EXPECT_EQ(ToolModel::queries(ToolModel::kAllPointsAt), ToolModel::kQueriesLeast);
 }
 
 TEST(Tool, out_of_time_the_proxy_stays_in_free_space) {

@@ -248,6 +248,17 @@ TEST(Governor, the_fixed_law_keeps_the_level_that_a_person_set_at_any_rate) {
     EXPECT_FALSE(governor.set_level(7, 0.5));
 }
 
+// 0.05 is below 0.05F.
+TEST(Governor, a_floor_as_it_is_printed_and_the_present_level_are_levels_that_a_person_may_set) {
+    Governor governor = with({.law = Law::elastic, .goal_hz = 1000.0}, {kMesh, kForce});
+    ASSERT_TRUE(governor.set_level(0, 0.05));
+    EXPECT_TRUE(governor.step(1000.0, kStep));
+    EXPECT_EQ(governor.level(0), kMesh.floor);
+    ASSERT_TRUE(governor.set_level(1, 1.0));
+    EXPECT_FALSE(governor.step(1000.0, kStep));
+    EXPECT_EQ(governor.paths()[1].reason, LevelReason::by_command);
+}
+
 TEST(Governor, a_change_to_the_fixed_law_keeps_the_present_levels) {
     Governor governor = with({.law = Law::sensitus, .goal_hz = 1000.0}, {kMesh});
     static_cast<void>(governor.step(500.0, kStep));

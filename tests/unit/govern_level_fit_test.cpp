@@ -48,13 +48,15 @@ public:
             cost_us_.push_back(whole_us + other_us_);
             const bool missed = took_us > deadline_us;
             misses += missed ? 1 : 0;
-            const LevelFit::Choice choice = fit_.add({.level = level_,
-                                                      .model_s = kUs * took_us,
-                                                      .work_done = took_us / whole_us,
-                                                      .rest_s = kUs * other_us_,
-                                                      .dt_s = kUs * period_us_,
-                                                      .deadline_missed = missed},
-                                                     limits());
+            const LevelFit::Choice choice =
+                fit_.add({.level = level_,
+                          .model_s = kUs * took_us,
+                          .predicted_s = predicted_us ? kUs * predicted_us(fit_.row()) : 0.0,
+                          .work_done = took_us / whole_us,
+                          .rest_s = kUs * other_us_,
+                          .dt_s = kUs * period_us_,
+                          .deadline_missed = missed},
+                         limits());
             changes += choice.changed ? 1 : 0;
             level_ = choice.level;
         }
@@ -65,6 +67,7 @@ public:
         return costs[static_cast<std::size_t>(std::ceil(0.999 * static_cast<double>(last))) - 1];
     }
     int misses = 0, changes = 0;
+    std::function<double(std::size_t row)> predicted_us;  // by the model, for each step; empty: by the row
 
 private:
     LevelFit& fit_;
@@ -227,6 +230,111 @@ TEST(LevelFit, a_cost_at_the_edge_of_the_limit_does_not_make_the_level_hunt) {
         return 1.05 * drift * noise(random) * 20.0 * std::exp2(static_cast<double>(row));
     });
     EXPECT_LE(loop.changes, 6);
+}
+
+// A row is renewed in every cycle, as in the loop.
+void renew_all(LevelFit& fit, double factor, double dt_s = 1e-3) {
+    for (std::size_t i = 0; i < fit.rows().size(); ++i)
+        fit.renew(i, factor * 10.0 * kUs * std::exp2(static_cast<double>(i)), 0.0, dt_s);
+}
+
+TEST(LevelFit, a_leap_of_the_predicted_cost_lowers_the_level_in_the_same_cycle) {
+    LevelFit fit = with(doubling(7, 10.0));
+    Loop loop(fit, 1000.0);
+    const auto usual = [](std::size_t row) { return 10.0 * std::exp2(static_cast<double>(row)); };
+    loop.run(1000, usual);
+    const std::size_t before = fit.row();
+    renew_all(fit, 4.0);
+    loop.run(1, [&](std::size_t row) { return 4.0 * usual(row); });
+    EXPECT_LE(fit.row() + 2, before);
+    EXPECT_LE(4.0 * usual(fit.row()), 700.0);
+}
+
+TEST(LevelFit, the_largest_predicted_cost_and_error_of_the_last_seconds_count) {
+    LevelFit fit = with(doubling(3, 10.0));
+    EXPECT_TRUE(fit.renew(1, 100 * kUs, 5.0, 1e-3));
+    EXPECT_FALSE(fit.renew(1, 1 * kUs, 0.1, LevelFit::kKept_s / 10.0));
+    EXPECT_NEAR(fit.rows()[1].cost_s, 100 * kUs * std::exp(-0.1), 1e-12);
+    EXPECT_NEAR(fit.rows()[1].error, 5.0 * std::exp(-0.1), 1e-9);
+    EXPECT_FALSE(fit.renew(1, 1 * kUs, 0.1, 10.0 * LevelFit::kKept_s));
+    EXPECT_NEAR(fit.rows()[1].cost_s, 1 * kUs, 1e-12);
+    EXPECT_FALSE(fit.renew(1, NAN, 0.0, 1e-3));
+    EXPECT_FALSE(fit.renew(7, 1.0, 0.0, 1e-3));
+    EXPECT_NEAR(fit.rows()[1].cost_s, 1 * kUs, 1e-12);
+    std::vector<bool> due(3);
+    for (int i = 0; i < 3; ++i) {
+        due[fit.due()] = true;
+        static_cast<void>(fit.learn({}));
+    }
+    EXPECT_EQ(due, std::vector<bool>(3, true));
+}
+
+TEST(LevelFit, a_small_gain_of_error_is_not_worth_a_change_of_level) {
+    for (const double error : {0.9, 0.8}) {
+        LevelFit fit = with({{0.0F, 100 * kUs, 1.0}, {1.0F, 600 * kUs, error}});
+        Loop loop(fit, 1000.0);
+        const auto usual = [](std::size_t row) { return row == 0 ? 100.0 : 600.0; };
+        loop.run(1000, usual);
+        ASSERT_EQ(fit.row(), 0U);
+        for (int i = 0; i < 8; ++i) fit.renew(1, 200 * kUs, error, 10.0);  // it fits from now on
+        loop.run(3000, [](std::size_t row) { return row == 0 ? 100.0 : 200.0; });
+        EXPECT_EQ(fit.row(), error < 0.85 ? 1U : 0U) << error;
+    }
+}
+
+// What a step measured is never predicted below by a renewal.
+TEST(LevelFit, a_renewed_cost_is_at_least_the_calibrated_one) {
+    LevelFit fit = with(doubling(2, 1.0));
+    float level = 0.0F;
+    while (fit.calibrating(level)) fit.calibrate(50 * kUs, 1 * kUs);
+    EXPECT_FALSE(fit.renew(0, 1 * kUs, 0.0, 100.0 * LevelFit::kKept_s));
+    EXPECT_NEAR(fit.rows()[0].cost_s, 50 * kUs, 1e-12);
+}
+
+// Five in a row are a fault.
+TEST(LevelFit, two_misses_in_a_row_lower_the_level_to_what_would_have_fitted) {
+    LevelFit fit = with(doubling(8, 10.0));
+    Loop loop(fit, 2000.0);
+    loop.run(500, [](std::size_t row) { return 10.0 * std::exp2(static_cast<double>(row)); });
+    const auto slow = [](std::size_t row) { return 6.0 * 10.0 * std::exp2(static_cast<double>(row)); };
+    const int before = loop.misses;
+    loop.run(5, slow);
+    EXPECT_EQ(loop.misses, before + 2);
+    EXPECT_LE(slow(fit.row()), 0.7 * 2000.0);
+}
+
+// A model that predicts each step: cheap steps in free space say nothing about the speed of the processor in contact.
+TEST(LevelFit, only_steps_that_are_predicted_to_be_as_costly_as_their_row_measure_the_speed) {
+    for (const double slower : {1.0, 1.6}) {
+        LevelFit fit = with(doubling(7, 10.0));
+        Loop loop(fit, 1000.0);
+        const auto whole = [&](std::size_t row) {
+            return slower * 10.0 * std::exp2(static_cast<double>(row));
+        };
+        loop.predicted_us = [](std::size_t row) { return 10.0 * std::exp2(static_cast<double>(row)); };
+        loop.run(2000, whole);
+        const std::size_t in_contact = fit.row();
+        loop.predicted_us = [](std::size_t) { return 1.0; };
+        for (const double free_us : {0.5, 4.0}) {
+            loop.run(20000, [&](std::size_t) { return free_us; });
+            EXPECT_EQ(fit.row(), in_contact) << slower << ", " << free_us;
+        }
+    }
+}
+
+// One step in 500 is interrupted for 100 us, and one in 500 is slow by itself, seldom the same.
+TEST(LevelFit, slow_steps_and_interrupts_are_not_added) {
+    const Rows rows{{0.0F, 80 * kUs, 1.0}, {1.0F, 160 * kUs, 0.0}};
+    LevelFit fit = with(rows);
+    Loop loop(fit, 500.0);
+    int n = 0;
+    loop.run(40000, [&](std::size_t row) {
+        const double usual = row == 1 ? 160.0 : 80.0;
+        ++n;
+        return n % 500 == 0 ? usual + 100.0 : n % 500 == 250 ? 1.5 * usual : usual;
+    });
+    EXPECT_EQ(fit.row(), 1U);  // 160 x 1.5 + 100 + 10 would exceed 0.88 x 350
+    EXPECT_EQ(loop.misses, 0);
 }
 
 TEST(LevelFit, a_budget_and_a_highest_level_bound_the_choice) {

@@ -12,22 +12,31 @@ constexpr double kDrillStepNs = 300.0, kBallNs = 150.0, kBlockNs = 12.0, kSumNs 
 constexpr double kErrorLeast = 0.01, kErrorPerBlock = 0.2, kErrorPerVoxel = 0.5, kErrorRough = 0.1;
 constexpr double kSurfacePerEdge2 = 1.5;  // cubes that a surface meets, on average of its directions
 
-// Blocks that a ball's surface in bone makes a walk of the octree visit, up to a common factor.
+// Cubes of an edge that a ball's surface in bone meets.
+struct SurfaceInBone {
+    double area, rim;
+    explicit SurfaceInBone(double radius, double x)
+        : area(2.0 * std::numbers::pi * radius * radius * x),
+          rim(2.0 * std::numbers::pi * radius * std::sqrt(std::max(x * (2.0 - x), 0.0))) {}
+    [[nodiscard]] double met(double edge) const {
+        return 1.0 + kSurfacePerEdge2 * (area / (edge * edge) + rim / edge);
+    }
+};
+
+// Blocks that a walk of the octree visits, up to a common factor.
 DrillWork surface_work(const BallLook& look, double block) noexcept {
     const double x = std::clamp(look.depth, 0.01, 2.0), r = look.radius;
-    const double area = 2.0 * std::numbers::pi * r * r * x,
-                 rim = 2.0 * std::numbers::pi * r * std::sqrt(std::max(x * (2.0 - x), 0.0));
+    const SurfaceInBone surface(r, x);
     const double l = std::clamp(block * depth_part(x), 1.0, kBlockMost * r);
     // Of the blocks of an edge, those that are larger than asked: asked is l in bone, l / 2 where bone and air meet.
     const auto share = [&](double edge) { return std::clamp(2.0 * edge / l - 1.0, 0.0, 1.0); };
     DrillWork work;
-    double edge = 8.0;
-    const auto met = [&] { return 1.0 + kSurfacePerEdge2 * (area / (edge * edge) + rim / edge); };
     const double parts = share(8.0), voxels = share(4.0);
     // Where voxels alone are summed their parts still count, so that no finer level is expected to be cheaper.
-    work.blocks = 8.0 + 8.0 * met() * parts;
-    work.summed = met() * voxels;
-    for (edge = 16.0; edge < 2.0 * r; edge *= 2.0) work.blocks += 8.0 * met() * share(edge);
+    work.blocks = 8.0 + 8.0 * surface.met(8.0) * parts;
+    work.summed = surface.met(8.0) * voxels;
+    for (double edge = 16.0; edge < 2.0 * r; edge *= 2.0)
+        work.blocks += 8.0 * surface.met(edge) * share(edge);
     return work;
 }
 
@@ -48,6 +57,13 @@ DrillWork expected_work(const DrillWork& found, const BallLook& as, double block
     const double scale = found.blocks / then.blocks;
     work.summed = then.summed > 1.0 && found.summed > 0.0 ? found.summed * now.summed / then.summed
                                                           : scale * now.summed;
+    return work;
+}
+
+DrillWork flat_work(const BallLook& look, double block) noexcept {
+    DrillWork work = surface_work(look, block);
+    work.balls = 1.0;
+    work.cut = SurfaceInBone(look.radius, look.depth).met(8.0);
     return work;
 }
 

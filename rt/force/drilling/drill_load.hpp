@@ -45,6 +45,9 @@ struct BallLook {
 [[nodiscard]] DrillWork expected_work(const DrillWork& found, const BallLook& as,
                                       double block) noexcept TACT_RT;
 
+// Of a ball in flat solid bone, by the sizes alone; all bricks that it meets are cut.
+[[nodiscard]] DrillWork flat_work(const BallLook& look, double block) noexcept TACT_RT;
+
 // Of the elastic force, for blocks and voxels in radii. rough: blocks do not shrink near the surface.
 [[nodiscard]] double block_error_share(double block, double voxel, bool rough) noexcept TACT_RT;
 // Newtons per exposure that is pending, of a ball of weight 1.

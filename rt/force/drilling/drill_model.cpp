@@ -12,7 +12,8 @@
 namespace tact {
 namespace {
 
-constexpr double kNoHandM = 1e3;  // no hand is there
+constexpr double kNoHandM = 1e3;        // no hand is there
+constexpr double kTypicalForceN = 3.0;  // of a surgeon's hand
 
 bool hand_is_there(const Pose& pose) noexcept {
     const double turn = pose.q.squaredNorm();
@@ -71,6 +72,9 @@ DrillModel::DrillModel(const SceneMeta& meta, DrillBone& bone, const DrillSettin
         const double full = elastic_pa_[i] * radius_m * radius_m;
         const double x = std::min(std::cbrt(std::pow(settings.force_n_max / full, 2.0)), 2.0);
         stiffness_n_m_ = std::max(stiffness_n_m_, 1.5 * elastic_pa_[i] * radius_m * std::sqrt(x));
+        if (radius_m == head_radius_m_)
+            typical_ = {.radius = radius_m / per_voxel_m_,
+                        .depth = std::min(std::cbrt(std::pow(kTypicalForceN / full, 2.0)), 1.0)};
     }
 }
 
@@ -113,7 +117,10 @@ PathLoad DrillModel::predict(float fidelity) const noexcept {
     PathLoad load;
     const DrillWork work = expected(fidelity);
     load.items = work.items();
-    load.cost_predicted = drill_cost(work);
+    // In free space, the cost that a contact will have.
+    DrillWork typical = flat_work(typical_, block_of(fidelity) * typical_.radius);
+    typical.cut *= static_cast<double>(turns_.groups_at(fidelity, drive_.step_s)) / turns_.groups();
+    load.cost_predicted = std::max(drill_cost(work), drill_cost(typical));
     // A group waits for all steps between its cuts.
     const double steps = static_cast<double>(turns_.groups()) / turns_.groups_at(fidelity, drive_.step_s);
     const double pending = 0.5 * (steps - 1.0) * rate_per_s() * drive_.step_s;

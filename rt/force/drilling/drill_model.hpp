@@ -164,6 +164,7 @@ private:
     std::array<Vec3, DrillTool::kMax> now_voxels_{};  // centres
     ErosionTurns turns_{1.0};
     BallForces last_;     // of the last step
+    BallLook typical_;    // of the head in flat bone
     bool cuts_ = false;   // the clutch is open
     bool asked_ = false;  // reset() was called
     bool led_ = false;    // now_voxels_ are of a tool that was led here

@@ -14,7 +14,7 @@ std::uint32_t ErosionTurns::groups_at(float fidelity, double step_s) const noexc
 
 void ErosionTurns::forget(const Centres& now_voxels) noexcept {
     ++step_;
-    for (std::uint32_t g = 0; g < groups_; ++g) group_[g] = {now_voxels, 0.0, step_, 0.0};
+    for (std::uint32_t g = 0; g < groups_; ++g) group_[g] = {now_voxels, 0.0, step_, 0.0, false};
     pending_ = 0.0;
     started_ = 0;
 }
@@ -68,6 +68,7 @@ ErosionTurns::Done ErosionTurns::cut(Erosion& erosion, const Job& job) noexcept 
             group.exposure = 0.0;
             group.step = step_;
             group.bricks = bricks;
+            group.was_cut = true;
             std::copy_n(job.now_voxels->begin(), job.tool->count, group.from_voxels.begin());
         }
         done.cut += many;
@@ -78,9 +79,12 @@ ErosionTurns::Done ErosionTurns::cut(Erosion& erosion, const Job& job) noexcept 
 }
 
 double ErosionTurns::bricks() const noexcept {
-    double sum = 0.0;
-    for (std::uint32_t g = 0; g < groups_; ++g) sum += group_[g].bricks;
-    return sum;
+    double sum = 0.0, cut = 0.0;
+    for (std::uint32_t g = 0; g < groups_; ++g) {
+        sum += group_[g].bricks;
+        cut += group_[g].was_cut ? 1.0 : 0.0;
+    }
+    return cut > 0.0 ? sum * groups_ / cut : 0.0;
 }
 
 }  // namespace tact

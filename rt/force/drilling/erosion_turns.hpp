@@ -53,7 +53,8 @@ public:
 
     // Of a ball of weight 1: the mean over all groups, of what they were exposed to since their last cuts.
     [[nodiscard]] double pending() const noexcept TACT_RT { return pending_ / groups_; }
-    // In all groups, as of their last cuts; 0 where the burr stands.
+    // In all groups, as of their last cuts; of groups that were not cut yet, as many as in the others. 0 where the burr
+    // stands.
     [[nodiscard]] double bricks() const noexcept TACT_RT;
 
 private:
@@ -62,6 +63,7 @@ private:
         double exposure = 0.0;   // since then, of a ball of weight 1
         std::uint64_t step = 0;  // of its last cut
         double bricks = 0.0;     // of its last cut
+        bool was_cut = false;    // since the burr started
     };
     std::array<Group, kGroupsMost> group_;
     std::uint32_t groups_ = kGroupsLeast, next_ = 0, started_ = 0;

@@ -129,7 +129,7 @@ ToolContact::Move ToolContact::find_move(const Vec6& request, double left_m, Too
         }
         // The number of triangles in reach grows with the square of the move's length.
         longest_m_ = kShrinks * tried_m;
-        if (longest_m_ < settings_.margin_m || touch.late || touch.looked >= kLooksMost) return move;
+        if (longest_m_ < settings_.margin_m || touch.late || touch.looked >= queries_most_) return move;
     }
 }
 
@@ -172,12 +172,12 @@ ToolContact::Move ToolContact::find_move_within(const Vec6& request, double left
         if (count == 0) return move;
         const bool late = deadline.passed();
         touch.late |= late;
-        if (late || !room || round == kMoveRounds || touch.looked >= kLooksMost ||
-            touch.asked >= kQueriesMost)
+        if (late || !room || round == kMoveRounds || touch.looked >= queries_most_ ||
+            touch.asked >= queries_most_)
             break;
         for (std::size_t k = 0; k < count && room; ++k) {
             const std::uint32_t i = beyond_[k];
-            if (touch.looked >= kLooksMost || touch.asked >= kQueriesMost) break;
+            if (touch.looked >= queries_most_ || touch.asked >= queries_most_) break;
             const double way = points_.way_m(i, v, w);
             // Update the distance bound of far points; query triangles only for near ones.
             if (points_.asked_m(i) > kAskedRooms * way + settings_.ball_m) {
@@ -199,9 +199,10 @@ ToolContact::Move ToolContact::find_move_within(const Vec6& request, double left
     return move;
 }
 
-ToolTouch ToolContact::follow(const Pose& goal, std::uint32_t points, std::uint32_t moves_max,
-                              const Deadline& deadline, const NearSurface* near) noexcept {
+ToolTouch ToolContact::follow(const Pose& goal, const Limits& limits, const Deadline& deadline,
+                              const NearSurface* near) noexcept {
     ToolTouch touch;
+    queries_most_ = limits.queries;
     lists_.begin_step(near);
     longest_m_ = std::max(kFirstMoves * last_move_m_, kLeastMargins * settings_.margin_m);
     const Pose to{goal.p_m, goal.q.normalized()};
@@ -209,7 +210,7 @@ ToolTouch ToolContact::follow(const Pose& goal, std::uint32_t points, std::uint3
     const double allowed = kGoneSteps * way_m(goal_, to).norm() + lag;
     goal_ = to;
     if (seating_ > 0) --seating_;
-    points_.wake(proxy_, points, std::span(held_).first(held_count_),
+    points_.wake(proxy_, limits.points, std::span(held_).first(held_count_),
                  points_.tried_all() ? kWakeQueries : kSeatQueries);
     touch.T_model_proxy = proxy_;
     touch.state = ContactState::lagging;
@@ -221,7 +222,7 @@ ToolTouch ToolContact::follow(const Pose& goal, std::uint32_t points, std::uint3
     Pose one_ago = proxy_, two_ago{Vec3::Constant(1e100), Quat::Identity()};
     double left = allowed;
     double gone = 0.0;
-    while (touch.moves < moves_max && touch.looked < kLooksMost && touch.asked < kQueriesMost &&
+    while (touch.moves < limits.moves && touch.looked < queries_most_ && touch.asked < queries_most_ &&
            !touch.late) {
         ++touch.moves;
         const Move move = find_move(way_m(proxy_, to), left, touch, deadline);

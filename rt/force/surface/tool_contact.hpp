@@ -56,8 +56,7 @@ struct ToolTouch {
 class ToolContact {
 public:
     // Limits per step.
-    static constexpr std::uint32_t kLooksMost = 320;    // triangle queries
-    static constexpr std::uint32_t kQueriesMost = 320;  // distance queries, except those that wake points
+    static constexpr std::uint32_t kQueriesMost = 320;  // of triangles, and of distances apart from waking
     static constexpr std::uint32_t kWakeQueries = 24;   // queries that wake points
     static constexpr std::uint32_t kSeatQueries = 96;   // the same, until every point was tried once
 
@@ -77,9 +76,13 @@ public:
     static constexpr int kSeatingMost = 400;
     void seat(const Pose& goal) noexcept TACT_RT;
     [[nodiscard]] bool seating() const noexcept TACT_RT { return seating_ > 0; }
+    // Of one step; queries: of triangles, and as many of distances.
+    struct Limits {
+        std::uint32_t points = 1, moves = 1, queries = kQueriesMost;
+    };
     // near: of an adaptive surface, valid during the call; may be null.
-    ToolTouch follow(const Pose& goal, std::uint32_t points, std::uint32_t moves_max,
-                     const Deadline& deadline = {}, const NearSurface* near = nullptr) noexcept TACT_RT;
+    ToolTouch follow(const Pose& goal, const Limits& limits, const Deadline& deadline = {},
+                     const NearSurface* near = nullptr) noexcept TACT_RT;
 
 private:
     struct Move {
@@ -111,6 +114,7 @@ private:
     double last_move_m_ = 0.0;
     double longest_m_ = 0.0;  // maximum length of the next move; a longer one would only waste queries
     int seating_ = 0;         // steps left for seating
+    std::uint32_t queries_most_ = kQueriesMost;  // of this step
     Pose proxy_, goal_;
 };
 

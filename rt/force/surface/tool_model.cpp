@@ -10,8 +10,19 @@ namespace {
 
 constexpr double kFarHandM = 1e3;
 constexpr double kBallMargin = 0.05;  // fraction of the ball's radius
-// Two to three times the measured median: 1000 points of a block flat on a rough sphere take 40 to 77 us (TOOLS.md).
-constexpr double kStepUs = 10.0, kPointUs = 0.15;
+// Of a step that uses up its queries: 1.4 us for a triangle query with its share of distance queries, measured at 3.7 GHz,
+// over LevelFit::kSpeedLeast.
+constexpr double kStepUs = 5.0, kPointUs = 0.02, kQueryUs = 2.0;
+
+float level_of(float fidelity) {
+    return fidelity >= 0.0F ? std::min(fidelity, 1.0F) : 0.0F;  // NaN: the floor
+}
+
+// Part of all points, and of the queries above the least.
+float point_part(float fidelity) { return std::min(level_of(fidelity) / ToolModel::kAllPointsAt, 1.0F); }
+float query_part(float fidelity) {
+    return std::max(level_of(fidelity) - ToolModel::kAllPointsAt, 0.0F) / (1.0F - ToolModel::kAllPointsAt);
+}
 
 bool holds_tool(const Pose& pose) noexcept {
     const double turn = pose.q.squaredNorm();
@@ -64,15 +75,22 @@ KnobSpec ToolModel::knob() const noexcept {
 }
 
 std::uint32_t ToolModel::items(float fidelity) const noexcept {
-    const float level = fidelity >= 0.0F ? std::min(fidelity, 1.0F) : 0.0F;  // NaN: the floor
     const std::uint32_t all = solver_.points().size(), least = std::min(all, std::max(kPointsLeast, all / 8));
-    return least + static_cast<std::uint32_t>(std::lround(level * static_cast<float>(all - least)));
+    return least +
+           static_cast<std::uint32_t>(std::lround(point_part(fidelity) * static_cast<float>(all - least)));
+}
+
+std::uint32_t ToolModel::queries(float fidelity) noexcept {
+    constexpr std::uint32_t most = ToolContact::kQueriesMost;
+    return kQueriesLeast + static_cast<std::uint32_t>(
+                               std::lround(query_part(fidelity) * static_cast<float>(most - kQueriesLeast)));
 }
 
 PathLoad ToolModel::predict(float fidelity) const noexcept {
     PathLoad load;
     load.items = items(fidelity);
-    load.cost_predicted = Duration(std::llround(1e3 * (kStepUs + kPointUs * load.items)));
+    load.cost_predicted =
+        Duration(std::llround(1e3 * (kStepUs + kPointUs * load.items + kQueryUs * queries(fidelity))));
     const double newton = settings_.stiffness_n_m * meta_.world_per_model;
     load.error = newton * (solver_.points().cover_m(load.items) + 2.0 * solver_.settings().margin_m);
     return load;
@@ -191,8 +209,11 @@ StepResult ToolModel::step(const ToolState& tool, const Budget& budget) noexcept
                 fade_.rise();
             const bool hurried = budget.deadline.passed();
             const double gone_m = solver_.way_m(solver_.goal(), to).norm();
-            touch_ = solver_.follow(to, result.load.items, hurried ? 1 : kMovesMost, budget.deadline,
-                                    choose_surface(budget.fidelity));
+            touch_ = solver_.follow(to,
+                                    {.points = result.load.items,
+                                     .moves = hurried ? 1 : kMovesMost,
+                                     .queries = queries(budget.fidelity)},
+                                    budget.deadline, choose_surface(budget.fidelity));
             if (adaptive_ != nullptr) regime_ = touch_.adaptive ? TouchRegime::adaptive : TouchRegime::tree;
             const bool on_time = !hurried && !touch_.late;
             // The number of moves that a late step lacks is unknown; at least one.

@@ -8,8 +8,10 @@
 //          never pulls.
 // Limit    (force, torque / g) is scaled down to force_n_max, keeping its direction. If the proxy lags by more than
 //          kLostLimits times the displacement at that limit, it is released as in surface_model.hpp.
-// Knob     "surface.force": number of tool points in use, an eighth to all. Points added by the knob while the surface
-//          is between the others wait until they are free (tool_points.hpp).
+// Knob     "surface.force": up to kAllPointsAt the number of tool points in use, an eighth to all; above it the number
+//          of queries per step, kQueriesLeast to ToolContact::kQueriesMost. Few steps need more than kQueriesLeast; one
+//          that does lags. Points added by the knob while the surface is between the others wait until they are free
+//          (tool_points.hpp).
 // Error    of n points: k times their cover, the depth to which a surface with a slope below 45 degrees against the
 //          tool's can enter between them. While gliding or lagging, twice the force instead.
 // Shading  as in surface_model.hpp at each contact, with the torque of the corrected force there. Its rate limit applies
@@ -32,7 +34,8 @@ class ToolModel final : public ForceModel {
 public:
     static constexpr double kDampedDepthM = SurfaceModel::kDampedDepthM;
     static constexpr double kLostLimits = SurfaceModel::kLostLimits;
-    static constexpr std::uint32_t kPointsLeast = 32, kMovesMost = 32;
+    static constexpr std::uint32_t kPointsLeast = 32, kMovesMost = 32, kQueriesLeast = 64;
+    static constexpr float kAllPointsAt = 0.5F;
 
     // settings.radius_m: radius of the points' balls in world metres; 0: the tool's. The memory behind mesh and forest
     // must outlive the model. Only mode chr needs the forest.
@@ -41,6 +44,7 @@ public:
 
     [[nodiscard]] KnobSpec knob() const noexcept TACT_RT override;
     [[nodiscard]] std::uint32_t items(float fidelity) const noexcept TACT_RT override;
+    [[nodiscard]] static std::uint32_t queries(float fidelity) noexcept TACT_RT;
     [[nodiscard]] double stiffness_n_m() const noexcept TACT_RT override { return settings_.stiffness_n_m; }
     void reset(const ToolState& tool) noexcept TACT_RT override;
     StepResult step(const ToolState& tool, const Budget& budget) noexcept TACT_RT override;
