@@ -25,14 +25,15 @@ namespace tact {
 namespace {
 
 constexpr double kHold_s = 0.5;
-constexpr double kDownGain = 1.0, kUpGain = 0.5;
+constexpr double kDownGain = 1.0, kUpGain = 0.5, kFrameUpGain = 0.8;
 // A display that never pauses takes whatever processor time is left, at any level, so the model does not hold.
 // A large rate error then lowers the level by at least this step, until the display pauses again.
 constexpr double kDownToPause = 0.7, kNoPause = 0.97, kFarOff = 0.04;
 constexpr double kTolerance = 0.002;        // of the law "elastic", added to the flicker
 constexpr double kAim = 1.002;              // of the goal: centres the remaining flicker on the goal
-constexpr double kDisplayTolerance = 0.05;  // excess of a frame's time over its goal
-constexpr double kDisplayMargin = 0.85;     // fraction of the goal time up to which a frame may grow
+constexpr double kDisplayTolerance = 0.02;  // excess of a frame's time over its goal
+constexpr double kDisplayMargin = 0.93;     // fraction of the goal time up to which a frame may grow
+constexpr double kDisplayAim = 0.97;        // of the goal time, of a frame that took too long
 // Below this elasticity, halving the level saves less than a fourteenth of a frame: the level stays.
 constexpr double kWorthwhile = 0.1;
 constexpr double kShareLeast = 0.02, kShareMost = 0.9;
@@ -117,7 +118,7 @@ double Governor::display_margin() const noexcept {
     const double spare = kDisplayMargin / (settings_.display_goal_hz * frame_s_);
     if (spare <= 1.0) return 1.0;
     return std::exp(
-        std::min(kUpGain * std::log(spare) / display_cost_.at(visual_levels()).elasticity(), kUpMost));
+        std::min(kFrameUpGain * std::log(spare) / display_cost_.at(visual_levels()).elasticity(), kUpMost));
 }
 
 bool Governor::step(double rate_hz, Duration dt) noexcept {
@@ -167,12 +168,12 @@ bool Governor::update(const DisplaySample& picture) noexcept {
     if (settings_.law == Law::fixed || settings_.display_goal_hz <= 0.0 || picture.work_s <= 0.0)
         return false;
 
-    // A very slow first frame counts at once; otherwise the faster of two frames counts, so a single hitch does not.
+    // A very slow first frame counts at once; otherwise the fastest of three frames counts, so a hitch does not.
     const double goal_s = 1.0 / settings_.display_goal_hz;
     const bool first = frame_s_ <= 0.0;
     const double believed = first ? (picture.work_s > 2.0 * goal_s ? picture.work_s : 0.0)
-                                  : std::min(picture.work_s, frame_before_s_);
-    frame_before_s_ = picture.work_s;
+                                  : std::min({picture.work_s, frames_before_s_[0], frames_before_s_[1]});
+    frames_before_s_ = {first ? 0.0 : frames_before_s_[1], picture.work_s};
     frame_s_ = first ? picture.work_s : frame_s_ + 0.3 * (picture.work_s - frame_s_);
     if (believed <= (1.0 + kDisplayTolerance) * goal_s) return false;
     double factor = 1.0;
@@ -182,7 +183,7 @@ bool Governor::update(const DisplaySample& picture) noexcept {
     } else {
         const double n = display_cost_.at(visual_levels()).elasticity();
         if (n < kWorthwhile) return false;
-        factor = std::exp(std::max(-std::log(believed / goal_s) / n, -kDownMost));
+        factor = std::exp(std::max(-std::log(believed / (kDisplayAim * goal_s)) / n, -kDownMost));
     }
     if (!scale_visual(factor, 0.0, LevelReason::display_low, LevelReason::at_floor)) return false;
     display_binds_ = true;

@@ -115,7 +115,7 @@ private:
     DisplayCost display_cost_;
     double display_fraction_ = 0.0;  // fraction of one processor used by the visual process; filtered
     double frame_s_ = 0.0;           // time to draw a frame, filtered; 0: no frame since the last change
-    double frame_before_s_ = 0.0;
+    std::array<double, 2> frames_before_s_{};  // of the last two frames; 0: none since the last change
     double since_down_s_ = 1e9;
     double since_visual_s_ = 0.0;  // since a visual level moved
     double display_busy_ = 0.0;    // fraction of the time spent drawing, filtered; 1: no pauses

@@ -15,10 +15,12 @@ namespace tact {
 inline constexpr VisualPath kSurfaceDetail{{.path = kMeshPath, .floor = 0.01F, .start = 1.0F},
                                            &HousekeepingReport::gui_vertices_max,
                                            &HousekeepingReport::gui_mesh_s};
-// Triangles of the structures. At the floor, a tube still follows its chain. They lose as much as a surface: both round off.
-inline constexpr VisualPath kMoleculeDetail{{.path = kMoleculesPath, .floor = 0.17F, .start = 1.0F},
-                                            &HousekeepingReport::gui_molecules_max,
-                                            &HousekeepingReport::gui_molecules_s};
+// Triangles of the structures. At the floor, a tube still follows its chain, and pictures at 1 and at 0.25
+// can hardly be told apart at the distance from which a whole complex is seen.
+inline constexpr VisualPath kMoleculeDetail{
+    {.path = kMoleculesPath, .floor = 0.17F, .start = 1.0F, .loss = 0.3F},
+    &HousekeepingReport::gui_molecules_max,
+    &HousekeepingReport::gui_molecules_s};
 // Pixels of the 3D view; the floor is half of them along each axis. The most loss: everything in the view blurs at once.
 inline constexpr VisualPath kViewResolution{
     {.path = kResolutionPath, .floor = 0.25F, .start = 1.0F, .loss = 4.0F},

@@ -226,11 +226,15 @@ std::vector<BenchScene> scenes_of(const GovernorBenchSettings& settings, const F
 
 }  // namespace
 
+bool valid_level(const GovernorRun& fixed) {
+    return !fixed.fault && fixed.miss_share < GovernorBenchSettings::kMissShareMost;
+}
+
 json governor_row(const GovernorRun& adaptive, const std::vector<GovernorRun>& fixed) {
     using S = GovernorBenchSettings;
     const GovernorRun* best = nullptr;
     for (const GovernorRun& f : fixed) {
-        if (f.fault || f.miss_share >= S::kMissShareMost) continue;
+        if (!valid_level(f)) continue;
         if (best == nullptr || f.error_n < best->error_n) best = &f;
     }
     const auto at_most = [](double value, double most) { return value <= most + 1e-9; };
@@ -267,8 +271,12 @@ json bench_governor(const GovernorBenchSettings& settings) {
                                        : "a free-running rate");
             const GovernorRun adaptive = run(folder, scene, rate_hz, settings.seconds, nullptr);
             std::vector<GovernorRun> fixed;
-            for (const double level : scene.levels)
-                fixed.push_back(run(folder, scene, rate_hz, settings.sweep_seconds, &level));
+            int valid = 0;
+            for (auto level = scene.levels.rbegin();
+                 level != scene.levels.rend() && valid < GovernorBenchSettings::kValidLevels; ++level) {
+                fixed.push_back(run(folder, scene, rate_hz, settings.seconds, &*level));
+                valid += valid_level(fixed.back()) ? 1 : 0;
+            }
             json row = {{"scene", scene.name},
                         {"atoms", scene.atoms > 0 ? json(scene.atoms) : json(nullptr)},
                         {"rate_hz", rate_hz > 0.0 ? json(rate_hz) : json("free")}};

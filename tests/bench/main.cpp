@@ -118,7 +118,7 @@ constexpr Measure kMeasures[] = {
      &drilling_and_particles, true},
     {"governor",
      "deadline misses, force error and force steps of runs with adaptive and with fixed levels, at 1, 2 and "
-     "4 kHz and free running; takes half an hour",
+     "4 kHz and free running; takes twenty minutes",
      &governor, true},
     {"ipc", "time to publish and to read the state of one servo cycle", &ipc},
 };

@@ -335,7 +335,7 @@ TEST(GovernorScenario, free_running_the_governor_finds_the_level_that_gives_the_
     loop.cycles(30000);
     EXPECT_GE(loop.health().force_rate_hz, 4000.0);
     EXPECT_LE(static_cast<double>(loop.levels().path[kForcePathIndex].level), 0.35);
-    EXPECT_GE(static_cast<double>(loop.levels().path[kForcePathIndex].level), 0.25);
+    EXPECT_GE(static_cast<double>(loop.levels().path[kForcePathIndex].level), 0.23);
     EXPECT_EQ(loop.health().period_ns, 0);
     LatenessTopic lateness{};
     ASSERT_TRUE(loop.region_->lateness.read(lateness));
@@ -352,7 +352,7 @@ TEST(GovernorScenario,
     loop.cycles(20000);
     const float low = loop.levels().path[kForcePathIndex].level;
     EXPECT_LT(low, 0.7F / 1.6F);
-    EXPECT_GT(low, 0.35F);
+    EXPECT_GT(low, 0.31F);  // the row that uses 88 % of the limit
     const std::uint64_t misses = loop.health().deadline_misses;
     loop.cycles(10000);
     EXPECT_EQ(loop.health().deadline_misses, misses);

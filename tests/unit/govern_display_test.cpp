@@ -169,7 +169,7 @@ TEST(Governor, a_little_spare_time_goes_to_the_path_that_costs_least_for_its_los
     for (std::size_t i = 0; i < 3; ++i) before[i] = governor.level(i);
     // Gain over loss: 30, 10 and 60 / 4 of the level; 2 % below the time up to which a frame may grow.
     PlainDisplay quick{0.0, {0.030, 0.010, 0.060}};
-    quick.rest_s = 0.85 / 30.0 / 1.02 - quick.frame_s(governor);
+    quick.rest_s = 0.93 / 30.0 / 1.02 - quick.frame_s(governor);
     ASSERT_GT(quick.rest_s, 0.0);
     for (int i = 0; i < 100 && governor.level(0) == before[0] && governor.level(1) == before[1]; ++i) {
         static_cast<void>(quick.frame(governor));

@@ -193,7 +193,7 @@ TEST(Governor, the_elastic_law_rises_only_after_a_hold_and_by_small_steps) {
     }
 }
 
-TEST(Governor, one_slow_frame_changes_no_level_and_two_lower_it) {
+TEST(Governor, two_slow_frames_change_no_level_and_three_lower_it) {
     Governor governor = with({.goal_hz = 1000.0, .display_goal_hz = 30.0}, {kMesh});
     const auto frame = [&](double work_s) {
         return governor.update(
@@ -202,6 +202,10 @@ TEST(Governor, one_slow_frame_changes_no_level_and_two_lower_it) {
     for (int i = 0; i < 10; ++i) EXPECT_FALSE(frame(0.02));
     EXPECT_FALSE(frame(0.3));
     EXPECT_FALSE(frame(0.02));
+    EXPECT_FALSE(frame(0.05));
+    EXPECT_FALSE(frame(0.05));
+    EXPECT_FALSE(frame(0.02));
+    EXPECT_FALSE(frame(0.05));
     EXPECT_FALSE(frame(0.05));
     EXPECT_TRUE(frame(0.05));
     EXPECT_EQ(governor.paths()[0].reason, LevelReason::display_low);

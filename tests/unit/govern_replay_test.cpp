@@ -262,7 +262,10 @@ TEST(LawReplay, a_display_below_its_goal_gets_coarser_and_no_coarser_than_necess
         const double rest = (1.0 / 30.0 - p.frame_fixed_s) / p.frame_full_s;  // a frame takes its goal time
         EXPECT_GT(s.back().level, 0.5 * rest);
         EXPECT_LT(s.back().level, 1.1 * rest);
-        EXPECT_EQ(plant.governor().paths()[0].reason, LevelReason::display_low);
+        // Whether it fell or rose last, the display decided.
+        const LevelReason why = plant.governor().paths()[0].reason;
+        EXPECT_TRUE(why == LevelReason::display_low || why == LevelReason::display_high);
+        EXPECT_LT(plant.changes(), 40);
         EXPECT_FLOAT_EQ(plant.governor().level(1), 1.0F);  // the display goal does not lower the force
     }
 }
