@@ -373,6 +373,24 @@ TEST(GovernorScenario,
     EXPECT_TRUE(rose);
 }
 
+// A tool touches: what the model predicts counts before a step has missed its deadline.
+TEST(GovernorScenario,
+     a_contact_that_is_predicted_to_cost_more_lowers_the_level_before_a_deadline_is_missed) {
+    Lockstep loop(ServoSettings{});
+    loop.model_.clock = &loop.clock_;
+    loop.model_.cost = microseconds(100);
+    loop.model_.predicted = microseconds(100);
+    loop.cycles(3000);
+    EXPECT_FLOAT_EQ(loop.levels().path[kForcePathIndex].level, 1.0F);
+    loop.model_.predicted = microseconds(2000);
+    loop.cycles(1);
+    loop.model_.cost = microseconds(2000);
+    loop.cycles(200);
+    EXPECT_LE(loop.levels().path[kForcePathIndex].level, 0.3F);
+    EXPECT_EQ(loop.health().deadline_misses, 0U);
+    EXPECT_EQ(loop.health().overruns, 0U);
+}
+
 TEST(GovernorScenario, with_a_gui_the_display_is_reduced_and_the_force_keeps_its_level) {
     ServoSettings s;
     s.free_running = true;

@@ -17,6 +17,7 @@ public:
     bool not_a_number = false;
     ManualClock* clock = nullptr;  // a step then takes `cost` times the level
     Duration cost{0};
+    Duration predicted = std::chrono::microseconds(300);  // cost at full level that predict() expects
     bool keeps_sums = false;  // a step with a work fraction takes proportionally less
     double turn_s = 0.0;      // duration of its slow update times the level; 0: it has none
     int* destroyed = nullptr;
@@ -31,10 +32,11 @@ public:
     [[nodiscard]] std::uint32_t items(float fidelity) const noexcept override {
         return static_cast<std::uint32_t>(1000.0F * fidelity + 0.5F);
     }
-    // Prediction: 300 us at full level; the error falls from 1 N to 0.
+    // The error falls from 1 N to 0.
     [[nodiscard]] PathLoad predict(float fidelity) const noexcept override {
         PathLoad load;
-        load.cost_predicted = Duration(static_cast<std::int64_t>(3e5 * static_cast<double>(fidelity)));
+        load.cost_predicted = Duration(static_cast<std::int64_t>(static_cast<double>(predicted.count()) *
+                                                                 static_cast<double>(fidelity)));
         load.error = 1.0 - static_cast<double>(fidelity);
         load.items = items(fidelity);
         return load;

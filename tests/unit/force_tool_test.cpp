@@ -325,7 +325,7 @@ TEST(Tool, shading_leaves_a_plane_and_an_edge_as_they_are) {
 }
 
 // On its flat side and fast, a box needs many queries in a step.
-TEST(Tool, a_level_limits_the_queries_of_a_step) {
+TEST(Tool, a_level_limits_the_points_and_the_queries_of_a_step) {
     std::uint32_t most = 0;
     double costliest_us = 0.0;
     for (const float fidelity : {0.05F, 0.5F, 0.75F, 1.0F}) {
@@ -346,6 +346,10 @@ TEST(Tool, a_level_limits_the_queries_of_a_step) {
             ASSERT_LE(hand.model->tool_touch().asked, queries + 1) << fidelity << ", step " << i;
         }
         EXPECT_GE(most, std::min(queries, 150U)) << fidelity;
+        // Points that touch stay until they are free.
+        const std::uint32_t used = hand.model->contact().points().awake();
+        EXPECT_GE(used, hand.model->items(fidelity)) << fidelity;
+        EXPECT_LE(used, hand.model->items(fidelity) + 6) << fidelity;
     }
     EXPECT_EQ(ToolModel::queries(0.0F), ToolModel::kQueriesLeast);
     EXPECT_EQ(ToolModel::queries(1.0F), ToolContact::kQueriesMost);
