@@ -140,6 +140,7 @@ std::vector<ConfigKey> keys_of(RtConfig& c) {
         {"governor.law", &c.governor.law, 0, 0, {kLawNames.begin(), kLawNames.end()}},
         {"governor.goal_hz", &c.governor.goal_hz, 0, 1e7, {}},
         {"governor.display_goal_hz", &c.governor.display_goal_hz, 0, 1000, {}},
+        {"governor.force_level_min", &c.governor.force_level_min, 0, 1, {}},
         {"governor.gain", &c.governor.gain, 1e-3, 1, {}},
         {"governor.tolerance", &c.governor.tolerance, 0, 0.5, {}},
         {"governor.interval_ms", &c.governor.interval_ms, 10, 10000, {}},
@@ -264,6 +265,7 @@ ServoSettings settings_from(const RtConfig& c, bool emulated) {
     const double cycle_us = s.free_running ? 1e6 / s.governor.goal_hz : c.servo.period_us;
     s.model_max = duration_us(c.servo.model_us_max > 0.0 ? c.servo.model_us_max : kModelShare * cycle_us);
     s.governor.display_goal_hz = c.governor.display_goal_hz;
+    s.governor.force_level_min = c.governor.force_level_min;
     s.governor.gain = c.governor.gain;
     s.governor.tolerance = c.governor.tolerance;
     s.governor_interval = duration_us(c.governor.interval_ms * 1e3);

@@ -131,6 +131,7 @@ struct RtConfig {
         std::string law = "elastic";
         double goal_hz = 0.0;           // 0: the servo's rate; free running: 1000
         double display_goal_hz = 30.0;  // frames per second; 0: none
+        double force_level_min = 0.0;   // the law never lowers the haptic level below it
         double gain = 0.5;              // of the law "sensitus"
         double tolerance = 0.02;        // of the law "sensitus"
         double interval_ms = 100.0;

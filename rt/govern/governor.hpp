@@ -32,6 +32,7 @@ struct GovernorSettings {
     Law law = kDefaultLaw;
     double goal_hz = 1000.0;
     double display_goal_hz = 0.0;  // 0: no goal for the display rate
+    double force_level_min = 0.0;  // the law never lowers the haptic level below it
     double gain = 0.5;             // gain s of the law "sensitus"
     double tolerance = 0.02;       // relative tolerance of the law "sensitus"
     // A freely running loop shares its processor: its rate moves the budget of fitted paths. At a fixed rate it does not.

@@ -89,7 +89,10 @@ double LevelFit::predicted_s(std::size_t row, double interrupts_s_most) const no
 
 bool LevelFit::fits(std::size_t row, const Limits& limits, double part) const noexcept {
     const double budget_s = kUse * limits.period_s * limits.budget;
-    return predicted_s(row, kInterruptShare * budget_s) + rest_s_ <= part * budget_s;
+    if (!limits.free_running)
+        return predicted_s(row, kInterruptShare * budget_s) + rest_s_ <= part * budget_s;
+    return predicted_s(row, kInterruptShare * limits.deadline_s) <= part * limits.deadline_s &&
+           kFreeSpread * spread_.speed() * rows_[row].cost_s + rest_s_ <= part * budget_s;
 }
 
 std::size_t LevelFit::best(const Limits& limits, double part, double cost_s_most) const noexcept {

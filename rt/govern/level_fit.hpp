@@ -14,7 +14,9 @@
 //                          A level does not change the length of an interrupt, so the excess is added, not
 //                          multiplied, and takes at most kInterruptShare of the budget
 // Fits        max(speed x spread x predicted, speed x predicted + interrupts) + rest of the cycle <= kUse x period:
-//             one step in a thousand exceeds it, because an interrupt seldom hits a step that is slow by itself. The
+//             one step in a thousand exceeds it, because an interrupt seldom hits a step that is slow by itself. A
+//             freely running loop has no cycle to miss: the tail is held below the deadline, and speed x kFreeSpread x
+//             predicted + rest below kUse x period. The
 //             present row may use all of that, and falls after it exceeded that for kOver_s; a newly chosen row may
 //             use only kRise of it, so the level does not hunt
 // Deadline    about one miss in a thousand cycles is what the quantile permits; the third within as many lowers the
@@ -50,6 +52,7 @@ public:
     static constexpr double kTelling = 0.3;
     static constexpr double kLeapt = 1.1;
     static constexpr double kWorthGain = 0.15;
+    static constexpr double kFreeSpread = 1.1;
     static constexpr double kMissRetreat = 0.85;  // cost limit after a miss, relative to the present cost
 
     struct Row {
@@ -68,8 +71,10 @@ public:
     };
     struct Limits {
         double period_s = 1e-3;
-        double budget = 1.0;     // times kUse of the period; below 1 for a loop that shares its processor
-        float level_max = 1.0F;  // highest level at which the model's slow update keeps its period
+        double deadline_s = 1e9;    // of the model's step
+        bool free_running = false;  // the period is that of the goal, which the mean must keep
+        double budget = 1.0;        // times kUse of the period; below 1 for a loop that shares its processor
+        float level_max = 1.0F;     // highest level at which the model's slow update keeps its period
     };
 
     // Levels must rise from row to row. Ignores impossible rows and those beyond kRowsMax. False: no row is left.

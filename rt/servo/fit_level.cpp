@@ -13,6 +13,8 @@ constexpr float kLevelMaxLeast = 0.05F, kLevelMaxRise = 1.1F;
 LevelFit::Limits limits_of(const CycleState& c, const ServoSettings& settings) noexcept {
     const double goal_s = 1.0 / c.governor.settings().goal_hz;
     return {.period_s = settings.free_running ? goal_s : std::min(to_s(settings.period), goal_s),
+            .deadline_s = settings.model_deadline ? to_s(settings.model_max) : 1e9,
+            .free_running = settings.free_running,
             // A loop of fixed rate has the whole period; the load of other programs appears as lateness.
             .budget =
                 settings.free_running ? static_cast<double>(c.governor.paths()[kForcePathIndex].budget) : 1.0,
@@ -60,7 +62,9 @@ void make_level_rows(CycleState& c) noexcept {
     for (std::uint32_t i = 0; i <= steps; ++i) {
         const float part = static_cast<float>(i) / static_cast<float>(steps);
         const float level = knob.steps > 0 ? part : knob.floor + (1.0F - knob.floor) * part;
-        if (level < knob.floor) continue;
+        const bool top = i == steps;
+        if (!top && level < std::max(knob.floor, static_cast<float>(c.governor.settings().force_level_min)))
+            continue;
         const PathLoad load = model.predict(level);
         rows[count++] = {.level = level, .cost_s = to_s(load.cost_predicted), .error = load.error};
     }

@@ -1,7 +1,7 @@
 // Chooses the level of the haptic path with LevelFit from the costs of the models' steps.
 //
 // Dry cycles  measure each level in turn, then run at the level that fits, so the first armed cycle already has it.
-// Rows        rebuilt when another model or structure comes into the hand.
+// Rows        levels from governor.force_level_min up; rebuilt when another model or structure comes into the hand.
 // Law         "fixed" leaves the level to the person; the cost statistics are updated all the same.
 // Thread      servo; TACT_RT
 #pragma once

@@ -53,9 +53,10 @@ struct SharedCore::Parts {
           tick_source(core) {
         // The watchdog of the device tolerates a loop that waits for the processor.
         const std::string device = "[device]\nhand = \"wander\"\nwatchdog_us = 1e6\n";
-        write_whole(scratch.path() / "fifo.toml", device);
-        // Free running: no limit on the time of a step.
-        write_whole(scratch.path() / "tact.toml", "[servo]\nmodel_us_max = 100000\n" + device);
+        // As in the paper only the display adapts. Free running: no limit on the time of a step.
+        const std::string whole_force = "[governor]\nforce_level_min = 1\n";
+        write_whole(scratch.path() / "fifo.toml", whole_force + device);
+        write_whole(scratch.path() / "tact.toml", whole_force + "[servo]\nmodel_us_max = 100000\n" + device);
         log = FileDescriptor(
             open((scratch.path() / "log").c_str(), O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC, 0600));
         environment = x.environment();

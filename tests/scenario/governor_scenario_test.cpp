@@ -373,6 +373,19 @@ TEST(GovernorScenario,
     EXPECT_TRUE(rose);
 }
 
+TEST(GovernorScenario, the_law_never_lowers_the_force_below_the_least_level_of_the_configuration) {
+    for (const double least : {0.5, 1.0}) {
+        ServoSettings s;
+        s.governor.force_level_min = least;
+        s.watchdogs.timing_latches = false;
+        Lockstep loop(s);
+        loop.model_.clock = &loop.clock_;
+        loop.model_.cost = loop.model_.predicted = microseconds(1600);
+        loop.cycles(5000);
+        EXPECT_NEAR(static_cast<double>(loop.levels().path[kForcePathIndex].level), least, 0.03);
+    }
+}
+
 // A tool touches: what the model predicts counts before a step has missed its deadline.
 TEST(GovernorScenario,
      a_contact_that_is_predicted_to_cost_more_lowers_the_level_before_a_deadline_is_missed) {

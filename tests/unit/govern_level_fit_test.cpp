@@ -345,6 +345,30 @@ TEST(LevelFit, a_budget_and_a_highest_level_bound_the_choice) {
     EXPECT_EQ(fit.choose({.period_s = 1e-6}), 0.0F);  // nothing fits: the floor
 }
 
+// Other programs interrupt every fifth step for half a millisecond: the mean still keeps the goal, and no cycle is late.
+TEST(LevelFit, a_freely_running_loop_is_held_by_its_mean_and_its_deadline) {
+    const Rows rows{{0.0F, 50 * kUs, 1.0}, {1.0F, 500 * kUs, 0.0}};
+    const auto level_after = [&](bool free_running, double deadline_s) {
+        LevelFit fit = with(rows);
+        const LevelFit::Limits limits{
+            .period_s = 1e-3, .deadline_s = deadline_s, .free_running = free_running};
+        float level = fit.choose(limits);
+        for (int i = 0; i < 20000; ++i) {
+            const double usual_us = level > 0.5F ? 500.0 : 50.0,
+                         whole_us = i % 5 == 0 ? usual_us + 500.0 : usual_us;
+            level =
+                fit.add(
+                       {.level = level, .model_s = kUs * whole_us, .rest_s = 5 * kUs, .dt_s = kUs * whole_us},
+                       limits)
+                    .level;
+        }
+        return level;
+    };
+    EXPECT_EQ(level_after(true, 0.1), 1.0F);
+    EXPECT_EQ(level_after(true, 600 * kUs), 0.0F);
+    EXPECT_EQ(level_after(false, 0.1), 0.0F);
+}
+
 TEST(LevelFit, invalid_rows_are_ignored) {
     LevelFit fit;
     EXPECT_FALSE(fit.set_rows({}));
