@@ -29,6 +29,7 @@ constexpr double kDownGain = 1.0, kUpGain = 0.5, kFrameUpGain = 0.8;
 // A display that never pauses takes whatever processor time is left, at any level, so the model does not hold.
 // A large rate error then lowers the level by at least this step, until the display pauses again.
 constexpr double kDownToPause = 0.7, kNoPause = 0.97, kFarOff = 0.04;
+constexpr double kDampingGrows = 1.4, kDampingShrinks = 0.55, kDampingLeast = 0.1, kLargeError = 0.12;
 constexpr double kTolerance = 0.002;        // of the law "elastic", added to the flicker
 constexpr double kAim = 1.002;              // of the goal: centres the remaining flicker on the goal
 constexpr double kDisplayTolerance = 0.02;  // excess of a frame's time over its goal
@@ -108,7 +109,16 @@ Governor::Factors Governor::factors(double rate_hz, RateIs rate) const noexcept 
     const double n = display_cost_.at(visual_levels()).elasticity();
     double visual = std::clamp(e * (1.0 - g) / (n * g), -kDownMost, kUpMost);
     if (rate_.error() < -kFarOff && display_busy_ > kNoPause) visual = std::min(visual, -kDownToPause);
-    return {std::exp(visual), std::exp(std::clamp(e, -kDownMost, kUpMost))};
+    return {std::exp(damping_ * visual), std::exp(std::clamp(e, -kDownMost, kUpMost))};
+}
+
+// The model of the display may be off by a multiple. Steps to and fro halve each other until they are small; steps in one
+// direction grow again, and a large error calls for a whole step.
+void Governor::damp(RateIs rate) noexcept {
+    if (damped_ != RateIs::right) damping_ *= rate == damped_ ? kDampingGrows : kDampingShrinks;
+    if (std::abs(rate_.error()) > kLargeError) damping_ = 1.0;
+    damping_ = std::clamp(damping_, kDampingLeast, 1.0);
+    damped_ = rate;
 }
 
 // Factor by which visual levels may rise before a frame takes too long; unlimited without a display goal.
@@ -131,6 +141,7 @@ bool Governor::step(double rate_hz, Duration dt) noexcept {
         if (rebalance_visual()) return true;
         return display_binds_ ? false : say_hold();
     }
+    damp(rate);
     const Factors by = factors(rate_hz, rate);
     bool moved = false;
     if (rate == RateIs::low) {

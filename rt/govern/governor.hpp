@@ -104,6 +104,7 @@ private:
         return path.present && (path.knob.haptic || !resting_);
     }
     [[nodiscard]] bool say_hold() noexcept;
+    void damp(RateIs rate) noexcept;
     bool scale(bool haptic, double factor, double dt_s, LevelReason moved, LevelReason stuck) noexcept;
     bool scale_visual(double factor, double dt_s, LevelReason moved, LevelReason stuck) noexcept;
     bool rebalance_visual() noexcept;
@@ -118,10 +119,12 @@ private:
     double frame_s_ = 0.0;           // time to draw a frame, filtered; 0: no frame since the last change
     std::array<double, 2> frames_before_s_{};  // of the last two frames; 0: none since the last change
     double since_down_s_ = 1e9;
-    double since_visual_s_ = 0.0;  // since a visual level moved
-    double display_busy_ = 0.0;    // fraction of the time spent drawing, filtered; 1: no pauses
-    bool resting_ = false;         // nothing is drawn at the levels
-    bool display_binds_ = false;   // the last fall of a visual level was for the display goal
+    double damping_ = 1.0;           // of the steps of the law "elastic"
+    RateIs damped_ = RateIs::right;  // direction of the last step
+    double since_visual_s_ = 0.0;    // since a visual level moved
+    double display_busy_ = 0.0;      // fraction of the time spent drawing, filtered; 1: no pauses
+    bool resting_ = false;           // nothing is drawn at the levels
+    bool display_binds_ = false;     // the last fall of a visual level was for the display goal
 };
 
 }  // namespace tact
