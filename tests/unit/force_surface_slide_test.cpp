@@ -63,13 +63,46 @@ TEST(Surface, a_step_with_few_moves_that_is_settled_ends_where_more_moves_would)
     EXPECT_GT(lagging, 100);
 }
 
+// The reference is Coulomb's law on a plane. Edges between triangles of one plane hold nothing back.
+TEST(Surface, on_a_plate_of_many_triangles_the_force_stays_in_the_friction_cone_and_reaches_its_rim) {
+    for (const double friction : {0.1, 0.3, 0.8}) {
+        for (const double radius_m : {0.0, 0.003}) {
+            for (const bool shading : {false, true}) {
+                for (const double speed_m_s : {0.05, 0.2, 0.5}) {
+                    const auto place = [&](double t_s) {
+                        const double angle = speed_m_s / 0.02 * t_s;
+                        return Vec3(
+                            0.02 * std::sin(angle),
+                            radius_m - 0.002 * std::min(t_s / 0.05, 1.0) + 0.0008 * std::sin(60.0 * t_s),
+                            0.015 * std::sin(1.3 * angle));
+                    };
+                    Hand hand(plane(), {.radius_m = radius_m, .friction = friction, .shading = shading},
+                              place(0.0) + Vec3(0.0, 0.004, 0.0));
+                    (void)hand.lead(place(0.0));
+                    double most = 0.0;
+                    for (int i = 0; i < 1500; ++i) {
+                        ToolState tool = at(place(1e-3 * i));
+                        tool.twist_world.linear_m_s = (place(1e-3 * (i + 1)) - place(1e-3 * i)) / 1e-3;
+                        const Vec3 force_n = hand.model->step(tool, {}).wrench_world.force_n;
+                        if (force_n.y() < 0.02) continue;
+                        const double share = std::hypot(force_n.x(), force_n.z()) / force_n.y();
+                        ASSERT_LE(share, 1.01 * friction) << "radius " << radius_m << ", step " << i;
+                        most = std::max(most, share);
+                    }
+                    EXPECT_GE(most, 0.99 * friction);
+                }
+            }
+        }
+    }
+}
+
 // Friction may hold a proxy that lagged once where it is: the bound may not fade with the way of the tool.
 TEST(Surface, after_a_lag_the_error_bounds_the_difference_for_as_long_as_the_tool_touches) {
     int late_differences = 0;
     for (int variant = 0; variant < 20; ++variant) {
         const Vec3 touch(0.004 + 1e-5 * variant, 0.048, 0.003 - 1e-5 * variant);
         const auto led = [&](float fidelity) {
-            Hand hand(smooth(), {}, {0.0, 0.056, 0.0});
+            Hand hand(rough(), {}, {0.0, 0.066, 0.0});
             (void)hand.lead(touch);
             std::vector<StepResult> steps;
             Budget budget;

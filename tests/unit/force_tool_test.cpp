@@ -131,6 +131,29 @@ TEST(Tool, a_mirrored_world_gives_a_mirrored_wrench) {
     EXPECT_LT((a.torque_n_m - Vec3(b.torque_n_m.x(), -b.torque_n_m.y(), -b.torque_n_m.z())).norm(), 2e-4);
 }
 
+// As in Surface.on_a_plate_of_many_triangles_the_force_stays_in_the_friction_cone_and_reaches_its_rim.
+TEST(Tool, a_box_that_slides_on_a_plate_stays_in_the_friction_cone) {
+    for (const double friction : {0.2, 0.5}) {
+        for (const double speed_m_s : {0.05, 0.2}) {
+            Hand hand(box_on_plane(), plain(friction), pose({0.0, 0.02, 0.0}));
+            (void)hand.lead(pose({0.0, 0.004, 0.0}));
+            double most = 0.0;
+            for (int i = 0; i < 1500; ++i) {
+                const double angle = speed_m_s / 0.02 * 1e-3 * i;
+                const Vec3 force_n =
+                    hand.step(pose({0.02 * std::sin(angle), 0.0035 + 0.0004 * std::sin(0.06 * i),
+                                    0.015 * std::sin(1.3 * angle)}))
+                        .force_n;
+                if (force_n.y() < 0.02) continue;
+                const double share = std::hypot(force_n.x(), force_n.z()) / force_n.y();
+                ASSERT_LE(share, 1.02 * friction) << "at " << speed_m_s << " m/s, step " << i;
+                most = std::max(most, share);
+            }
+            EXPECT_GE(most, 0.9 * friction);
+        }
+    }
+}
+
 TEST(Tool, friction_holds_a_box_inside_the_cone_and_lets_it_slide_at_the_rim) {
     constexpr double kFriction = 0.4, kDepth = 0.001;
     Hand hand(box_on_plane(), plain(kFriction), pose({0.0, 0.02, 0.0}));

@@ -19,6 +19,8 @@ constexpr double kSlidesOn = 1.15;
 constexpr int kRounds = 4;
 constexpr double kRestingMargins = 0.02;
 constexpr double kNearerMargins = 0.05;
+// A ball at rest on a plane is below it by its rounding. It must not catch the edge of the next triangle of that plane.
+constexpr double kSunkMargins = 0.1;
 constexpr double kTangentMargins = 0.25;
 constexpr std::uint32_t kSeatVisits = 4096;  // tree nodes, about 100 us
 
@@ -135,8 +137,9 @@ bool SurfaceContact::half_space(std::uint32_t triangle, const TriangleQueries& s
     const double slack =
         std::max(static_cast<double>(seen.distance[lane]) - (over ? radius : radius - margin), -margin);
     const double height = static_cast<double>(seen.height[lane]) - radius;
-    return half_spaces_.add(triangle, seen, lane, static_cast<float>(slack), static_cast<float>(height),
-                            !over && height >= 0.0);
+    const double sunk = kSunkMargins * margin;
+    return half_spaces_.add(triangle, seen, lane, static_cast<float>(slack),
+                            static_cast<float>(std::max(height, -sunk)), !over && height >= -sunk);
 }
 
 // True if every active triangle touches the ball at the solution and its normal there equals the assumed one: another

@@ -18,6 +18,7 @@ constexpr double kGrows = 4.0;       // growth of the longest move after a cut m
 constexpr double kNextMoves = 3.0;   // longest move after an uncut move, in lengths of that move
 constexpr double kShrinks = 0.5;     // factor after a move without room for its half-spaces
 constexpr double kLeastMargins = 8.0;
+constexpr double kSunkMargins = 0.1;    // below a plane, of a ball at rest on it (contact.cpp)
 constexpr double kRestingShare = 0.02;  // fraction of a margin; shorter moves are rounding noise
 
 Vec3 linear(const Vec6& y) { return y.head<3>(); }
@@ -54,7 +55,8 @@ void ToolContact::seat(const Pose& goal) noexcept {
 bool ToolContact::query(std::uint32_t point, double reach_m, ToolTouch& touch) noexcept {
     const Vec3 place = points_.place_m(point);
     const Eigen::Vector3f lever = points_.lever_m(point) / static_cast<float>(points_.gyration_m());
-    const double ball = settings_.ball_m, edge = ball - settings_.margin_m;
+    const double ball = settings_.ball_m, edge = ball - settings_.margin_m,
+                 sunk = kSunkMargins * settings_.margin_m;
     QueryJob job = mesh_.query_job(place);
     TriangleQueries seen;
     for (int attempt = 0; attempt < 6; ++attempt, reach_m *= 0.5) {
@@ -77,8 +79,8 @@ bool ToolContact::query(std::uint32_t point, double reach_m, ToolTouch& touch) n
                 // Push out by at most one margin per move.
                 const double slack = std::max(distance - (over ? ball : edge), -settings_.margin_m);
                 if (!half_spaces_.add(point, list.triangle[first + lane], lever, seen, lane,
-                                      static_cast<float>(slack), static_cast<float>(height),
-                                      !over && height >= 0.0))
+                                      static_cast<float>(slack), static_cast<float>(std::max(height, -sunk)),
+                                      !over && height >= -sunk))
                     return false;
             }
         }
