@@ -278,7 +278,22 @@ TEST_P(ForceModelContract, without_time_the_force_is_still_usable) {
 TEST_P(ForceModelContract, no_force_right_after_reset) {
     (void)settle(GetParam().touch);
     model_->reset(at(GetParam().touch));
-    EXPECT_LT(model_->step(at(GetParam().touch), budget(1.0F)).wrench_world.force_n.norm(), 1e-3);
+    const Wrench first = model_->step(at(GetParam().touch), budget(1.0F)).wrench_world;
+    EXPECT_LT(first.force_n.norm(), 1e-3);
+    EXPECT_LT(first.torque_n_m.norm(), 1e-5);
+}
+
+// A force is finite at first and later, and a torque fades in with it: at a tenth of the force, its share of the whole is the same.
+TEST_P(ForceModelContract, the_torque_fades_in_with_the_force) {
+    const StepResult full = settle(GetParam().touch);
+    model_->reset(at(GetParam().touch));
+    StepResult now;
+    for (int i = 0; i < kSettle && now.wrench_world.force_n.norm() < 0.1 * full.wrench_world.force_n.norm();
+         ++i)
+        now = model_->step(at(GetParam().touch), budget(1.0F));
+    const double share = now.wrench_world.force_n.norm() / full.wrench_world.force_n.norm();
+    EXPECT_LT(share, 0.5);
+    EXPECT_LE(now.wrench_world.torque_n_m.norm(), 2.0 * share * full.wrench_world.torque_n_m.norm() + 1e-9);
 }
 
 TEST_P(ForceModelContract, force_returns_after_reset_without_a_step) {
@@ -325,7 +340,8 @@ TEST_P(ForceModelContract, invalid_poses_give_no_force_and_leave_no_trace) {
     (void)settle(GetParam().touch);
     const double nan = std::numeric_limits<double>::quiet_NaN(),
                  inf = std::numeric_limits<double>::infinity();
-    std::vector<Pose> absurd(6, GetParam().touch);
+    std::vector<Pose> absurd(7, GetParam().touch);
+    absurd[6].p_m.x() = 2e3;  // farther than any arm reaches
     absurd[0].p_m.x() = nan;
     absurd[1].p_m.y() = inf;
     absurd[2].p_m.z() = -1e300;

@@ -180,6 +180,27 @@ TEST(DrillLevels, in_free_space_a_level_is_predicted_to_cost_what_a_typical_cont
     }
 }
 
+// The reference is the slope of the force over the depth in flat bone.
+TEST(DrillModel, the_reported_stiffness_is_the_largest_slope_of_the_force_up_to_its_limit) {
+    const double radius_m = 6e-3;
+    Drilled d(radius_m);
+    d.model->turn_burr({0.0, 1e-3});
+    d.begin({0.0, 0.0, radius_m + 1e-3});
+    const auto force_n = [&](double depth_m) {
+        StepResult result;
+        for (int i = 0; i < 20; ++i) result = d.step({0.0, 0.0, radius_m - depth_m}, 1.0F);
+        return result.wrench_world.force_n.norm();
+    };
+    double steepest = 0.0;
+    for (double depth_m = 0.5e-3; depth_m < 5e-3; depth_m += 0.25e-3) {
+        const double low = force_n(depth_m - 0.25e-3), high = force_n(depth_m + 0.25e-3);
+        if (high < DrillSettings{}.force_n_max) steepest = std::max(steepest, (high - low) / 0.5e-3);
+    }
+    ASSERT_GT(steepest, 100.0);
+    EXPECT_GE(d.model->stiffness_n_m(), 0.95 * steepest);
+    EXPECT_LE(d.model->stiffness_n_m(), 1.3 * steepest);
+}
+
 // A burr that starts cuts one group a step: what the others will cost is expected from the first.
 TEST(DrillLevels, the_first_group_tells_what_all_will_cost) {
     Drilled d(8e-3);

@@ -114,6 +114,109 @@ TEST(OutputChain, a_closed_gate_gives_zero_at_once_and_restarts_the_ramp) {
     EXPECT_LT(again.wrench_dev.force_n.norm(), 0.005);
 }
 
+TEST(OutputChain, a_pose_that_is_not_finite_closes_the_gate_and_turns_the_amplifier_off) {
+    for (const bool turned : {false, true}) {
+        OutputChain chain;
+        ChainInput in = on(Vec3(1.0, 0.0, 0.0));
+        ASSERT_TRUE(settled(chain, in).enable);
+        if (turned)
+            in.T_dev_tool.q = Quat(kNan, 0.0, 0.0, 0.0);
+        else
+            in.T_dev_tool.p_m.y() = kNan;
+        const ChainOutput out = chain.apply(in);
+        EXPECT_FALSE(out.enable);
+        EXPECT_TRUE(out.wrench_dev.force_n.isZero(0.0));
+        EXPECT_EQ(out.gain, 0.0);
+        EXPECT_NE(out.acts & kChainNotFinite, 0U);
+    }
+}
+
+TEST(OutputChain, after_a_closed_gate_the_slope_starts_at_zero_again) {
+    OutputChain chain;
+    ChainInput in = on(Vec3(3.0, 0.0, 0.0));
+    in.wanted_dev.torque_n_m = Vec3(0.0, 0.15, 0.0);
+    (void)settled(chain, in);
+    in.gate_open = false;
+    (void)chain.apply(in);
+    in.gate_open = true;
+    const ChainOutput out = chain.apply(in);
+    EXPECT_NE(out.acts & kChainSlew, 0U);
+    EXPECT_NE(out.acts & kChainTorqueSlew, 0U);
+    EXPECT_NEAR(out.step_n, 3.0, 1e-12);
+    EXPECT_NEAR(out.step_n_m, 0.15, 1e-12);
+}
+
+// A field that pushes along the motion generates energy. The turn is measured in the frame of the torque, the device's.
+TEST(OutputChain, passivity_acts_on_a_turn_about_the_axis_of_the_torque_and_forgets_with_the_gate) {
+    ChainSettings settings;
+    settings.passivity = true;
+    settings.ramp_in_s = 1e-3;
+    OutputChain chain(settings);
+    const Quat base = quat_from_rotation_vector(Vec3(0.0, 0.0, 1.5));
+    ChainInput in = on(Vec3::Zero());
+    in.wanted_dev.torque_n_m = Vec3(0.02, 0.0, 0.0);
+    std::uint32_t acts = 0;
+    double angle = 0.0;
+    const auto turn = [&] {
+        angle += 1e-3;
+        in.T_dev_tool.q = quat_from_rotation_vector(Vec3(angle, 0.0, 0.0)) * base;
+        return chain.apply(in).acts;
+    };
+    for (int i = 0; i < 30; ++i) acts |= turn();
+    EXPECT_NE(acts & kChainPassivity, 0U);
+    in.gate_open = false;
+    (void)turn();
+    in.gate_open = true;
+    in.wanted_dev.torque_n_m.setZero();
+    for (int i = 0; i < 3; ++i) EXPECT_EQ(turn() & kChainPassivity, 0U);
+    // Across the axis nothing is generated.
+    OutputChain other(settings);
+    in.wanted_dev.torque_n_m = Vec3(0.0, 0.0, 0.02);
+    for (int i = 0; i < 30; ++i) {
+        angle += 1e-3;
+        in.T_dev_tool.q = quat_from_rotation_vector(Vec3(angle, 0.0, 0.0)) * base;
+        EXPECT_LT(std::abs(other.apply(in).wrench_dev.torque_n_m.x()), 1e-12);
+    }
+}
+
+TEST(OutputChain, passivity_acts_on_a_force_along_the_motion_and_forgets_with_the_gate) {
+    ChainSettings settings;
+    settings.passivity = true;
+    settings.ramp_in_s = 1e-3;
+    OutputChain chain(settings);
+    ChainInput in = on(Vec3(1.0, 0.0, 0.0));
+    std::uint32_t acts = 0;
+    const auto move = [&] {
+        in.T_dev_tool.p_m.x() += 1e-4;
+        return chain.apply(in).acts;
+    };
+    for (int i = 0; i < 30; ++i) acts |= move();
+    EXPECT_NE(acts & kChainPassivity, 0U);
+    in.gate_open = false;
+    (void)move();
+    in.gate_open = true;
+    in.wanted_dev.force_n.setZero();
+    for (int i = 0; i < 3; ++i) EXPECT_EQ(move() & kChainPassivity, 0U);
+}
+
+// The knees are the documented ones: four fifths of the heat, and the whole.
+TEST(OutputChain, a_warm_motor_is_limited_in_proportion_between_four_fifths_and_the_whole_heat) {
+    for (const double heat : {0.0, 0.5, 0.79, 0.8})
+        EXPECT_EQ(stages::heat_limit_n(heat, 3.0, 1.0), 3.0) << heat;
+    EXPECT_NEAR(stages::heat_limit_n(0.85, 3.0, 1.0), 2.5, 1e-12);
+    EXPECT_NEAR(stages::heat_limit_n(0.9, 3.0, 1.0), 2.0, 1e-12);
+    EXPECT_NEAR(stages::heat_limit_n(0.95, 3.0, 1.0), 1.5, 1e-12);
+    for (const double heat : {1.0, 1.3, 10.0}) EXPECT_NEAR(stages::heat_limit_n(heat, 3.0, 1.0), 1.0, 1e-12);
+    ChainSettings settings;
+    settings.force_n_continuous = 1.0;
+    settings.heat_start = 0.9;
+    OutputChain chain(settings);
+    ChainInput in = on(Vec3(settings.force_n_max, 0.0, 0.0), microseconds(10));
+    ChainOutput out;
+    for (int i = 0; i < 1000; ++i) out = chain.apply(in);
+    EXPECT_NE(out.acts & kChainHeat, 0U);
+}
+
 TEST(OutputChain, the_ramp_reaches_full_force_in_its_time_and_ends_it_within_fifty_milliseconds) {
     OutputChain chain;
     const ChainInput in = on(Vec3(1.0, 0.0, 0.0));

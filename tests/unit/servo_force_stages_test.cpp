@@ -138,6 +138,43 @@ TEST(StageShape, at_a_delay_the_walls_are_no_stiffer_than_is_stable) {
     EXPECT_GT(f.c.bounds.stiffness_n_m, bound);
 }
 
+// Mass over half a period plus the delay.
+TEST(StageShape, at_a_delay_the_damping_is_no_larger_than_is_stable) {
+    ServoSettings settings;
+    settings.damping_n_s_m = 20.0;
+    CycleFixture f(settings);
+    f.c.statistics.metrics.delay_p99_ns = 20'000'000;
+    servo::bound_by_delay(f.c, f.settings);
+    ASSERT_NEAR(f.c.bounds.damping_n_s_m, 0.1 / 0.0205, 1e-9);
+    f.c.hand[0].tool.twist_world.linear_m_s = Vec3(0.0, 0.1, 0.0);
+    servo::shape(f.c, f.settings);
+    EXPECT_NEAR(f.c.hand[0].wanted_world.force_n.y(), -0.1 * f.c.bounds.damping_n_s_m, 1e-9);
+}
+
+class StiffModel final : public ForceModel {
+public:
+    [[nodiscard]] KnobSpec knob() const noexcept override { return {}; }
+    [[nodiscard]] double stiffness_n_m() const noexcept override { return 2000.0; }
+    void reset(const ToolState&) noexcept override {}
+    StepResult step(const ToolState&, const Budget&) noexcept override { return {}; }
+    [[nodiscard]] ModelBodies bodies() const noexcept override { return {}; }
+    [[nodiscard]] std::uint32_t items(float) const noexcept override { return 0; }
+    [[nodiscard]] PathLoad predict(float) const noexcept override { return {}; }
+};
+
+TEST(StageShape, at_a_delay_force_and_torque_of_a_stiff_field_are_reduced_alike) {
+    CycleFixture f;
+    StiffModel stiff;
+    HandCycle& h = f.c.hand[0];
+    h.model = &stiff;
+    h.torque = true;
+    h.step.wrench_world = {Vec3(1.0, 0.0, 0.0), Vec3(0.0, 0.02, 0.0)};
+    f.c.bounds = {500.0, 1e9};
+    servo::shape(f.c, f.settings);
+    EXPECT_NEAR(h.wanted_world.force_n.x(), 0.25, 1e-9);
+    EXPECT_NEAR(h.wanted_world.torque_n_m.y(), 0.25 * 0.02, 1e-12);
+}
+
 TEST(StageSafety, armed_with_a_hand_the_force_ramps_in) {
     CycleFixture f;
     f.c.events.arm = true;
