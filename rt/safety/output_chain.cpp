@@ -18,7 +18,7 @@ ChainOutput OutputChain::apply(const ChainInput& in) noexcept {
     const double dt_s = std::min(elapsed_s, to_s(stages::kStepMax));
 
     // Finite. Checks also the pose, because later stages use it.
-    Wrench w = stages::finite_or_zero(in.wanted_dev);
+    Wrench w = in.wanted_dev;
     const bool pose_finite = in.T_dev_tool.finite();
     if (!in.wanted_dev.finite() || !pose_finite) {
         out.acts |= kChainNotFinite;
@@ -81,8 +81,7 @@ ChainOutput OutputChain::apply(const ChainInput& in) noexcept {
         w = {};
         out.enable = false;
     } else {
-        out.enable = in.amplifier || gain_ > 0.0;
-        if (!out.enable) w = {};
+        out.enable = in.amplifier || gain_ > 0.0;  // without a gain there is no wrench
     }
     translation_.applied(w.force_n);
     rotation_.applied(w.torque_n_m);

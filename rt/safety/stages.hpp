@@ -16,11 +16,6 @@ namespace tact::stages {
 // Maximum time step of slew, ramp and gains, so that they do not jump after a pause of the machine.
 inline constexpr Duration kStepMax = std::chrono::milliseconds(2);
 
-// Replaces a wrench with any non-finite component by zero.
-[[nodiscard]] inline Wrench finite_or_zero(const Wrench& w) noexcept TACT_RT {
-    return w.finite() ? w : Wrench{};
-}
-
 // Spring force towards the box of half widths half_m - margin_m, axis by axis; zero inside it.
 [[nodiscard]] inline Vec3 wall_force_n(const Vec3& p_m, const Vec3& half_m, double margin_m,
                                        double stiffness_n_m) noexcept TACT_RT {

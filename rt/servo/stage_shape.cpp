@@ -32,7 +32,9 @@ void smooth_gains(HandCycle& h, const ServoSettings& settings, const DelayBounds
 
 void bound_by_delay(CycleState& c, const ServoSettings& settings) noexcept {
     const double delay_s = static_cast<double>(c.statistics.metrics.delay_p99_ns) * 1e-9;
-    const double period_s = to_s(settings.period);
+    // A freely running loop has another period than the configured one, and so has a loop that cannot keep it.
+    const double rate_hz = c.statistics.rate.rate_hz();
+    const double period_s = rate_hz > 0.0 ? 1.0 / rate_hz : to_s(settings.period);
     c.bounds.stiffness_n_m = stages::stiffness_max_n_m(settings.hand_damping_n_s_m, period_s, delay_s);
     c.bounds.damping_n_s_m = stages::damping_max_n_s_m(kHandMassLeastKg, period_s, delay_s);
 }

@@ -7,7 +7,7 @@
 
 namespace tact::servo {
 
-// Sets the bounds for the delay of the last second.
+// Sets the bounds for the delay and the period of the last second.
 void bound_by_delay(CycleState& c, const ServoSettings& settings) noexcept TACT_RT;
 // Sets each hand's wanted wrench.
 void shape(CycleState& c, const ServoSettings& settings) noexcept TACT_RT;

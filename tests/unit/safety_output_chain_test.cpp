@@ -131,6 +131,20 @@ TEST(OutputChain, a_pose_that_is_not_finite_closes_the_gate_and_turns_the_amplif
     }
 }
 
+TEST(OutputChain, a_torque_is_limited_and_ramped_as_a_force_is) {
+    OutputChain chain;
+    ChainInput in = on(Vec3::Zero());
+    in.wanted_dev.torque_n_m = Vec3(0.6, 0.0, 0.8);
+    ChainOutput out;
+    for (int i = 0; i < 250; ++i) out = chain.apply(in);
+    EXPECT_NEAR(out.gain, 0.5, 1e-9);
+    EXPECT_NEAR(out.wrench_dev.torque_n_m.norm(), 0.5 * chain.settings().torque_n_m_max, 1e-9);
+    out = settled(chain, in);
+    EXPECT_NE(out.acts & kChainTorque, 0U);
+    EXPECT_LT((out.wrench_dev.torque_n_m - chain.settings().torque_n_m_max * Vec3(0.6, 0.0, 0.8)).norm(),
+              1e-12);
+}
+
 TEST(OutputChain, after_a_closed_gate_the_slope_starts_at_zero_again) {
     OutputChain chain;
     ChainInput in = on(Vec3(3.0, 0.0, 0.0));
@@ -152,18 +166,21 @@ TEST(OutputChain, passivity_acts_on_a_turn_about_the_axis_of_the_torque_and_forg
     settings.passivity = true;
     settings.ramp_in_s = 1e-3;
     OutputChain chain(settings);
-    const Quat base = quat_from_rotation_vector(Vec3(0.0, 0.0, 1.5));
+    const Quat base = quat_from_rotation_vector(Vec3(0.0, 0.0, 0.5 * M_PI));
     ChainInput in = on(Vec3::Zero());
     in.wanted_dev.torque_n_m = Vec3(0.02, 0.0, 0.0);
     std::uint32_t acts = 0;
-    double angle = 0.0;
+    double angle = 0.0, torque_n_m = 0.02;
     const auto turn = [&] {
         angle += 1e-3;
         in.T_dev_tool.q = quat_from_rotation_vector(Vec3(angle, 0.0, 0.0)) * base;
-        return chain.apply(in).acts;
+        const ChainOutput out = chain.apply(in);
+        torque_n_m = out.wrench_dev.torque_n_m.x();
+        return out.acts;
     };
     for (int i = 0; i < 30; ++i) acts |= turn();
     EXPECT_NE(acts & kChainPassivity, 0U);
+    EXPECT_LT(torque_n_m, 0.01);
     in.gate_open = false;
     (void)turn();
     in.gate_open = true;
@@ -386,7 +403,7 @@ TEST(PassivityControl, leaves_a_passive_force_unchanged) {
 }
 
 TEST(PassivityControl, its_damping_is_bounded_by_mass_and_by_encoder_step) {
-    for (const double dt : {1e-3, 2.5e-4}) {
+    for (const double dt : {1e-2, 1e-3, 2.5e-4}) {  // the mass decides at 100 Hz, the encoder above
         PassivitySettings settings;
         PassivityControl control(settings);
         control.applied(Vec3(10.0, 0.0, 0.0));
@@ -397,6 +414,20 @@ TEST(PassivityControl, its_damping_is_bounded_by_mass_and_by_encoder_step) {
         EXPECT_LE(damping, settings.felt * dt / settings.position_step * (1.0 + 1e-9));
         EXPECT_GT(damping, 0.0);
     }
+}
+
+TEST(PassivityControl, a_credit_is_used_up_before_it_damps) {
+    PassivitySettings settings;
+    settings.energy_start_j = 0.01;
+    PassivityControl control(settings);
+    EXPECT_EQ(control.energy_j(), 0.01);
+    control.applied(Vec3(1.0, 0.0, 0.0));
+    const Vec3 wanted(1.0, 0.0, 0.0), moved(1e-3, 0.0, 0.0);
+    for (int i = 0; i < 9; ++i) EXPECT_EQ(control.shape(wanted, moved, 1e-3), wanted);
+    for (int i = 0; i < 2; ++i) (void)control.shape(wanted, moved, 1e-3);
+    EXPECT_LT(control.shape(wanted, moved, 1e-3).x(), 1.0);
+    control.forget();
+    EXPECT_EQ(control.energy_j(), 0.01);
 }
 
 }  // namespace

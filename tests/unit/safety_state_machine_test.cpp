@@ -80,6 +80,23 @@ std::string broken_rule(const RunStatus& from, const RunEvents& e, const RunStat
     return {};
 }
 
+TEST(StateMachine, force_flows_only_while_active_and_the_amplifier_is_on_only_while_armed_or_active) {
+    for (const RunState s :
+         {RunState::off, RunState::ready, RunState::armed, RunState::active, RunState::fault}) {
+        EXPECT_EQ(force_may_flow(s), s == RunState::active);
+        EXPECT_EQ(amplifier_on(s), s == RunState::armed || s == RunState::active);
+    }
+}
+
+TEST(StateMachine, an_emergency_stop_or_a_lost_device_trips_in_every_state_but_off) {
+    for (const RunReason reason : {RunReason::emergency_stop, RunReason::stop_channels, RunReason::lines_lost,
+                                   RunReason::amplifier_readback, RunReason::device_lost}) {
+        for (const RunState s : {RunState::ready, RunState::armed, RunState::active})
+            EXPECT_TRUE(trips(s, reason));
+        EXPECT_FALSE(trips(RunState::off, reason));
+    }
+}
+
 TEST(StateMachine, every_pair_of_events_in_every_state_keeps_the_rules) {
     for (const RunState state : kStates) {
         for (const Named& a : kEvents) {

@@ -26,6 +26,33 @@ TEST(Watchdogs, one_overrun_counts_three_warn_and_five_trip) {
     EXPECT_DOUBLE_EQ(trip.measured, 5.0);
 }
 
+TEST(Watchdogs, the_safety_inputs_trip_and_a_released_pedal_masks_no_other_fault) {
+    Watchdogs dogs;
+    for (const RunReason reason : {RunReason::emergency_stop, RunReason::stop_channels,
+                                   RunReason::amplifier_readback, RunReason::lines_lost}) {
+        WatchdogInput in = fine();
+        in.lines = reason;
+        in.lines_age = microseconds(700);
+        in.device_lost = true;  // the inputs come first
+        EXPECT_EQ(dogs.check(in).reason, reason);
+        EXPECT_DOUBLE_EQ(dogs.check(in).measured, 700.0);
+    }
+    for (const RunReason reason : {RunReason::dead_man, RunReason::supervisor}) {
+        WatchdogInput in = fine();
+        in.lines = reason;
+        EXPECT_EQ(dogs.check(in).reason, reason);
+        in.sample_taken_at = in.now - microseconds(4000);
+        EXPECT_EQ(dogs.check(in).reason, RunReason::sample_stale);
+        in.force_finite = false;
+        EXPECT_EQ(dogs.check(in).reason, RunReason::force_not_finite);
+        in.device_lost = true;
+        EXPECT_EQ(dogs.check(in).reason, RunReason::device_lost);
+    }
+    WatchdogInput in = fine();
+    in.supervisor = true;
+    EXPECT_EQ(dogs.check(in).reason, RunReason::supervisor);
+}
+
 TEST(Watchdogs, a_good_cycle_restarts_the_count) {
     Watchdogs dogs;
     WatchdogInput late = fine();

@@ -151,6 +151,23 @@ TEST(StageShape, at_a_delay_the_damping_is_no_larger_than_is_stable) {
     EXPECT_NEAR(f.c.hand[0].wanted_world.force_n.y(), -0.1 * f.c.bounds.damping_n_s_m, 1e-9);
 }
 
+// Damping of hand and arm over half the measured period plus the delay.
+TEST(StageShape, the_stiffness_that_is_stable_follows_the_measured_period) {
+    for (const double rate_hz : {4000.0, 700.0}) {
+        CycleFixture f;
+        f.c.statistics.metrics.delay_p99_ns = 1'000'000;
+        Instant now = f.c.now;
+        f.c.statistics.rate.start(now);
+        for (int slot = 0; slot < 10; ++slot) {
+            for (int i = 0; i < static_cast<int>(0.1 * rate_hz); ++i) f.c.statistics.rate.count();
+            now += milliseconds(100);
+            f.c.statistics.rate.turn(now);
+        }
+        servo::bound_by_delay(f.c, f.settings);
+        EXPECT_NEAR(f.c.bounds.stiffness_n_m, f.settings.hand_damping_n_s_m / (0.5 / rate_hz + 1e-3), 1e-6);
+    }
+}
+
 class StiffModel final : public ForceModel {
 public:
     [[nodiscard]] KnobSpec knob() const noexcept override { return {}; }
@@ -173,6 +190,23 @@ TEST(StageShape, at_a_delay_force_and_torque_of_a_stiff_field_are_reduced_alike)
     servo::shape(f.c, f.settings);
     EXPECT_NEAR(h.wanted_world.force_n.x(), 0.25, 1e-9);
     EXPECT_NEAR(h.wanted_world.torque_n_m.y(), 0.25 * 0.02, 1e-12);
+    h.torque = false;  // a device of three axes
+    servo::shape(f.c, f.settings);
+    EXPECT_EQ(h.wanted_world.torque_n_m, Vec3::Zero());
+}
+
+// A field that is scaled down is less stiff.
+TEST(StageShape, the_scale_of_the_force_counts_in_its_stiffness) {
+    ServoSettings settings;
+    settings.force_scale = 0.5;
+    CycleFixture f(settings);
+    StiffModel stiff;
+    HandCycle& h = f.c.hand[0];
+    h.model = &stiff;
+    h.step.wrench_world.force_n = Vec3(1.0, 0.0, 0.0);
+    f.c.bounds = {500.0, 1e9};
+    servo::shape(f.c, f.settings);
+    EXPECT_NEAR(h.wanted_world.force_n.x(), 0.5 * 500.0 / (0.5 * 2000.0), 1e-9);
 }
 
 TEST(StageSafety, armed_with_a_hand_the_force_ramps_in) {
