@@ -19,8 +19,6 @@ constexpr double kSlidesOn = 1.15;
 constexpr int kRounds = 4;
 constexpr double kRestingMargins = 0.02;
 constexpr double kNearerMargins = 0.05;
-// A ball at rest on a plane is below it by its rounding. It must not catch the edge of the next triangle of that plane.
-constexpr double kSunkMargins = 0.1;
 constexpr double kTangentMargins = 0.25;
 constexpr std::uint32_t kSeatVisits = 4096;  // tree nodes, about 100 us
 

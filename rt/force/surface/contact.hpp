@@ -67,6 +67,9 @@ struct Contact {
 
 class SurfaceContact {
 public:
+    // A ball at rest on a plane is below it by its rounding, a part of the margin. It must not catch the edge of the next
+    // triangle of that plane.
+    static constexpr double kSunkMargins = 0.1;
     static constexpr std::uint32_t kMovesMost = 24;  // of a step
     static constexpr std::size_t kLeavesMax = 4096;
     // A step starts no further move after this many queries, about 100 us.

@@ -18,7 +18,6 @@ constexpr double kGrows = 4.0;       // growth of the longest move after a cut m
 constexpr double kNextMoves = 3.0;   // longest move after an uncut move, in lengths of that move
 constexpr double kShrinks = 0.5;     // factor after a move without room for its half-spaces
 constexpr double kLeastMargins = 8.0;
-constexpr double kSunkMargins = 0.1;    // below a plane, of a ball at rest on it (contact.cpp)
 constexpr double kRestingShare = 0.02;  // fraction of a margin; shorter moves are rounding noise
 
 Vec3 linear(const Vec6& y) { return y.head<3>(); }
@@ -56,7 +55,7 @@ bool ToolContact::query(std::uint32_t point, double reach_m, ToolTouch& touch) n
     const Vec3 place = points_.place_m(point);
     const Eigen::Vector3f lever = points_.lever_m(point) / static_cast<float>(points_.gyration_m());
     const double ball = settings_.ball_m, edge = ball - settings_.margin_m,
-                 sunk = kSunkMargins * settings_.margin_m;
+                 sunk = SurfaceContact::kSunkMargins * settings_.margin_m;
     QueryJob job = mesh_.query_job(place);
     TriangleQueries seen;
     for (int attempt = 0; attempt < 6; ++attempt, reach_m *= 0.5) {
