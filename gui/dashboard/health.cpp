@@ -143,6 +143,10 @@ void delay(const Theme& theme, const HealthTopic& h) {
     if (h.delay_p99_ns <= 0) return;
     row(theme, "Loop delay", duration_text(1e-9 * static_cast<double>(h.delay_p99_ns)),
         format("stable up to %.1f N/mm", 1e-3 * static_cast<double>(h.stiffness_n_m_max)));
+    row(theme, "Stiffness", format("%.2f N/mm", 1e-3 * static_cast<double>(h.model_n_m)),
+        h.field_gain < 0.995F
+            ? format("force reduced to %.0f %%, to stay stable", 100.0 * static_cast<double>(h.field_gain))
+            : "of the field, now");
 }
 
 void law_and_goal(const Theme& theme, DashboardState& state) {

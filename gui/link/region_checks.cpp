@@ -113,10 +113,11 @@ bool sensible(const HealthTopic& h) noexcept {
            duration(h.lateness_p99_ns) && duration(h.lateness_max_ns) && duration(h.cycle_cost_p50_ns) &&
            duration(h.cycle_cost_max_ns) && fraction(h.recomputed_fraction_mean) &&
            fraction(h.recomputed_fraction_least) && fraction(h.rested) && duration(h.delay_p50_ns) &&
-           duration(h.delay_p99_ns) && std::isfinite(h.stiffness_n_m_max) && duration(h.model_ns_max) &&
-           fraction(h.deadline_miss_share) && std::isfinite(h.force_error_n_p50) &&
-           std::isfinite(h.force_step_n_max) && std::isfinite(h.level_settled_s) &&
-           h.state <= static_cast<std::uint8_t>(RunState::fault);
+           duration(h.delay_p99_ns) && std::isfinite(h.stiffness_n_m_max) && std::isfinite(h.model_n_m) &&
+           std::isfinite(h.model_n_m_rad) && std::isfinite(h.torque_n_m_rad_max) &&
+           std::isfinite(h.field_gain) && duration(h.model_ns_max) && fraction(h.deadline_miss_share) &&
+           std::isfinite(h.force_error_n_p50) && std::isfinite(h.force_step_n_max) &&
+           std::isfinite(h.level_settled_s) && h.state <= static_cast<std::uint8_t>(RunState::fault);
 }
 
 bool sensible(const LevelsTopic& l) noexcept {

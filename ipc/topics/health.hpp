@@ -24,7 +24,7 @@ enum ScheduleFlag : std::uint32_t {
 enum class LinesShown : std::uint8_t { none, stopped, waiting, permitted };
 
 struct alignas(64) HealthTopic {
-    static constexpr TopicInfo kInfo{.name = "health", .version = 7, .writer = Writer::rt};
+    static constexpr TopicInfo kInfo{.name = "health", .version = 8, .writer = Writer::rt};
     std::int64_t taken_at_ns;
     std::uint64_t cycle;
     std::int64_t period_ns;     // 0: free running
@@ -77,8 +77,11 @@ struct alignas(64) HealthTopic {
     float force_step_n_max;              // largest change of the force from one cycle to the next
     float level_settled_s;      // after arming the level stays within 5 % from then on; negative: not armed
     std::int64_t model_ns_max;  // deadline of the model's step; 0: none
-    std::uint64_t state_sequence;    // last arm or disarm handled: they overtake other commands
-    std::uint8_t more_reserved[16];  // zero
+    std::uint64_t state_sequence;  // last arm or disarm handled: they overtake other commands
+    // Stiffness that the model shows now (the stiffer hand), before the gain for the delay; 0: unknown.
+    float model_n_m, model_n_m_rad;
+    float torque_n_m_rad_max;  // permitted in rotation at this delay, as stiffness_n_m_max
+    float field_gain;          // factor on the model's wrench that keeps it stable (the weaker hand)
 };
 static_assert(std::is_trivially_copyable_v<HealthTopic> && sizeof(HealthTopic) == 384);
 static_assert(offsetof(HealthTopic, overrun_at_ns) == 304 && offsetof(HealthTopic, device_bus) == 220 &&

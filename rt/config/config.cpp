@@ -127,6 +127,7 @@ std::vector<ConfigKey> keys_of(RtConfig& c) {
         {"safety.wall_margin_mm", &c.safety.wall_margin_mm, 0, 1000, {}},
         {"safety.wall_stiffness_n_m", &c.safety.wall_stiffness_n_m, 0, 5000, {}},
         {"safety.hand_damping_n_s_m", &c.safety.hand_damping_n_s_m, 0.01, 100, {}},
+        {"safety.hand_turn_damping_n_m_s_rad", &c.safety.hand_turn_damping_n_m_s_rad, 1e-5, 1, {}},
         {"safety.heat_tau_s", &c.safety.heat_tau_s, 0, 3600, {}},
         {"safety.passivity", &c.safety.passivity, 0, 0, {}},
         {"safety.passivity_energy_j", &c.safety.passivity_energy_j, 0, 100, {}},
@@ -255,6 +256,7 @@ ServoSettings settings_from(const RtConfig& c, bool emulated) {
     s.chain.wall_margin_m = c.safety.wall_margin_mm * 1e-3;
     s.chain.wall_stiffness_n_m = c.safety.wall_stiffness_n_m;
     s.hand_damping_n_s_m = c.safety.hand_damping_n_s_m;
+    s.hand_turn_damping_n_m_s_rad = c.safety.hand_turn_damping_n_m_s_rad;
     s.chain.heat_tau_s = c.safety.heat_tau_s;
     s.chain.passivity = c.safety.passivity;
     s.chain.translation.energy_start_j = c.safety.passivity_energy_j;

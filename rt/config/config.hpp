@@ -116,6 +116,7 @@ struct RtConfig {
         double wall_margin_mm = 5.0;
         double wall_stiffness_n_m = 500.0;
         double hand_damping_n_s_m = 3.0;
+        double hand_turn_damping_n_m_s_rad = 0.003;
         double heat_tau_s = 60.0;
         bool passivity = false;
         double passivity_energy_j = 0.0;

@@ -34,6 +34,13 @@ struct ToolDrive {
 
 enum class StepStatus : std::uint8_t { ok, out_of_time, out_of_range };
 
+// Stiffness of what a model shows: the largest change of force per displacement and of torque per rotation of the tool, over
+// all directions, in the world frame. 0: none, or unknown.
+struct ModelStiffness {
+    double force_n_m = 0.0;
+    double torque_n_m_rad = 0.0;
+};
+
 struct StepResult {
     Wrench wrench_world;  // at the tool's origin
     PathLoad load;        // error in newtons
@@ -101,8 +108,8 @@ public:
     // The cost may be off by a factor common to all levels: the governor measures that factor. Constant time.
     [[nodiscard]] virtual PathLoad predict(float /*fidelity*/) const noexcept TACT_RT { return {}; }
     virtual void reset(const ToolState& tool) noexcept TACT_RT = 0;  // the bodies stay where they are
-    // The largest stiffness of the model, N/m; 0: unknown.
-    [[nodiscard]] virtual double stiffness_n_m() const noexcept TACT_RT { return 0.0; }
+    // Stiffness that the next steps may show: an upper bound near the last pose. Constant time.
+    [[nodiscard]] virtual ModelStiffness stiffness() const noexcept TACT_RT { return {}; }
     // True: the model needs slow_update(). Such a model stays until the run ends.
     [[nodiscard]] virtual bool has_slow_update() const noexcept { return false; }
     // Runs on a thread of its own at tens of hertz or more and prepares data for the next steps. Its timing may change

@@ -43,6 +43,7 @@ struct HandCycle {
     ToolState tool;
     StepResult step;
     DeadlineChecks deadline;          // checks of the deadline during that step
+    ModelStiffness stiffness;         // of the model at the device, before its gain
     SmoothGain field, walls, damper;  // gains that keep each stable at the present delay
     Wrench wanted_world;              // after shaping
     OutputChain chain;
@@ -109,7 +110,7 @@ struct GovernCycle {
 
 // Largest stiffness and damping that are stable at the delay of the last second.
 struct DelayBounds {
-    double stiffness_n_m = 0.0, damping_n_s_m = 0.0;
+    double stiffness_n_m = 0.0, damping_n_s_m = 0.0, torque_n_m_rad = 0.0;
 };
 
 struct CycleState {

@@ -62,7 +62,13 @@ void publish_health(CycleState& c, const ServoSettings& settings, Latest<HealthT
     t.delay_p50_ns = f.delay_p50_ns;
     t.delay_p99_ns = f.delay_p99_ns;
     t.stiffness_n_m_max = static_cast<float>(c.bounds.stiffness_n_m);
+    t.torque_n_m_rad_max = static_cast<float>(c.bounds.torque_n_m_rad);
+    t.field_gain = 1.0F;
     for (std::uint32_t i = 0; i < c.hands; ++i) {
+        const ModelStiffness model = c.hand[i].stiffness;
+        t.model_n_m = std::max(t.model_n_m, static_cast<float>(model.force_n_m));
+        t.model_n_m_rad = std::max(t.model_n_m_rad, static_cast<float>(model.torque_n_m_rad));
+        t.field_gain = std::min(t.field_gain, static_cast<float>(c.hand[i].field.gain()));
         t.device_notice[i] = static_cast<std::uint8_t>(c.hand[i].sample.notice);
         t.device_bus[i] = c.hand[i].sample.bus;
     }

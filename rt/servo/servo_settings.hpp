@@ -44,8 +44,11 @@ struct ServoSettings {
     Duration model_max = std::chrono::microseconds(600);  // deadline of a step, beneath its level
     bool model_deadline = true;                           // false for a clock that is not the machine's
     double force_scale = 1.0;
-    double damping_n_s_m = 0.0;       // of the coupling, against the tool's velocity
-    double hand_damping_n_s_m = 3.0;  // of hand and arm; bounds the stiffness that is stable at a delay
+    double damping_n_s_m = 0.0;  // of the coupling, against the tool's velocity
+    // Of hand and arm; they bound the stiffness that is stable at a delay. In rotation: that damping at the 3 cm between
+    // fingers and the stylus' centre.
+    double hand_damping_n_s_m = 3.0;
+    double hand_turn_damping_n_m_s_rad = 0.003;
     Pose T_world_dev;
     // At least one; outlives the servo. The first has index kDisplayPathIndex, the others follow kForcePathIndex.
     std::span<const VisualPath> visual_paths;

@@ -11,8 +11,9 @@ namespace {
 // Least effective mass of hand and arm; bounds the damping that is stable at a delay.
 constexpr double kHandMassLeastKg = 0.1;
 
-// Scales the whole field down to the stiffness that is stable at the present delay; walls and damping have bounds of
-// their own. Without force at the device, the gains settle at once.
+// Scales the whole field down to the stiffness that is stable at the present delay: force and torque by one gain, so that
+// the field stays conservative. At a wall of the workspace both stiffnesses add up and share the bound. Damping has a bound
+// of its own. Without force at the device, the gains settle at once.
 void smooth_gains(HandCycle& h, const ServoSettings& settings, const DelayBounds& bounds,
                   double dt_s) noexcept {
     const auto within = [](double wanted, double max) { return wanted > max ? max / wanted : 1.0; };
@@ -23,8 +24,16 @@ void smooth_gains(HandCycle& h, const ServoSettings& settings, const DelayBounds
         else
             g.settle(gain);
     };
-    follow(h.field, within(settings.force_scale * h.model->stiffness_n_m(), bounds.stiffness_n_m));
-    follow(h.walls, within(h.chain.settings().wall_stiffness_n_m, bounds.stiffness_n_m));
+    h.stiffness = h.model->stiffness();
+    h.stiffness.force_n_m *= settings.force_scale;
+    h.stiffness.torque_n_m_rad *= h.torque ? settings.force_scale : 0.0;
+    const double walls_n_m = h.chain.settings().wall_stiffness_n_m;
+    const bool at_wall = (h.out.acts & kChainWall) != 0;
+    const double beside_field_n_m = at_wall ? walls_n_m : 0.0,
+                 beside_walls_n_m = at_wall ? h.stiffness.force_n_m : 0.0;
+    follow(h.field, std::min(within(h.stiffness.force_n_m + beside_field_n_m, bounds.stiffness_n_m),
+                             within(h.stiffness.torque_n_m_rad, bounds.torque_n_m_rad)));
+    follow(h.walls, within(walls_n_m + beside_walls_n_m, bounds.stiffness_n_m));
     follow(h.damper, within(settings.damping_n_s_m, bounds.damping_n_s_m));
 }
 
@@ -36,6 +45,8 @@ void bound_by_delay(CycleState& c, const ServoSettings& settings) noexcept {
     const double rate_hz = c.statistics.rate.rate_hz();
     const double period_s = rate_hz > 0.0 ? 1.0 / rate_hz : to_s(settings.period);
     c.bounds.stiffness_n_m = stages::stiffness_max_n_m(settings.hand_damping_n_s_m, period_s, delay_s);
+    c.bounds.torque_n_m_rad =
+        stages::stiffness_max_n_m(settings.hand_turn_damping_n_m_s_rad, period_s, delay_s);
     c.bounds.damping_n_s_m = stages::damping_max_n_s_m(kHandMassLeastKg, period_s, delay_s);
 }
 

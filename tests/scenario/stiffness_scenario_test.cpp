@@ -23,7 +23,7 @@ public:
         return spring_.items(fidelity);
     }
     void reset(const ToolState& tool) noexcept override { spring_.reset(tool); }
-    [[nodiscard]] double stiffness_n_m() const noexcept override { return kSaysNM; }
+    [[nodiscard]] ModelStiffness stiffness() const noexcept override { return {.force_n_m = kSaysNM}; }
     StepResult step(const ToolState& tool, const Budget& budget) noexcept override {
         return spring_.step(tool, budget);
     }

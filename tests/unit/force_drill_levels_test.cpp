@@ -197,8 +197,8 @@ TEST(DrillModel, the_reported_stiffness_is_the_largest_slope_of_the_force_up_to_
         if (high < DrillSettings{}.force_n_max) steepest = std::max(steepest, (high - low) / 0.5e-3);
     }
     ASSERT_GT(steepest, 100.0);
-    EXPECT_GE(d.model->stiffness_n_m(), 0.95 * steepest);
-    EXPECT_LE(d.model->stiffness_n_m(), 1.3 * steepest);
+    EXPECT_GE(d.model->stiffness().force_n_m, 0.95 * steepest);
+    EXPECT_LE(d.model->stiffness().force_n_m, 1.3 * steepest);
 }
 
 // A burr that starts cuts one group a step: what the others will cost is expected from the first.

@@ -155,7 +155,7 @@ TEST(FieldModel, no_closed_path_inside_the_box_gains_energy) {
 TEST(FieldModel, the_reported_stiffness_bounds_the_derivative_of_the_force) {
     const Scene scene = scene_of(0.0);
     FieldModel model(scene.meta, scene.field, scene.grid);
-    EXPECT_EQ(model.stiffness_n_m(), scene.field.stiffness_n_m);
+    EXPECT_EQ(model.stiffness().force_n_m, scene.field.stiffness_n_m);
     SeededRandom random(5);
     for (int i = 0; i < 300; ++i) {
         const Vec3 at = 0.07 * Vec3(2.0 * random.uniform() - 1.0, 2.0 * random.uniform() - 1.0,

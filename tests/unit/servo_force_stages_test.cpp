@@ -116,7 +116,7 @@ TEST(StageShape, a_force_is_scaled_and_damped) {
     settings.damping_n_s_m = 2.0;
     settings.hand_damping_n_s_m = 1e6;  // no bound
     CycleFixture f(settings);
-    f.c.bounds = {1e9, 1e9};
+    f.c.bounds = {1e9, 1e9, 1e9};
     HandCycle& h = f.c.hand[0];
     h.step.wrench_world.force_n = Vec3(1.0, 0.0, 0.0);
     h.tool.twist_world.linear_m_s = Vec3(0.0, 0.1, 0.0);
@@ -171,7 +171,10 @@ TEST(StageShape, the_stiffness_that_is_stable_follows_the_measured_period) {
 class StiffModel final : public ForceModel {
 public:
     [[nodiscard]] KnobSpec knob() const noexcept override { return {}; }
-    [[nodiscard]] double stiffness_n_m() const noexcept override { return 2000.0; }
+    [[nodiscard]] ModelStiffness stiffness() const noexcept override {
+        return {.force_n_m = 2000.0, .torque_n_m_rad = torque_n_m_rad};
+    }
+    double torque_n_m_rad = 0.0;
     void reset(const ToolState&) noexcept override {}
     StepResult step(const ToolState&, const Budget&) noexcept override { return {}; }
     [[nodiscard]] ModelBodies bodies() const noexcept override { return {}; }
@@ -186,13 +189,52 @@ TEST(StageShape, at_a_delay_force_and_torque_of_a_stiff_field_are_reduced_alike)
     h.model = &stiff;
     h.torque = true;
     h.step.wrench_world = {Vec3(1.0, 0.0, 0.0), Vec3(0.0, 0.02, 0.0)};
-    f.c.bounds = {500.0, 1e9};
+    f.c.bounds = {500.0, 1e9, 1e9};
     servo::shape(f.c, f.settings);
     EXPECT_NEAR(h.wanted_world.force_n.x(), 0.25, 1e-9);
     EXPECT_NEAR(h.wanted_world.torque_n_m.y(), 0.25 * 0.02, 1e-12);
     h.torque = false;  // a device of three axes
     servo::shape(f.c, f.settings);
     EXPECT_EQ(h.wanted_world.torque_n_m, Vec3::Zero());
+}
+
+// Force and torque shrink together, whichever is too stiff.
+TEST(StageShape, a_field_that_is_too_stiff_in_rotation_is_reduced) {
+    CycleFixture f;
+    StiffModel stiff;
+    stiff.torque_n_m_rad = 4.0;
+    HandCycle& h = f.c.hand[0];
+    h.model = &stiff;
+    h.torque = true;
+    h.step.wrench_world = {Vec3(1.0, 0.0, 0.0), Vec3(0.0, 0.02, 0.0)};
+    f.c.bounds = {1e9, 1e9, 1.0};
+    servo::shape(f.c, f.settings);
+    EXPECT_NEAR(h.wanted_world.force_n.x(), 0.25, 1e-9);
+    EXPECT_NEAR(h.wanted_world.torque_n_m.y(), 0.25 * 0.02, 1e-12);
+    h.torque = false;
+    servo::shape(f.c, f.settings);
+    EXPECT_NEAR(h.wanted_world.force_n.x(), 1.0, 1e-9);
+}
+
+TEST(StageShape, the_stable_stiffness_in_rotation_is_the_damping_over_the_delay) {
+    CycleFixture f;
+    f.c.statistics.metrics.delay_p99_ns = 20'000'000;
+    servo::bound_by_delay(f.c, f.settings);
+    EXPECT_NEAR(f.c.bounds.torque_n_m_rad, f.settings.hand_turn_damping_n_m_s_rad / 0.0205, 1e-9);
+}
+
+TEST(StageShape, at_a_wall_field_and_wall_share_the_stable_stiffness) {
+    CycleFixture f;
+    StiffModel stiff;
+    HandCycle& h = f.c.hand[0];
+    h.model = &stiff;
+    h.step.wrench_world.force_n = Vec3(1.0, 0.0, 0.0);
+    h.out.acts = kChainWall;
+    f.c.bounds = {1000.0, 1e9, 1e9};
+    servo::shape(f.c, f.settings);
+    const double walls_n_m = h.chain.settings().wall_stiffness_n_m;
+    EXPECT_NEAR(2000.0 * h.field.gain() + walls_n_m * h.walls.gain(), 1000.0, 1e-6);
+    EXPECT_NEAR(h.field.gain(), h.walls.gain(), 1e-9);
 }
 
 // A field that is scaled down is less stiff.
@@ -204,7 +246,7 @@ TEST(StageShape, the_scale_of_the_force_counts_in_its_stiffness) {
     HandCycle& h = f.c.hand[0];
     h.model = &stiff;
     h.step.wrench_world.force_n = Vec3(1.0, 0.0, 0.0);
-    f.c.bounds = {500.0, 1e9};
+    f.c.bounds = {500.0, 1e9, 1e9};
     servo::shape(f.c, f.settings);
     EXPECT_NEAR(h.wanted_world.force_n.x(), 0.5 * 500.0 / (0.5 * 2000.0), 1e-9);
 }

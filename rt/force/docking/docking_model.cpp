@@ -96,11 +96,11 @@ std::uint32_t DockingModel::items(float fidelity) const noexcept {
     return bodies_.in_hand() ? blend().items(fidelity) : 0;
 }
 
-double DockingModel::stiffness_n_m() const noexcept {
+ModelStiffness DockingModel::stiffness() const noexcept {
     const double scene = parts_->meta.energy_j_per_sigma;
     const double scale = scene > 0.0 ? energy_j_per_sigma_ / scene : 1.0;
     const bool clash = (bodies_.list().options & kDockingClash) != 0;
-    return GainSettings{}.stiffness_n_m * scale + (clash ? clash_gains_.stiffness_n_m : 0.0);
+    return {.force_n_m = GainSettings{}.stiffness_n_m * scale + (clash ? clash_gains_.stiffness_n_m : 0.0)};
 }
 
 StepResult DockingModel::evaluate(const Pose& T_model_body, const Budget& budget) const noexcept {

@@ -53,7 +53,7 @@ public:
     [[nodiscard]] std::uint32_t items(float fidelity) const noexcept TACT_RT override;
     [[nodiscard]] PathLoad predict(float fidelity) const noexcept TACT_RT override;
     // Limit used for the scene's gain (ipc/scene/density/docking_gain.hpp), plus that of the clash force.
-    [[nodiscard]] double stiffness_n_m() const noexcept TACT_RT override;
+    [[nodiscard]] ModelStiffness stiffness() const noexcept TACT_RT override;
     void reset(const ToolState& tool) noexcept TACT_RT override;
     StepResult step(const ToolState& tool, const Budget& budget) noexcept TACT_RT override;
     [[nodiscard]] ModelBodies bodies() const noexcept TACT_RT override { return bodies_.list(); }

@@ -95,7 +95,9 @@ public:
     [[nodiscard]] PathLoad predict(float fidelity) const noexcept TACT_RT override;
     void reset(const ToolState& tool) noexcept TACT_RT override;
     // On a flat surface, at force_n_max.
-    [[nodiscard]] double stiffness_n_m() const noexcept TACT_RT override { return stiffness_n_m_; }
+    [[nodiscard]] ModelStiffness stiffness() const noexcept TACT_RT override {
+        return {.force_n_m = stiffness_n_m_};
+    }
     StepResult step(const ToolState& tool, const Budget& budget) noexcept TACT_RT override;
     [[nodiscard]] ModelBodies bodies() const noexcept TACT_RT override;
     // Before the first step; the publisher outlives the model.

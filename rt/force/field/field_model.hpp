@@ -37,7 +37,9 @@ public:
     [[nodiscard]] std::uint32_t items(float fidelity) const noexcept TACT_RT override;
     [[nodiscard]] PathLoad predict(float fidelity) const noexcept TACT_RT override;
     void reset(const ToolState& tool) noexcept TACT_RT override;
-    [[nodiscard]] double stiffness_n_m() const noexcept TACT_RT override { return field_.stiffness_n_m; }
+    [[nodiscard]] ModelStiffness stiffness() const noexcept TACT_RT override {
+        return {.force_n_m = field_.stiffness_n_m};
+    }
     StepResult step(const ToolState& tool, const Budget& budget) noexcept TACT_RT override;
     [[nodiscard]] ModelBodies bodies() const noexcept TACT_RT override;
 

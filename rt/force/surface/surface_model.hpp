@@ -81,7 +81,9 @@ public:
     [[nodiscard]] std::uint32_t items(float fidelity) const noexcept TACT_RT override;
     [[nodiscard]] PathLoad predict(float fidelity) const noexcept TACT_RT override;
     [[nodiscard]] static std::uint32_t moves(float fidelity) noexcept TACT_RT;
-    [[nodiscard]] double stiffness_n_m() const noexcept TACT_RT override { return settings_.stiffness_n_m; }
+    [[nodiscard]] ModelStiffness stiffness() const noexcept TACT_RT override {
+        return {.force_n_m = settings_.stiffness_n_m};
+    }
     void reset(const ToolState& tool) noexcept TACT_RT override;
     StepResult step(const ToolState& tool, const Budget& budget) noexcept TACT_RT override;
     [[nodiscard]] ModelBodies bodies() const noexcept TACT_RT override;

@@ -45,7 +45,9 @@ public:
     [[nodiscard]] KnobSpec knob() const noexcept TACT_RT override;
     [[nodiscard]] std::uint32_t items(float fidelity) const noexcept TACT_RT override;
     [[nodiscard]] static std::uint32_t queries(float fidelity) noexcept TACT_RT;
-    [[nodiscard]] double stiffness_n_m() const noexcept TACT_RT override { return settings_.stiffness_n_m; }
+    [[nodiscard]] ModelStiffness stiffness() const noexcept TACT_RT override {
+        return {.force_n_m = settings_.stiffness_n_m, .torque_n_m_rad = torque_n_m_rad_};
+    }
     void reset(const ToolState& tool) noexcept TACT_RT override;
     StepResult step(const ToolState& tool, const Budget& budget) noexcept TACT_RT override;
     [[nodiscard]] ModelBodies bodies() const noexcept TACT_RT override;
@@ -70,7 +72,6 @@ public:
     [[nodiscard]] PathLoad predict(float fidelity) const noexcept TACT_RT override;
     [[nodiscard]] const ToolTouch& tool_touch() const { return touch_; }  // of the last step
     [[nodiscard]] const ToolContact& contact() const { return solver_; }
-    [[nodiscard]] double torque_n_m_rad() const { return torque_n_m_rad_; }  // stiffness in rotation
     [[nodiscard]] std::uint64_t lagging_steps() const { return lagging_; }
     [[nodiscard]] std::uint64_t released() const { return released_; }
 
