@@ -1,7 +1,7 @@
 # cmake --install: programs, documentation and system files, in FHS locations below the prefix. The programs find each
 # other in their own folder and the configuration in the prefix's etc (deploy/tact/installed_config.hpp), so any prefix
-# works, and the build folder too. Test equipment (tact-emu) is not installed. tact-bench and tact-reproduce have their
-# own install rules (tests).
+# works, and the build folder too. Test equipment (tact-emu) is not installed. tact-bench, tact-certify and
+# tact-reproduce have their own install rules (tests).
 include(GNUInstallDirs)
 install(TARGETS tact tact-prep tact-rt tact-record tact-replay RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
 if(TACT_GUI)

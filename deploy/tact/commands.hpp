@@ -20,6 +20,7 @@ void add_doctor(CLI::App& app, int& exit_code);
 void add_probe(CLI::App& app, int& exit_code);
 void add_info(CLI::App& app, int& exit_code);
 void add_bench(CLI::App& app);
+void add_certify(CLI::App& app);
 void add_reproduce(CLI::App& app);
 
 }  // namespace tact::launch

@@ -33,6 +33,7 @@ int main(int argc, char** argv) {
     add_config(app);
     add_info(app, exit_code);
     add_bench(app);
+    add_certify(app);
     add_reproduce(app);
     if (const auto answered = tact::manual::answer(
             app, "tact", argc, argv,

@@ -52,6 +52,8 @@ static_assert(std::is_trivially_copyable_v<EventTopic> && sizeof(EventTopic) == 
 enum TraceFlag : std::uint32_t {
     kTraceBurrTurns = 1U << 16,
     kTraceCuts = 1U << 17,  // bone was removed in this cycle
+    kTraceHeldIn =
+        1U << 18,  // bone on all sides of the burr: its push is shorter than that of the published equation
 };
 
 // One servo cycle, for traces, the flight recorder and plots.

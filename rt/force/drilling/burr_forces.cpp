@@ -43,6 +43,7 @@ BurrForce burr_force(const BurrLaw& law, double radius_m, double m0_m3, const Ve
         const double s = std::min((x - kWayOutFrom) / (kWayOutTo - kWayOutFrom), 1.0);
         f.normal += s * s * (3.0 - 2.0 * s) * std::max(1.0 - f.normal.norm(), 0.0) * way_out;
     }
+    if (moment > 0.0) f.held_in = (f.normal + m1_m4 / moment).squaredNorm() > kHeldInShare * kHeldInShare;
     const double elastic = law.elastic_pa * r2 * x * std::sqrt(x);
     f.stiffness_n_m = 1.5 * law.elastic_pa * radius_m * std::sqrt(x);
     const Vec3 lever = m1_m4 / std::max(m0_m3, 1e-30);  // to the middle of what is touched

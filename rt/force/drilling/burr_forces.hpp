@@ -26,6 +26,7 @@ struct BurrLaw {
 struct BurrForce {
     double depth = 0.0;          // h / R
     Vec3 normal = Vec3::Zero();  // away from the bone; shorter than 1 where bone is on all sides
+    bool held_in = false;        // bone on all sides: the push differs from eq. 3 by more than kHeldInShare
     Wrench wrench;               // at the ball's centre
     double stiffness_n_m = 0.0;  // of the elastic force along the normal, for a flat surface
 };
@@ -40,6 +41,7 @@ struct BurrForce {
 [[nodiscard]] BurrForce burr_force(const BurrLaw& law, double radius_m, double m0_m3, const Vec3& m1_m4,
                                    const Vec3& velocity_m_s, const Vec3& spin_rad_s,
                                    const Vec3& way_out = Vec3::Zero()) noexcept TACT_RT;
+inline constexpr double kHeldInShare = 0.005;
 // The depth h / R from which on way_out counts, and from which on wholly.
 inline constexpr double kWayOutFrom = 1.2, kWayOutTo = 1.7;
 

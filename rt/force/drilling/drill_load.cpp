@@ -9,7 +9,8 @@ namespace {
 
 // ns, 2026-11-25, AVX-512 at 3.7 GHz: fit to the counts and times of README.md's table.
 constexpr double kDrillStepNs = 300.0, kBallNs = 150.0, kBlockNs = 12.0, kSumNs = 150.0, kCutNs = 600.0;
-constexpr double kErrorLeast = 0.01, kErrorPerBlock = 0.2, kErrorPerVoxel = 0.5, kErrorRough = 0.1;
+constexpr double kErrorLeast = 0.012, kErrorPerBlock = 0.2, kErrorRough = 0.1;
+constexpr double kErrorPerVoxel2 = 0.8, kErrorPerVoxel4 = 2.2, kErrorThinCap = 0.08;
 constexpr double kSurfacePerEdge2 = 1.5;  // cubes that a surface meets, on average of its directions
 
 // Cubes of an edge that a ball's surface in bone meets.
@@ -67,9 +68,17 @@ DrillWork flat_work(const BallLook& look, double block) noexcept {
     return work;
 }
 
-double block_error_share(double block, double voxel, bool rough) noexcept {
-    return kErrorLeast + kErrorPerBlock * block * block + kErrorPerVoxel * voxel * voxel +
-           (rough ? kErrorRough : 0.0);
+double block_error_share(double block, bool rough) noexcept {
+    return kErrorLeast + kErrorPerBlock * block * block + (rough ? kErrorRough : 0.0);
+}
+
+// Deep in bone the moment is small, and its direction less certain. A cap that is thinner than a voxel has an error of its
+// own.
+double voxel_error_n(double elastic_full_n, double depth, double voxel) noexcept {
+    const double v2 = voxel * voxel, deep = 1.0 + 2.0 * std::max(depth - 1.0, 0.0);
+    const double share = deep * (kErrorPerVoxel2 * v2 + kErrorPerVoxel4 * v2 * v2);
+    return elastic_full_n *
+           std::max(share * depth * std::sqrt(depth), kErrorThinCap * voxel * std::sqrt(voxel));
 }
 
 double pending_error_n(const BurrLaw& law, double radius_m, double soft, const BurrForce& f, double m0_m3,

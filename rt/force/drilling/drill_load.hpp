@@ -4,8 +4,8 @@
 //          another level. Blocks of the force go as (touched area) / block^2, octree level by octree level; the last step's count
 //          sets the scale.
 // Time     constants of one core (README.md); another core or instruction set has a factor common to all levels.
-// Error    of a level: the blocks' share of the elastic force, bounds of what README.md measured, and what the bone still to
-//          be cut may change: with e the exposure that is pending, a cap loses e s x m0 at most (its mean of 1 - (r/R)^2
+// Error    against the published equations: shares of the elastic force for blocks and voxels, bounds of what README.md
+//          measured, and what the bone still to be cut may change: with e the exposure that is pending, a cap loses e s x m0 at most (its mean of 1 - (r/R)^2
 //          is 2x/3, half as much again for other shapes), which changes eqs 2, 3, 13 and 14 by their slopes.
 // Thread   any; constant time, no allocation
 #pragma once
@@ -48,8 +48,10 @@ struct BallLook {
 // Of a ball in flat solid bone, by the sizes alone; all bricks that it meets are cut.
 [[nodiscard]] DrillWork flat_work(const BallLook& look, double block) noexcept TACT_RT;
 
-// Of the elastic force, for blocks and voxels in radii. rough: blocks do not shrink near the surface.
-[[nodiscard]] double block_error_share(double block, double voxel, bool rough) noexcept TACT_RT;
+// Of the elastic force, for blocks in radii. rough: blocks do not shrink near the surface.
+[[nodiscard]] double block_error_share(double block, bool rough) noexcept TACT_RT;
+// Error of one ball, because bone is known by voxels only. elastic_full_n: elastic force at h = R; voxel: in radii.
+[[nodiscard]] double voxel_error_n(double elastic_full_n, double depth, double voxel) noexcept TACT_RT;
 // Newtons per exposure that is pending, of a ball of weight 1.
 [[nodiscard]] double pending_error_n(const BurrLaw& law, double radius_m, double soft, const BurrForce& force,
                                      double m0_m3, double m1_m4, double speed_m_s) noexcept TACT_RT;

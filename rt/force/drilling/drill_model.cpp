@@ -12,8 +12,9 @@
 namespace tact {
 namespace {
 
-constexpr double kNoHandM = 1e3;        // no hand is there
-constexpr double kTypicalForceN = 3.0;  // of a surgeon's hand
+constexpr double kNoHandM = 1e3;          // no hand is there
+constexpr double kStiffnessReach = 0.05;  // half of the way over which it is measured, in radii of the head
+constexpr double kTypicalForceN = 3.0;    // of a surgeon's hand
 
 bool hand_is_there(const Pose& pose) noexcept {
     const double turn = pose.q.squaredNorm();
@@ -71,10 +72,12 @@ DrillModel::DrillModel(const SceneMeta& meta, DrillBone& bone, const DrillSettin
                                                        : settings.law.elastic_pa;
         const double full = elastic_pa_[i] * radius_m * radius_m;
         const double x = std::min(std::cbrt(std::pow(settings.force_n_max / full, 2.0)), 2.0);
-        stiffness_n_m_ = std::max(stiffness_n_m_, 1.5 * elastic_pa_[i] * radius_m * std::sqrt(x));
-        if (radius_m == head_radius_m_)
+        lever_m_ = std::max(lever_m_, tool_.ball[i].centre_tool_m.norm() + radius_m);
+        if (radius_m == head_radius_m_) {
+            stiffness_n_m_ = std::max(stiffness_n_m_, 1.5 * elastic_pa_[i] * radius_m * std::sqrt(x));
             typical_ = {.radius = radius_m / per_voxel_m_,
                         .depth = std::min(std::cbrt(std::pow(kTypicalForceN / full, 2.0)), 1.0)};
+        }
     }
 }
 
@@ -124,11 +127,16 @@ PathLoad DrillModel::predict(float fidelity) const noexcept {
     // A group waits for all steps between its cuts.
     const double steps = static_cast<double>(turns_.groups()) / turns_.groups_at(fidelity, drive_.step_s);
     const double pending = 0.5 * (steps - 1.0) * rate_per_s() * drive_.step_s;
-    const double voxel = per_voxel_m_ / head_radius_m_;
-    load.error = block_error_share(block_of(fidelity), voxel, false) *
-                     std::min(last_.elastic_n, settings_.force_n_max) +
-                 std::min(last_.pending_n * pending, 2.0 * settings_.force_n_max);
+    load.error = error_n(last_, block_of(fidelity), pending);
     return load;
+}
+
+// Scaling down to force_n_max turns a vector's error e at scale s into sqrt(2) s e at most, and into no more than e.
+double DrillModel::error_n(const BallForces& sum, double block, double pending) const noexcept {
+    const double error = block_error_share(block, sum.late) * sum.elastic_n + sum.voxel_error_n;
+    const double scale = std::min(std::numbers::sqrt2 * sum.scale, 1.0);
+    return std::min(scale * error, 2.0 * settings_.force_n_max) +
+           std::min(sum.scale * sum.pending_n * pending, 2.0 * settings_.force_n_max);
 }
 
 void DrillModel::reset(const ToolState& tool) noexcept {
@@ -193,6 +201,7 @@ DrillModel::BallForces DrillModel::ball_forces(const ToolState& tool, double blo
         const BurrForce f = burr_force(law, ball.radius_m, volume * m.m0, volume * per_voxel_m_ * m.m1,
                                        velocity_m_s, spin_rad_s, ways_out_[i]);
         depths_[i] = f.depth;
+        sum.held_in = sum.held_in || f.held_in;
         if (f.depth < kWayOutFrom) ways_out_[i] = f.normal;
         if (m.blocks > most_blocks) {
             most_blocks = m.blocks;
@@ -207,14 +216,52 @@ DrillModel::BallForces DrillModel::ball_forces(const ToolState& tool, double blo
         const Vec3 force_n = ball.weight * f.wrench.force_n;
         sum.wrench.force_n += force_n;
         sum.wrench.torque_n_m += ball.weight * f.wrench.torque_n_m + arm_m.cross(force_n);
-        sum.elastic_n +=
-            ball.weight * law.elastic_pa * ball.radius_m * ball.radius_m * f.depth * std::sqrt(f.depth);
+        const double full_n = ball.weight * law.elastic_pa * ball.radius_m * ball.radius_m;
+        sum.elastic_n += full_n * f.depth * std::sqrt(f.depth);
+        sum.voxel_error_n += voxel_error_n(full_n, f.depth, per_voxel_m_ / ball.radius_m);
         if ((ball.cuts || i == 0) && f.depth > depth_) {
             depth_ = f.depth;
             head_ = f;
         }
     }
     return sum;
+}
+
+Wrench DrillModel::still_wrench(const Pose& T_world_tool) const noexcept {
+    Wrench sum;
+    const Quat q = T_world_tool.q.normalized();
+    const Vec3 spin_rad_s = drive_.burr_rad_s * (q * Vec3::UnitZ());
+    const double volume = per_voxel_m_ * per_voxel_m_ * per_voxel_m_ / 255.0;
+    BurrLaw law = settings_.law;
+    for (std::uint32_t i = 0; i < tool_.count; ++i) {
+        const ToolBall& ball = tool_.ball[i];
+        const double radius = ball.radius_m / per_voxel_m_;
+        const Vec3 arm_m = q * ball.centre_tool_m;
+        const Vec3 centre = bone_.octree.bricks().to_voxels(meta_.to_model(T_world_tool.p_m + arm_m));
+        const BallMoments m =
+            ball_moments(bone_.octree, kernels_, centre, radius, kBlockCoarse * radius, depths_[i]);
+        if (!(m.m0 > 0.0)) continue;
+        law.elastic_pa = elastic_pa_[i];
+        const BurrForce f =
+            burr_force(law, ball.radius_m, volume * m.m0, volume * per_voxel_m_ * m.m1, Vec3::Zero(),
+                       ball.cuts ? spin_rad_s : Vec3(Vec3::Zero()), ways_out_[i]);
+        const Vec3 force_n = ball.weight * f.wrench.force_n;
+        sum.force_n += force_n;
+        sum.torque_n_m += ball.weight * f.wrench.torque_n_m + arm_m.cross(force_n);
+    }
+    const double size_n = sum.force_n.norm();
+    if (size_n > settings_.force_n_max) {
+        sum.force_n *= settings_.force_n_max / size_n;
+        sum.torque_n_m *= settings_.force_n_max / size_n;
+    }
+    return sum;
+}
+
+void DrillModel::measure_stiffness(const Pose& T_world_tool) noexcept {
+    if (!measured_.due()) return;
+    const double h_m = kStiffnessReach * head_radius_m_;
+    measured_.note(still_wrench(measured_.moved(T_world_tool, h_m, lever_m_)),
+                   still_wrench(measured_.moved(T_world_tool, -h_m, lever_m_)), h_m, lever_m_);
 }
 
 // Across the shaft, turning with the burr; never faster than a tenth of the servo's rate, which a hand still feels as
@@ -269,13 +316,14 @@ StepResult DrillModel::step(const ToolState& tool, const Budget& budget) noexcep
         wrench.force_n += shaken_n(tool, sum.elastic_n);
         const double size_n = wrench.force_n.norm(),
                      scale = size_n > settings_.force_n_max ? settings_.force_n_max / size_n : 1.0;
-        sum.pending_n *= scale;
+        sum.scale = scale;
         const double gain = fade_.gain() * scale;
         result.wrench_world = fade_.show({gain * wrench.force_n, gain * wrench.torque_n_m});
-        const double share =
-            block_error_share(sum.late ? kBlockCoarse : block, per_voxel_m_ / head_radius_m_, sum.late);
-        result.load.error = share * std::min(sum.elastic_n, settings_.force_n_max) +
-                            std::min(sum.pending_n * pending, 2.0 * settings_.force_n_max);
+        result.load.error = error_n(sum, sum.late ? kBlockCoarse : block, pending);
+        if (sum.elastic_n > 0.0 && !sum.late)
+            measure_stiffness(tool.T_world_tool);
+        else if (!(sum.elastic_n > 0.0))
+            measured_.reset();
 
         cuts_ = !clutch && drive_.burr_rad_s > 0.0;
         bool late = sum.late || budget.deadline.passed();
@@ -313,6 +361,7 @@ StepResult DrillModel::step(const ToolState& tool, const Budget& budget) noexcep
     }
     if (drive_.burr_rad_s > 0.0) result.trace_flags |= kTraceBurrTurns;
     if (erosion_.pass().removed > 0) result.trace_flags |= kTraceCuts;
+    if (last_.held_in) result.trace_flags |= kTraceHeldIn;
     result.load.cost = std::max(Monotonic::now() - begin, Duration(1));
     return result;
 }

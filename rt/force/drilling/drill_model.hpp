@@ -29,6 +29,7 @@
 #include "rt/force/drilling/burr_forces.hpp"
 #include "rt/force/drilling/burr_shapes.hpp"
 #include "rt/force/drilling/drill_load.hpp"
+#include "rt/force/drilling/drill_stiffness.hpp"
 #include "rt/force/drilling/erosion.hpp"
 #include "rt/force/drilling/erosion_turns.hpp"
 #include "rt/force/force_fade.hpp"
@@ -94,9 +95,11 @@ public:
     }
     [[nodiscard]] PathLoad predict(float fidelity) const noexcept TACT_RT override;
     void reset(const ToolState& tool) noexcept TACT_RT override;
-    // On a flat surface, at force_n_max.
+    // The head's on a flat surface at force_n_max or, where bone on several sides makes it stiffer, as measured
+    // (drill_stiffness.hpp).
     [[nodiscard]] ModelStiffness stiffness() const noexcept TACT_RT override {
-        return {.force_n_m = stiffness_n_m_};
+        return {.force_n_m = std::max(stiffness_n_m_, measured_.largest().force_n_m),
+                .torque_n_m_rad = measured_.largest().torque_n_m_rad};
     }
     StepResult step(const ToolState& tool, const Budget& budget) noexcept TACT_RT override;
     [[nodiscard]] ModelBodies bodies() const noexcept TACT_RT override;
@@ -140,14 +143,21 @@ private:
     struct BallForces {
         Wrench wrench;           // at the tool's origin, world, before limits
         double elastic_n = 0.0;  // sum of sizes
+        double voxel_error_n = 0.0;
+        double scale = 1.0;  // down to force_n_max
         bool late = false;
         DrillWork work;
         BallLook look;           // at the ball with most work
         double pending_n = 0.0;  // error per exposure that waits
+        bool held_in = false;    // one of them
     };
     [[nodiscard]] BallForces ball_forces(const ToolState& tool, double block, bool hurried,
                                          const Deadline& deadline) noexcept TACT_RT;
+    // Without velocity and vibration, within force_n_max, in the coarsest blocks.
+    [[nodiscard]] Wrench still_wrench(const Pose& T_world_tool) const noexcept TACT_RT;
+    void measure_stiffness(const Pose& T_world_tool) noexcept TACT_RT;
     [[nodiscard]] double rate_per_s() const noexcept TACT_RT;
+    [[nodiscard]] double error_n(const BallForces& sum, double block, double pending) const noexcept TACT_RT;
     [[nodiscard]] DrillWork expected(float fidelity) const noexcept TACT_RT;
     [[nodiscard]] Vec3 shaken_n(const ToolState& tool, double elastic_n) noexcept TACT_RT;
 
@@ -165,11 +175,13 @@ private:
     double head_radius_m_ = 0.0;
     std::array<Vec3, DrillTool::kMax> now_voxels_{};  // centres
     ErosionTurns turns_{1.0};
-    BallForces last_;     // of the last step
-    BallLook typical_;    // of the head in flat bone
-    bool cuts_ = false;   // the clutch is open
-    bool asked_ = false;  // reset() was called
-    bool led_ = false;    // now_voxels_ are of a tool that was led here
+    BallForces last_;  // of the last step
+    DrillStiffness measured_;
+    double lever_m_ = 0.0;  // farthest part of the tool from its origin
+    BallLook typical_;      // of the head in flat bone
+    bool cuts_ = false;     // the clutch is open
+    bool asked_ = false;    // reset() was called
+    bool led_ = false;      // now_voxels_ are of a tool that was led here
     // h / R of the step before; below 0: unknown.
     std::array<double, DrillTool::kMax> depths_{};
     std::array<Vec3, DrillTool::kMax> ways_out_{};
