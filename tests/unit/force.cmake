@@ -15,5 +15,6 @@ tact_test(unit/force_surface_modes_test.cpp USES force prep_surface prep_synthet
 tact_test(unit/force_bone_test.cpp USES force)
 tact_test(unit/force_drill_test.cpp USES force)
 tact_test(unit/force_drill_levels_test.cpp USES force)
+tact_test(unit/certify_drilling_test.cpp USES certify scene)
 tact_test(unit/force_refinement_test.cpp USES scene force prep_mesh prep_surface prep_synthetic LABELS tsan)
 tact_test(unit/force_field_test.cpp USES base scene force prep_field)
