@@ -122,6 +122,7 @@ void DrillController::follow(Controller& controller, std::span<const BrickChange
     if (controller.have_tool) {
         const double* const n = controller.tool.force_world_n;
         state.force_n = Vec3(n[0], n[1], n[2]).norm();
+        state.held_in = metrics_->held_in();
     }
 }
 

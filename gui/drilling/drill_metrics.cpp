@@ -7,6 +7,7 @@ namespace tact {
 namespace {
 
 constexpr double kPathStepM = 3e-4;
+constexpr double kHeldInS = 0.3;
 
 }  // namespace
 
@@ -44,6 +45,8 @@ void DrillMetrics::cycle(const TraceTopic& t) {
     if (!goes_on) return;
     DrillMetricsRow& f = metrics_;
     f.seen_s += dt_s;
+    const double held_in = (t.status & kTraceHeldIn) != 0 ? 1.0 : 0.0;
+    held_in_share_ += std::min(dt_s / kHeldInS, 1.0) * (held_in - held_in_share_);
     if (!turns) return;
     f.drilling_s += dt_s;
     if (way_m > kPathStepM) {  // ignores encoder steps

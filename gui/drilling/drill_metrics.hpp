@@ -66,6 +66,8 @@ public:
                        std::span<const std::uint8_t> after, bool cut_now);
 
     [[nodiscard]] DrillMetricsRow metrics() const;
+    // True: in most of the last fraction of a second bone was on all sides of the burr, and its push reduced.
+    [[nodiscard]] bool held_in() const { return held_in_share_ > 0.5; }
 
 private:
     [[nodiscard]] double nearest_critical_m(const Vec3& model_m) const;
@@ -79,7 +81,7 @@ private:
     HeadBalls head_;  // of the burr, at the last call of tools()
     Vec3 head_at_m_ = Vec3::Zero();
     bool head_known_ = false, seen_ = false;
-    double cycle_s_ = 0.0;
+    double cycle_s_ = 0.0, held_in_share_ = 0.0;
     Vec3 path_at_m_ = Vec3::Zero();
     std::vector<double> injured_s_;  // by label: time of the last cut
 };

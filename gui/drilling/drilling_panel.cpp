@@ -25,7 +25,9 @@ void tools(const Theme& theme, const DrillingState& d) {
 void metrics(const Theme& theme, const DrillingState& d) {
     row(theme, "Bone removed", fixed(1e9 * d.removed_m3, 1) + " mm³",
         format("in %.0f s of drilling", d.drilling_s));
-    row(theme, "Force", fixed(d.force_n, 2) + " N", force_status(d.force_n, d.excess_s));
+    StatusText force = force_status(d.force_n, d.excess_s);
+    if (d.held_in && force.grade == Grade::good) force.text = "reduced: bone on all sides";
+    row(theme, "Force", fixed(d.force_n, 2) + " N", force);
     row(theme, "Strokes", grouped(d.strokes),
         d.strokes > 0 ? format("of %.1f mm at %.0f mm/s", 1e3 * d.stroke_m, 1e3 * d.stroke_m_s)
                       : std::string());

@@ -33,6 +33,7 @@ struct DrillingState {
     };
     bool known = false, labelled = false;
     ToolDescription burr, suction_tube;
+    bool held_in = false;  // bone on all sides of the burr
     double removed_m3 = 0.0, force_n = 0.0, drilling_s = 0.0, excess_s = 0.0;
     std::uint64_t strokes = 0, injuries = 0;
     double stroke_m = 0.0, stroke_m_s = 0.0;

@@ -212,6 +212,21 @@ TEST(DrillMetrics, split_removed_bone_by_structure_and_nearness_and_count_injuri
     EXPECT_GE(f.near_levels[1], f.near_levels[0]);
 }
 
+TEST(DrillMetrics, bone_on_all_sides_counts_when_it_lasts) {
+    Ear ear;
+    DrillMetrics m(ear.bricks, ear.labels, ear.fields, ear.meta);
+    m.tools(tools(5e-3));
+    int ms = 0;
+    const auto run = [&](int n, std::uint32_t flags) {
+        for (int i = 0; i < n; ++i) m.cycle(cycle(++ms, 5e-3, 1.0, flags));
+        return m.held_in();
+    };
+    EXPECT_FALSE(run(1000, kTraceBurrTurns));
+    EXPECT_FALSE(run(20, kTraceHeldIn));
+    EXPECT_TRUE(run(1000, kTraceHeldIn));
+    EXPECT_FALSE(run(1000, kTraceCuts));
+}
+
 TEST(DrillReport, contains_the_metrics_and_null_for_unknown_ones) {
     Ear ear;
     DrillMetrics m(ear.bricks, ear.labels, ear.fields, ear.meta);
