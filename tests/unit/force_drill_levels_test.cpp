@@ -161,22 +161,24 @@ TEST(DrillLevels, work_predicted_from_another_level_is_right_within_a_factor_of_
     }
 }
 
-// The level of a hand in free space must fit when it touches: it may not be chosen by the cost of free space.
-TEST(DrillLevels, in_free_space_a_level_is_predicted_to_cost_what_a_typical_contact_costs) {
-    for (const double radius_m : {3e-3, 8e-3}) {
-        for (const float level : {0.0F, 0.5F, 1.0F}) {
-            Drilled d(radius_m);
-            d.begin(stroke_m(radius_m, -0.5));
-            const double free_us = to_us(d.model->predict(level).cost_predicted);
-            double contact_us = 0.0;
-            for (int i = 0; i < 600; ++i) {
-                const double t_s = 1e-3 * i;
-                contact_us =
-                    std::max(contact_us, to_us(d.step(stroke_m(radius_m, t_s), level).load.cost_predicted));
-            }
-            EXPECT_GT(free_us, 0.5 * contact_us) << radius_m << " m at " << level;
-            EXPECT_LT(free_us, 3.0 * contact_us) << radius_m << " m at " << level;
+// The level of a hand in free space must fit when it touches, and later in the pocket that it cuts: it may not be chosen by
+// the cost of free space.
+TEST(DrillLevels, in_free_space_a_level_is_predicted_to_cost_what_a_pocket_costs) {
+    constexpr int kSteps = 4000, kGrown = 2000;
+    for (const double radius_m : {8e-3, 20e-3}) {
+        Drilled d(radius_m, radius_m > 0.01 ? 160 : 72);
+        double z_m = radius_m + 1e-3;
+        d.begin({0.0, 0.0, z_m});
+        const double free_us = to_us(d.model->predict(0.25F).cost_predicted);
+        double pocket_us = 0.0;
+        for (int i = 0; i < kSteps; ++i) {
+            const double t_s = 1e-3 * i;
+            const StepResult r = d.step({6e-3 * std::sin(8.0 * t_s), 2e-3 * std::sin(3.0 * t_s), z_m}, 0.25F);
+            z_m -= std::clamp((3.0 - d.model->elastic_n()) * 2e-5, -2e-5, 1e-5);  // pressed with 3 N
+            if (i > kGrown) pocket_us = std::max(pocket_us, to_us(r.load.cost_predicted));
         }
+        EXPECT_GT(free_us, 0.6 * pocket_us) << radius_m;
+        EXPECT_LT(free_us, 1.7 * pocket_us) << radius_m;
     }
 }
 

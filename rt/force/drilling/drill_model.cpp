@@ -15,6 +15,8 @@ namespace {
 constexpr double kNoHandM = 1e3;          // no hand is there
 constexpr double kStiffnessReach = 0.05;  // half of the way over which it is measured, in radii of the head
 constexpr double kTypicalForceN = 3.0;    // of a surgeon's hand
+// In the pocket that it has cut, a burr touches over this times the area of flat bone at the same force.
+constexpr double kPocketArea = 3.5;
 
 bool hand_is_there(const Pose& pose) noexcept {
     const double turn = pose.q.squaredNorm();
@@ -120,9 +122,12 @@ PathLoad DrillModel::predict(float fidelity) const noexcept {
     PathLoad load;
     const DrillWork work = expected(fidelity);
     load.items = work.items();
-    // In free space, the cost that a contact will have.
+    // In free space and at the first contact, the cost in the pocket that the burr will cut.
     DrillWork typical = flat_work(typical_, block_of(fidelity) * typical_.radius);
-    typical.cut *= static_cast<double>(turns_.groups_at(fidelity, drive_.step_s)) / turns_.groups();
+    const double pocket = std::min(kPocketArea, 1.0 / typical_.depth);  // no more than half of the ball
+    typical.blocks *= pocket;
+    typical.summed *= pocket;
+    typical.cut *= pocket * static_cast<double>(turns_.groups_at(fidelity, drive_.step_s)) / turns_.groups();
     load.cost_predicted = std::max(drill_cost(work), drill_cost(typical));
     // A group waits for all steps between its cuts.
     const double steps = static_cast<double>(turns_.groups()) / turns_.groups_at(fidelity, drive_.step_s);
