@@ -1,17 +1,13 @@
 #include "rt/force/surface/contact.hpp"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 namespace tact {
 namespace {
 
-constexpr double kCollectedMoves = 1.25;  // radius of the collected ball, in moves
-constexpr double kCollectedTooFar = 8.0;
-constexpr std::size_t kCollectedFew = 4096;
-constexpr double kBoundSlack = 1e-5;    // relative rounding of distances in single precision
 constexpr double kFollowedSteps = 1.5;  // a proxy on a slope travels farther than the goal
 constexpr double kNextMove = 0.3;
 constexpr double kGoesOn = 1.5;  // next reach after a cut move, in lengths of its remainder
@@ -19,8 +15,7 @@ constexpr double kSlidesOn = 1.15;
 constexpr int kRounds = 4;
 constexpr double kRestingMargins = 0.02;
 constexpr double kNearerMargins = 0.05;
-constexpr double kTangentMargins = 0.25;
-constexpr std::uint32_t kSeatVisits = 4096;  // tree nodes, about 100 us
+constexpr double kBorder = 0.1;  // margins: touches are judged again in double precision
 
 }  // namespace
 
@@ -42,139 +37,40 @@ double SurfaceContact::looks_m(const Vec3& goal_m) const noexcept {
 
 void SurfaceContact::use(const SurfaceMesh& mesh) noexcept { mesh_ = mesh; }
 
-// False: too many triangles.
-bool SurfaceContact::find(double radius_m) noexcept {
-    if (settings_.brute) return all_.near(proxy_m_, radius_m, triangle_, collected_);
-    std::size_t leaves = 0;
-    if (!mesh_.leaves_near(proxy_m_, radius_m, leaf_, leaves)) return false;
-    collected_ = 0;
-    for (std::size_t l = 0; l < leaves; ++l) {
-        const std::uint32_t first = SurfaceNode::leaf_first(leaf_[l]),
-                            count = SurfaceNode::leaf_count(leaf_[l]);
-        for (std::uint32_t t = first; t < first + count; ++t) triangle_[collected_++] = t;
-    }
-    return true;
-}
-
-// Collects triangles for moves of reach_m, and shortens reach_m if there are too many. False: too many even for the
-// shortest move.
-bool SurfaceContact::collect(double& reach_m) noexcept {
-    const double moved = (proxy_m_ - collected_at_m_).norm();
-    const bool too_many = collected_ > kCollectedFew && collected_m_ - moved > kCollectedTooFar * reach_m;
-    if (collected_m_ >= 0.0 && moved + reach_m <= collected_m_ && !too_many) return true;
-    double wide = kCollectedMoves * reach_m;
-    for (int attempt = 0; attempt < 12; ++attempt) {
-        if (find(settings_.radius_m + wide)) {
-            std::fill_n(bound_m_.begin(), collected_, 0.0F);
-            collected_at_m_ = proxy_m_;
-            collected_m_ = wide;
-            way_m_ = 0.0;
-            reach_m = std::min(reach_m, wide);
-            return true;
-        }
-        wide *= attempt == 0 ? 1.0 / kCollectedMoves : 0.5;
-    }
-    collected_m_ = -1.0;
-    return false;
-}
-
-// Adds the half-spaces of all triangles that a move of reach_m can touch. Shortens reach_m if they are too many, and
-// extends it up to most_m if that adds no further batch of queries.
-void SurfaceContact::query(double& reach_m, double most_m, std::uint32_t& triangles) noexcept {
-    QueryJob job = mesh_.query_job(proxy_m_);
-    TriangleQueries seen;
-    const auto way = static_cast<float>(way_m_ * (1.0 - kBoundSlack));
-    const auto bound = [&](double reach) {
-        return static_cast<float>((settings_.radius_m + reach + way_m_) * (1.0 + kBoundSlack));
-    };
-    if (most_m > reach_m) {
-        const float narrow = bound(reach_m), wide = bound(most_m);
-        std::size_t some = 0, all = 0;
-        for (std::size_t i = 0; i < collected_; ++i) {
-            some += bound_m_[i] <= narrow ? 1 : 0;
-            all += bound_m_[i] <= wide ? 1 : 0;
-        }
-        if (all <= 2 * kLooks || all == some) reach_m = most_m;
-    }
-    for (int attempt = 0; attempt < 8; ++attempt) {
-        half_spaces_.clear();
-        job.limit = static_cast<float>(settings_.radius_m + reach_m);
-        const float in_reach = bound(reach_m);
-        std::size_t count = 0;
-        for (std::size_t i = 0; i < collected_; ++i) {
-            slot_[count] = static_cast<std::uint32_t>(i);
-            number_[count] = triangle_[i];
-            count += bound_m_[i] <= in_reach ? 1 : 0;
-        }
-        triangles += static_cast<std::uint32_t>(count);
-        bool room = true;
-        for (std::size_t first = 0; first < count && room; first += kLooks) {
-            const std::size_t lanes = std::min(kLooks, count - first);
-            for (std::size_t lane = lanes; lane < kLooks; ++lane) number_[first + lane] = number_[first];
-            job.triangle = &number_[first];
-            kernel_->query(job, seen);
-            for (std::size_t lane = 0; lane < lanes; ++lane)
-                bound_m_[slot_[first + lane]] = seen.distance[lane] + way;
-            std::uint32_t near = seen.near & ((lanes < kLooks ? 1U << lanes : 0U) - 1U);
-            for (; near != 0 && room; near &= near - 1)
-                room = half_space(number_[first + static_cast<std::size_t>(std::countr_zero(near))], seen,
-                                  static_cast<std::size_t>(std::countr_zero(near)));
-        }
-        if (room) return;
-        reach_m *= 0.5;
-    }
-    reach_m = 0.0;
-}
-
-// False: no room.
-bool SurfaceContact::half_space(std::uint32_t triangle, const TriangleQueries& seen,
-                                std::size_t lane) noexcept {
-    const double radius = settings_.radius_m, margin = settings_.margin_m;
-    const bool over = (seen.over >> lane & 1U) != 0;
-    // Push out by at most one margin per move: a penetration comes from rounding or from seating.
+// Tries to prove rest after a move from the last query: with all triangles that the ball may touch, first those that bear
+// the pull as far as single precision tells.
+bool SurfaceContact::prove(const HalfSpaces::Solution& bearing, const Vec3& moved_m) noexcept {
+    proof_.begin(settings_.radius_m, settings_.margin_m);
+    for (std::size_t i = 0; i < bearing.active_count; ++i)
+        (void)proof_.add(mesh_, half_spaces_.triangle(bearing.active[i].half_space), proxy_m_);
+    // A facet rests a margin above an edge.
     const double slack =
-        std::max(static_cast<double>(seen.distance[lane]) - (over ? radius : radius - margin), -margin);
-    const double height = static_cast<double>(seen.height[lane]) - radius;
-    const double sunk = kSunkMargins * margin;
-    return half_spaces_.add(triangle, seen, lane, static_cast<float>(slack),
-                            static_cast<float>(std::max(height, -sunk)), !over && height >= -sunk);
-}
-
-// True if every active triangle touches the ball at the solution and its normal there equals the assumed one: another
-// move would find the same position. Inactive triangles are at least as far away as their half-spaces require.
-bool SurfaceContact::rests(const HalfSpaces::Solution& solution) const noexcept {
-    if (!solution.exact) return false;
-    const double most = kTangentMargins * settings_.margin_m;
-    std::array<std::uint32_t, 4> number{};
-    for (std::size_t i = 0; i < number.size(); ++i)
-        number[i] = half_spaces_.triangle(solution.active[i < solution.active_count ? i : 0].half_space);
-    QueryJob job = mesh_.query_job(proxy_m_ + solution.move_m);
-    job.triangle = number.data();
-    TriangleQueries seen;
-    query_four(job, seen);
-    for (std::size_t i = 0; i < solution.active_count; ++i) {
-        const HalfSpaces::Active& active = solution.active[i];
-        const bool over = (seen.over >> i & 1U) != 0;
-        const double rest = settings_.radius_m - (over ? 0.0 : settings_.margin_m);
-        if (std::abs(static_cast<double>(seen.distance[i]) - rest) > most) return false;
-        const Vec3 away(static_cast<double>(seen.away[0][i]), static_cast<double>(seen.away[1][i]),
-                        static_cast<double>(seen.away[2][i]));
-        if ((away - active.normal).norm() * active.weight_m > most) return false;
+        (1.0 + RestProof::kBandMargins + kBorder) * settings_.margin_m + kBoundSlack * settings_.radius_m;
+    std::array<std::uint32_t, 4 * RestProof::kTouches> near;
+    const std::size_t count = half_spaces_.near_after(moved_m, slack, near);
+    for (std::size_t i = 0; i < count; ++i) {
+        if (!proof_.add(mesh_, near[i], proxy_m_)) break;
     }
-    return true;
+    proof_.solve(goal_m_ - proxy_m_);
+    return proof_.lift_m().squaredNorm() > 0.0 && proof_.holds(settings_.friction);
 }
 
-// Applies friction to the frictionless solution `free`.
+// The move of a touching ball with friction, after touch_all().
+Vec3 SurfaceContact::slide() const noexcept {
+    const Vec3& lift = proof_.lift_m();
+    const double push = lift.norm();
+    const Vec3 normal = lift / push, onto = normal.dot(proof_.residual_m()) * normal,
+               along = proof_.residual_m() - onto;
+    const double length = along.norm(), held = settings_.friction * push;
+    return length > held ? Vec3(onto + (1.0 - held / length) * along) : onto;
+}
+
+// Applies friction to the frictionless solution `free` of a ball that touched the surface before.
 HalfSpaces::Solution SurfaceContact::held_back(const HalfSpaces::Solution& free, const Vec3& goal_m,
                                                double tolerance_m) const noexcept {
     const Vec3 lift = free.move_m - goal_m;
     const double depth = lift.norm();
     if (!(depth > 0.0) || free.active_count == 0) return free;
-    // No friction before contact.
-    bool touches = false;
-    for (std::size_t i = 0; i < free.active_count; ++i)
-        touches |= free.active[i].slack_m <= 2.0 * settings_.margin_m + 0.01 * depth;
-    if (!touches) return free;
     const Vec3 normal = lift / depth;
     const Vec3 along = free.move_m - normal.dot(free.move_m) * normal;
     const double way = along.norm(), held = settings_.friction * depth;
@@ -182,19 +78,99 @@ HalfSpaces::Solution SurfaceContact::held_back(const HalfSpaces::Solution& free,
     return half_spaces_.solve(wanted, tolerance_m);
 }
 
+bool SurfaceContact::step_easily(const Vec3& goal_m, double allowed_m, Contact& contact) noexcept {
+    const EasyStep::Move move = easy_.move(proxy_m_, goal_m, settings_.friction);
+    if (!move.known || !easy_.clear(move.to_m)) return false;
+    const double moved = (move.to_m - proxy_m_).norm();
+    if (moved > allowed_m) return false;
+    proxy_m_ = contact.proxy_m = move.to_m;
+    way_m_ += moved;
+    moved_m_ = moved;
+    touches_ = move.weight_m > 0.0;
+    contact.moves = 1;
+    if (touches_) {
+        contact.planes = 1;
+        contact.plane[0] = {easy_.normal(), move.weight_m, easy_.triangle()};
+        contact.lift_m = move.weight_m * easy_.normal();
+        contact.rub_m = move.rub_m;
+    }
+    return true;
+}
+
+// At the end of a settled step: fills the contact from the proof; on the facet of the step before, as an easy step would.
+void SurfaceContact::settle(const Vec3& begin_m, Contact& contact) noexcept {
+    contact.state = ContactState::settled;
+    const RestProof::Touch* const facet = proof_.single_facet();
+    if (facet != nullptr && easy_.has_facet(facet->triangle)) {
+        const EasyStep::Move move = easy_.move(begin_m, goal_m_, settings_.friction);
+        if (move.known && move.weight_m > 0.0 && (move.to_m - proxy_m_).norm() <= settings_.margin_m) {
+            way_m_ += (move.to_m - proxy_m_).norm();
+            proxy_m_ = move.to_m;
+            contact.planes = 1;
+            contact.plane[0] = {easy_.normal(), move.weight_m, facet->triangle};
+            contact.lift_m = move.weight_m * easy_.normal();
+            contact.rub_m = move.rub_m;
+            return;
+        }
+    }
+    list_proof(contact);
+    contact.rub_m = proxy_m_ - goal_m_ - contact.lift_m;
+}
+
+// The heaviest three of the touches, and the sum of all.
+void SurfaceContact::list_proof(Contact& contact) const noexcept {
+    contact.planes = 0;
+    for (const RestProof::Touch& t : proof_.touches()) {
+        if (!(t.weight_m > 0.0)) continue;
+        ContactPlane plane{t.normal, t.weight_m, t.triangle};
+        for (std::uint32_t i = 0; i < contact.planes; ++i) {
+            if (plane.weight_m > contact.plane[i].weight_m) std::swap(plane, contact.plane[i]);
+        }
+        if (contact.planes < contact.plane.size()) contact.plane[contact.planes++] = plane;
+    }
+    contact.lift_m = proof_.lift_m();
+}
+
+// The free path from here to all triangles but the touched facet, for easy steps.
+void SurfaceContact::note_clear(const Contact& contact) noexcept {
+    touches_ &= contact.planes > 0;
+    const RestProof::Touch* const facet = contact.planes == 1 ? proof_.single_facet() : nullptr;
+    if (contact.state != ContactState::settled || (contact.planes > 0 && facet == nullptr)) {
+        easy_.forget();
+        return;
+    }
+    touches_ = facet != nullptr;
+    if (facet != nullptr)
+        easy_.set_facet(mesh_, facet->triangle, facet->normal, settings_.radius_m,
+                        RestProof::kBandMargins * settings_.margin_m,
+                        RestProof::kBorderMargins * settings_.margin_m);
+    else
+        easy_.leave(proxy_m_);
+    if (settings_.brute || collected_m_ < 0.0) return;
+    float least = std::numeric_limits<float>::max();
+    for (std::size_t i = 0; i < collected_; ++i)
+        least = !easy_.has_facet(triangle_[i]) && bound_m_[i] < least ? bound_m_[i] : least;
+    const double bound = static_cast<double>(least) * (1.0 - kBoundSlack) - way_m_ - settings_.radius_m,
+                 collected = collected_m_ - (proxy_m_ - collected_at_m_).norm();
+    easy_.set_clear(proxy_m_, std::min(bound, collected) - settings_.margin_m);
+}
+
 Contact SurfaceContact::follow(const Vec3& goal_m, std::uint32_t moves_max,
                                const Deadline& deadline) noexcept {
     Contact contact;
     const double step = kFollowedSteps * (goal_m - goal_m_).norm();
     goal_m_ = goal_m;
+    const double allowed = step + settings_.lag_m;
+    if (step_easily(goal_m, allowed, contact)) return contact;
     if (settings_.brute) collected_m_ = -1.0;
     const Vec3 begin_m = proxy_m_;
     Vec3 one_ago_m = proxy_m_, two_ago_m = Vec3::Constant(1e100);
-    const double allowed = step + settings_.lag_m;
     double left = allowed;
     double least_m = std::numeric_limits<double>::infinity();  // from the goal, of the moves
     bool cut_before = false;
-    int rounds = 0;  // number of last moves that came no nearer to the goal
+    bool in_circle = false;  // the moves went round in a circle
+    bool last = false;       // twice: only prove
+    int rounds = 0;          // number of last moves that came no nearer to the goal
     // Expect the slide to continue at its speed; a second move covers the rest.
     double reach = std::max(std::min(step, kSlidesOn * moved_m_), settings_.margin_m);
     contact.state = ContactState::lagging;
@@ -216,45 +192,84 @@ Contact SurfaceContact::follow(const Vec3& goal_m, std::uint32_t moves_max,
               contact.triangles);
         // Single precision of a half-space over the length of the request, and of the distances.
         const double tolerance = 3e-7 * (request.norm() + settings_.radius_m) + 1e-3 * settings_.margin_m;
-        HalfSpaces::Solution free = half_spaces_.solve(request, tolerance);
-        if (!free.exact) {
+        bool slides = false;
+        if (rubs || in_circle) {
+            if (prove(half_spaces_.solve_nearest(request, tolerance), Vec3::Zero())) {
+                settle(begin_m, contact);
+                break;
+            }
+            slides = rubs && proof_.lift_m().squaredNorm() > 0.0;
+        }
+        if (last) {
+            contact.state = ContactState::gliding;
+            break;
+        }
+        const auto found = [&] {
+            const Vec3 wanted = slides ? slide() : request;
+            return in_circle ? half_spaces_.solve_nearest(wanted, tolerance)
+                             : half_spaces_.solve(wanted, tolerance);
+        };
+        HalfSpaces::Solution move = found();
+        if (!move.exact) {
             half_spaces_.allow_staying();
-            free = half_spaces_.solve(request, tolerance);
+            move = found();
         }
-        contact.planes = static_cast<std::uint32_t>(free.active_count);
-        for (std::size_t i = 0; i < free.active_count; ++i)
-            contact.plane[i] = {free.active[i].normal, free.active[i].weight_m,
-                                half_spaces_.triangle(free.active[i].half_space)};
-        const HalfSpaces::Solution held = rubs ? held_back(free, request, tolerance) : free;
-        Vec3 move = held.move_m;
-        const double length = move.norm();
+        const bool free = move.active_count == 0 && !slides;
+        if (slides) {
+            list_proof(contact);
+        } else {
+            contact.planes = static_cast<std::uint32_t>(move.active_count);
+            contact.lift_m.setZero();
+            for (std::size_t i = 0; i < move.active_count; ++i) {
+                const HalfSpaces::Active& a = move.active[i];
+                contact.plane[i] = {a.normal, a.weight_m, half_spaces_.triangle(a.half_space)};
+                contact.lift_m += a.weight_m * a.normal;
+            }
+            // Between two facets a ball that touched the first is held back too.
+            if (rubs && touches_ && move.exact) move = held_back(move, request, tolerance);
+        }
+        touches_ |= slides;
+        const double length = move.move_m.norm();
         const bool cut = length > reach_now;
-        const bool small = free.exact && length <= settings_.margin_m;
-        const bool at_rest = !cut && (small || (rests(free) && (!rubs || rests(held))));
-        if (cut) move *= reach_now / length;
+        if (cut) move.move_m *= reach_now / length;
         // Shorter moves are rounding noise; the proxy stays at rest.
-        if (cut || length > kRestingMargins * settings_.margin_m) {
-            proxy_m_ += move;
-            way_m_ += move.norm();
-        }
-        left = allowed - (proxy_m_ - begin_m).norm();
-        // Oscillation between two positions: the limits over a facet and over its edge differ by a margin.
-        const bool to_and_fro = (proxy_m_ - two_ago_m).norm() <= settings_.margin_m;
-        two_ago_m = one_ago_m;
-        one_ago_m = proxy_m_;
-        if (!cut && (free.active_count == 0 || to_and_fro || at_rest)) {
+        const Vec3 moved_m =
+            cut || length > kRestingMargins * settings_.margin_m ? move.move_m : Vec3(Vec3::Zero());
+        proxy_m_ += moved_m;
+        way_m_ += moved_m.norm();
+        if (free && !cut) {
+            way_m_ += (goal_m - proxy_m_).norm();
+            proxy_m_ = goal_m;
             contact.state = ContactState::settled;
             break;
+        }
+        left = allowed - (proxy_m_ - begin_m).norm();
+        if (!cut) {
+            if (prove(move, moved_m)) {
+                settle(begin_m, contact);
+                break;
+            }
         }
         if (left <= settings_.margin_m) {
             contact.state = ContactState::gliding;
             break;
         }
-        // In a hollow that just fits the ball, no direction is better within rounding and the moves go round in a ring.
+        // Oscillation between two positions: the limits over a facet and over its edge differ by a margin. In a hollow
+        // that just fits the ball, no direction is better within rounding and the moves go round in a ring.
         const double gap_m = (goal_m - proxy_m_).norm();
         rounds = gap_m > least_m - kNearerMargins * settings_.margin_m ? rounds + 1 : 0;
         least_m = std::min(least_m, gap_m);
-        if (rounds == kRounds) break;
+        const bool circles =
+            rounds == kRounds || (!cut && (proxy_m_ - two_ago_m).norm() <= settings_.margin_m);
+        two_ago_m = one_ago_m;
+        one_ago_m = proxy_m_;
+        // The two half-spaces of a triangle led astray: go on with those of the nearest points, which descend steadily.
+        if (circles) {
+            last = in_circle;
+            in_circle = true;
+            rounds = 0;
+            two_ago_m.setConstant(1e100);
+        }
         // After a complete move only the curvature remains, so the next move is much shorter. After a cut move its
         // remainder is left; after two cut moves the distance is unknown.
         const double rest = kGoesOn * (length - reach_now), twice = 2.0 * reach_now;
@@ -264,58 +279,18 @@ Contact SurfaceContact::follow(const Vec3& goal_m, std::uint32_t moves_max,
                          settings_.margin_m);
         cut_before = cut;
     }
-    // Moves spent on a ring do not count as lag: the proxy is at its goal within a margin. Below the maximum number of moves
-    // only a full count of rounds proves a ring.
-    const bool ring = rounds == kRounds || (rounds > 0 && contact.moves == kMovesMost);
-    if (contact.state == ContactState::lagging && ring && !contact.late)
-        contact.state = ContactState::settled;
+    // Work spent on a circle does not count as lag: the proxy is near its goal. Below the maximum number of moves only
+    // a second circle proves it.
+    const bool all_used = contact.moves == kMovesMost || contact.triangles >= kTrianglesMost;
+    if (contact.state == ContactState::lagging && !contact.late &&
+        (last || (all_used && (rounds > 0 || in_circle))))
+        contact.state = ContactState::gliding;
+    if (contact.state != ContactState::settled) contact.rub_m = proxy_m_ - goal_m - contact.lift_m;
     moved_m_ = (proxy_m_ - begin_m).norm();
     contact.proxy_m = proxy_m_;
     contact.after_m = {after_m_.data(), std::max(contact.moves, 1U) - 1};
+    note_clear(contact);
     return contact;
-}
-
-// Of the triangles that share the nearest point, the one that the point is highest above decides the side (the point
-// may be behind the other triangle of an edge).
-bool SurfaceContact::inside(const Vec3& point_m, const SurfacePoint& nearest) noexcept {
-    const double reach = nearest.distance_m * (1.0 + 1e-5);
-    std::uint32_t teller = nearest.triangle;
-    collected_m_ = -1.0;
-    std::size_t leaves = 0;
-    if (mesh_.leaves_near(point_m, reach, leaf_, leaves)) {
-        double highest = -1.0;
-        for (std::size_t l = 0; l < leaves; ++l) {
-            const std::uint32_t first = SurfaceNode::leaf_first(leaf_[l]);
-            for (std::uint32_t t = first; t < first + SurfaceNode::leaf_count(leaf_[l]); ++t) {
-                const SurfacePoint at = mesh_.point_of(t, point_m);
-                if (at.distance_m > reach) continue;
-                const double height = std::abs(mesh_.facet_normal(t).dot(point_m - at.point_m));
-                if (height <= highest) continue;
-                highest = height;
-                teller = t;
-            }
-        }
-    }
-    return mesh_.facet_normal(teller).dot(point_m - mesh_.point_of(teller, point_m).point_m) < 0.0;
-}
-
-void SurfaceContact::seat(const Vec3& goal_m) noexcept {
-    proxy_m_ = goal_m_ = goal_m;
-    collected_m_ = -1.0;
-    if (!mesh_.closed()) return;
-    SurfacePoint nearest = mesh_.nearest(goal_m, 1e9, SurfacePoint::kNone, kSeatVisits);
-    if (nearest.triangle == SurfacePoint::kNone || !inside(goal_m, nearest)) return;
-    const Vec3 out = nearest.point_m - goal_m;
-    const double depth = out.norm();
-    const Vec3 normal = depth > 0.0 ? Vec3(out / depth) : mesh_.facet_normal(nearest.triangle);
-    proxy_m_ = nearest.point_m + settings_.radius_m * normal;
-    // Move away from other parts of the surface nearer than the radius; the half-spaces remove the remaining overlap.
-    for (int i = 0; i < 8; ++i) {
-        nearest = mesh_.nearest(proxy_m_, settings_.radius_m, nearest.triangle, kSeatVisits);
-        if (nearest.triangle == SurfacePoint::kNone || !(nearest.distance_m > 0.0)) break;
-        proxy_m_ +=
-            (settings_.radius_m - nearest.distance_m) / nearest.distance_m * (proxy_m_ - nearest.point_m);
-    }
 }
 
 }  // namespace tact

@@ -5,16 +5,17 @@
 //           every triangle are solid, so open surfaces and sheets without thickness work from the side of the proxy.
 // Rest      The centre rests at radius_m over the inside of a triangle, at radius_m - margin_m over an edge or corner.
 //           Were both equal, a ball resting on one facet could not leave it: the next facet's edge touches it already.
-// Friction  p is the depth of the goal behind the frictionless proxy x. The proxy stays if it is within friction * p of
-//           x along the surface; otherwise it follows to that distance. The force stays in the cone of half angle
-//           atan(friction).
+// Friction  Coulomb at the proxy: the touched triangles bear the pull up to a rest along the surface. The proxy stays if
+//           this rest is at most the coefficient times the sum of their weights; otherwise it follows by the excess.
 // Work      Triangles are collected from the tree in a ball wider than needed and kept while the proxy is inside. A move
 //           queries the triangles within its reach, judged by each triangle's last distance and the path since. A
 //           step has at most moves_max moves. If too many triangles are within reach, the move is shortened.
 // Glide     In one step the proxy moves at most 1.5 times as far as the goal, plus lag_m. Where it leaves a hollow or
 //           a sheet ends, it slides to the new position over several steps, so neither force nor work has a peak.
+// Settled   only by proof (rest_proof.hpp): a true position of rest is at most a margin away.
 // Lag       A step that runs out of moves or time leaves the proxy at a free position nearer to the goal and reports
 //           `lagging`; the next step continues from there. The proxy cannot jam.
+// Easy      A step on one facet, clear of all other triangles, is computed in closed form (easy_step.hpp).
 // Unit      metres of the model.  Thread  constructed anywhere (allocates); then servo, TACT_RT.
 #pragma once
 
@@ -28,7 +29,9 @@
 #include "ipc/scene/mesh/surface_mesh.hpp"
 #include "ipc/scene/mesh/triangle_query.hpp"
 #include "rt/force/surface/all_triangles.hpp"
+#include "rt/force/surface/easy_step.hpp"
 #include "rt/force/surface/half_spaces.hpp"
+#include "rt/force/surface/rest_proof.hpp"
 
 namespace tact {
 
@@ -42,23 +45,20 @@ struct ContactSettings {
 
 enum class ContactState : std::uint8_t {
     settled,  // at the free position nearest to the goal
-    gliding,  // moving; limited by the step's maximum displacement
+    gliding,  // moving, limited by the step's maximum displacement; or at rest without proof
     lagging,  // moving; moves or time ran out
-};
-
-struct ContactPlane {
-    Vec3 normal = Vec3::Zero();  // towards the proxy, unit
-    double weight_m = 0.0;       // see Contact
-    std::uint32_t triangle = 0;
 };
 
 struct Contact {
     Vec3 proxy_m = Vec3::Zero();
-    // Active constraints: goal + sum of weight_m * normal is the frictionless proxy.
+    // Active constraints: goal + sum of weight_m * normal is the frictionless proxy. The heaviest three.
     std::array<ContactPlane, 3> plane;
     std::uint32_t planes = 0;  // 0: free
     std::uint32_t moves = 0;
     std::uint32_t triangles = 0;  // queried
+    Vec3 lift_m = Vec3::Zero();   // sum of weight_m * normal of all active constraints
+    Vec3 rub_m =
+        Vec3::Zero();  // goal + lift + rub = proxy: held by friction or, unless settled, not yet moved
     ContactState state = ContactState::settled;
     bool late = false;  // ended by the deadline
     // Position of the proxy after each move but the last; valid until the next step.
@@ -93,11 +93,19 @@ public:
                    const Deadline& deadline = {}) noexcept TACT_RT;
 
 private:
+    static constexpr double kCollectedMoves = 1.25;  // radius of the collected ball, in moves
+    static constexpr double kBoundSlack = 1e-5;      // relative rounding of distances in single precision
+
     bool collect(double& reach_m) noexcept TACT_RT;
     bool find(double radius_m) noexcept TACT_RT;
     void query(double& reach_m, double most_m, std::uint32_t& triangles) noexcept TACT_RT;
     bool half_space(std::uint32_t triangle, const TriangleQueries& seen, std::size_t lane) noexcept TACT_RT;
-    [[nodiscard]] bool rests(const HalfSpaces::Solution& solution) const noexcept TACT_RT;
+    bool step_easily(const Vec3& goal_m, double allowed_m, Contact& contact) noexcept TACT_RT;
+    bool prove(const HalfSpaces::Solution& bearing, const Vec3& moved_m) noexcept TACT_RT;
+    void settle(const Vec3& begin_m, Contact& contact) noexcept TACT_RT;
+    void note_clear(const Contact& contact) noexcept TACT_RT;
+    void list_proof(Contact& contact) const noexcept TACT_RT;
+    [[nodiscard]] Vec3 slide() const noexcept TACT_RT;
     [[nodiscard]] HalfSpaces::Solution held_back(const HalfSpaces::Solution& free, const Vec3& goal_m,
                                                  double tolerance_m) const noexcept TACT_RT;
     [[nodiscard]] bool inside(const Vec3& point_m, const SurfacePoint& nearest) noexcept TACT_RT;
@@ -106,6 +114,9 @@ private:
     AllTriangles all_;  // for brute
     ContactSettings settings_;
     HalfSpaces half_spaces_;
+    RestProof proof_;
+    EasyStep easy_;
+    bool touches_ = false;  // at the end of the last step
     const QueryKernel* kernel_;
     std::vector<std::uint32_t> leaf_;  // scratch
     // The collected triangles. The distance of each is at least its bound minus the path since they were collected.

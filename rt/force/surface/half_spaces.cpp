@@ -74,11 +74,13 @@ void HalfSpaces::allow_staying() noexcept {
     }
 }
 
+template <bool kNearestOnly>
 std::size_t HalfSpaces::most_violated(const Vec3& move_m, double& value) const noexcept {
     const auto x = static_cast<float>(move_m.x()), y = static_cast<float>(move_m.y()),
                z = static_cast<float>(move_m.z());
     const auto kept = [&](auto load) {
         const auto near = load(near_x) * x + load(near_y) * y + load(near_z) * z + load(near_s);
+        if constexpr (kNearestOnly) return near;
         const auto facet = load(facet_x) * x + load(facet_y) * y + load(facet_z) * z + load(facet_s);
         return near > facet ? near : facet;
     };
@@ -105,6 +107,29 @@ std::size_t HalfSpaces::most_violated(const Vec3& move_m, double& value) const n
     }
     value = static_cast<double>(least);
     return at;
+}
+
+// The half-space away from the nearest point bounds the distance from below.
+std::size_t HalfSpaces::near_after(const Vec3& move_m, double slack_m,
+                                   std::span<std::uint32_t> out) const noexcept {
+    const auto x = static_cast<float>(move_m.x()), y = static_cast<float>(move_m.y()),
+               z = static_cast<float>(move_m.z()), most = static_cast<float>(slack_m);
+    std::size_t count = 0;
+    for (std::size_t i = 0; i < count_; i += 4) {
+        const auto load = [&](Row r) {
+            F4 v;
+            std::memcpy(&v, row(r) + i, sizeof v);
+            return v;
+        };
+        const I4 near = load(near_x) * x + load(near_y) * y + load(near_z) * z + load(near_s) <= F4{} + most;
+        if ((near[0] | near[1] | near[2] | near[3]) == 0) continue;
+        for (std::size_t lane = 0; lane < 4; ++lane) {
+            if (near[static_cast<int>(lane)] == 0) continue;
+            if (count == out.size()) return count;
+            out[count++] = triangle_[i + lane];
+        }
+    }
+    return count;
 }
 
 HalfSpaces::Active HalfSpaces::half_space(std::size_t half_space, bool facet) const noexcept {
@@ -173,6 +198,46 @@ HalfSpaces::Solution HalfSpaces::solve(const Vec3& goal_m, double tolerance_m) c
     return best;
 }
 
+bool HalfSpaces::activate(const Vec3& goal_m, double tolerance_m, const Active& added, Solution& s) noexcept {
+    std::array<Active, 4> all;
+    const std::size_t before = s.active_count;
+    for (std::size_t i = 0; i < before; ++i) all[i] = s.active[i];
+    all[before] = added;
+    bool found = false;
+    const auto attempt = [&](std::array<std::size_t, 3> chosen, std::size_t count) {
+        if (found) return;
+        std::array<Active*, 3> planes{};
+        for (std::size_t i = 0; i < count; ++i) planes[i] = &all[chosen[i]];
+        Vec3 move_m;
+        if (!meet(goal_m, std::span<Active* const>(planes.data(), count), move_m)) return;
+        for (std::size_t i = 0; i <= before; ++i) {
+            if (all[i].normal.dot(move_m) + all[i].slack_m < -tolerance_m) return;
+        }
+        found = true;
+        s.move_m = move_m;
+        s.active_count = count;
+        for (std::size_t i = 0; i < count; ++i) s.active[i] = *planes[i];
+    };
+    attempt({before, 0, 0}, 1);
+    for (std::size_t i = 0; i < before; ++i) attempt({before, i, 0}, 2);
+    for (std::size_t i = 0; i < before; ++i)
+        for (std::size_t k = i + 1; k < before; ++k) attempt({before, i, k}, 3);
+    return found;
+}
+
+HalfSpaces::Solution HalfSpaces::solve_nearest(const Vec3& goal_m, double tolerance_m) const noexcept {
+    Solution s;
+    s.move_m = goal_m;
+    s.exact = count_ == 0;
+    for (int round = 0; round < kRoundsMax && !s.exact; ++round) {
+        double value = 0.0;
+        const std::size_t worst = most_violated<true>(s.move_m, value);
+        s.exact = value >= -tolerance_m;
+        if (!s.exact && !activate(goal_m, tolerance_m, half_space(worst, false), s)) break;
+    }
+    return s;
+}
+
 HalfSpaces::Solution HalfSpaces::solve_with(const Vec3& goal_m, double tolerance_m,
                                             std::span<const Active> turned) const noexcept {
     Solution s;
@@ -180,34 +245,9 @@ HalfSpaces::Solution HalfSpaces::solve_with(const Vec3& goal_m, double tolerance
     if (count_ == 0) return s;
     for (int round = 0; round < kRoundsMax; ++round) {
         double value = 0.0;
-        const std::size_t worst = most_violated(s.move_m, value);
+        const std::size_t worst = most_violated<false>(s.move_m, value);
         if (value >= -tolerance_m) return s;
-        // The optimum under the active half-spaces and the new one, which has to be active: the only subset with
-        // non-negative weights that satisfies the others.
-        std::array<Active, 4> all;
-        const std::size_t before = s.active_count;
-        for (std::size_t i = 0; i < before; ++i) all[i] = s.active[i];
-        all[before] = asked_least(worst, s.move_m, turned);
-        bool found = false;
-        const auto attempt = [&](std::array<std::size_t, 3> chosen, std::size_t count) {
-            if (found) return;
-            std::array<Active*, 3> planes{};
-            for (std::size_t i = 0; i < count; ++i) planes[i] = &all[chosen[i]];
-            Vec3 move_m;
-            if (!meet(goal_m, std::span<Active* const>(planes.data(), count), move_m)) return;
-            for (std::size_t i = 0; i <= before; ++i) {
-                if (all[i].normal.dot(move_m) + all[i].slack_m < -tolerance_m) return;
-            }
-            found = true;
-            s.move_m = move_m;
-            s.active_count = count;
-            for (std::size_t i = 0; i < count; ++i) s.active[i] = *planes[i];
-        };
-        attempt({before, 0, 0}, 1);
-        for (std::size_t i = 0; i < before; ++i) attempt({before, i, 0}, 2);
-        for (std::size_t i = 0; i < before; ++i)
-            for (std::size_t k = i + 1; k < before; ++k) attempt({before, i, k}, 3);
-        if (!found) break;
+        if (!activate(goal_m, tolerance_m, asked_least(worst, s.move_m, turned), s)) break;
     }
     s.exact = false;
     s.move_m *= free_share(s.move_m);

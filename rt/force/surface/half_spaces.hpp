@@ -52,12 +52,21 @@ public:
     [[nodiscard]] std::uint32_t triangle(std::size_t half_space) const noexcept TACT_RT {
         return triangle_[half_space];
     }
+    // Triangles that may be nearer than their rest plus slack_m after a move. Returns their number, at most out.size().
+    std::size_t near_after(const Vec3& move_m, double slack_m,
+                           std::span<std::uint32_t> out) const noexcept TACT_RT;
     // A negative near_slack_m pushes the proxy out. False: no room.
     bool add(std::uint32_t triangle, const TriangleQueries& query, std::size_t lane, float near_slack_m,
              float facet_slack_m, bool facet_holds) noexcept TACT_RT;
     // Sets negative slacks to zero, so that every half-space permits a zero move.
     void allow_staying() noexcept TACT_RT;
+    // As solve(), with the half-spaces away from the nearest points only: what the triangles allow near the proxy.
+    [[nodiscard]] Solution solve_nearest(const Vec3& goal_m, double tolerance_m) const noexcept TACT_RT;
     // goal_m: relative to the proxy. tolerance_m: violation up to which a half-space counts as satisfied.
+    // The solution under the active half-spaces and one more, which has to be active: the only subset with non-negative
+    // weights that satisfies the others. False: none, by rounding; `solution` is unchanged.
+    [[nodiscard]] static bool activate(const Vec3& goal_m, double tolerance_m, const Active& added,
+                                       Solution& solution) noexcept TACT_RT;
     [[nodiscard]] Solution solve(const Vec3& goal_m, double tolerance_m) const noexcept TACT_RT;
 
 private:
@@ -66,6 +75,7 @@ private:
     enum Row : std::size_t { near_x, near_y, near_z, near_s, facet_x, facet_y, facet_z, facet_s };
     [[nodiscard]] float* row(Row r) noexcept { return float_.data() + r * kRow; }
     [[nodiscard]] const float* row(Row r) const noexcept { return float_.data() + r * kRow; }
+    template <bool kNearestOnly>
     [[nodiscard]] std::size_t most_violated(const Vec3& move_m, double& value) const noexcept TACT_RT;
     [[nodiscard]] Active half_space(std::size_t half_space, bool facet) const noexcept TACT_RT;
     [[nodiscard]] Active asked_least(std::size_t half_space, const Vec3& move_m,

@@ -49,7 +49,12 @@ void check_surface_settings(const SurfaceSettings& s) {
 
 SurfaceModel::SurfaceModel(const SceneMeta& meta, const SurfaceMesh& mesh, const SurfaceSettings& settings,
                            const VertexForest* forest)
-    : meta_(meta), settings_(settings), solver_(mesh, contact_settings(meta, settings)), full_(mesh) {
+    : meta_(meta),
+      settings_(settings),
+      solver_(mesh, contact_settings(meta, settings)),
+      force_({settings.stiffness_n_m, settings.damping_n_s_m, kDampedDepthM, settings.friction,
+              settings.force_n_max, kLagN / settings.stiffness_n_m}),
+      full_(mesh) {
     if (settings.mode == SurfaceMode::off_brute) regime_ = TouchRegime::brute;
     if (settings.mode == SurfaceMode::chr)
         adaptive_ = tended_surface(mesh, forest, solver_.settings().radius_m, meta.world_per_model);
@@ -114,7 +119,7 @@ void SurfaceModel::reset(const ToolState& tool) noexcept {
     lagged_ = false;
     fade_.cut();
     contact_ = {};
-    turn_.reset();
+    force_.reset();
     ++grips_;
     seated_ = tool_is_there(tool.T_world_tool);
     use_full_surface();
@@ -150,23 +155,20 @@ void SurfaceModel::publish(const ModelCycle& cycle) noexcept {
     if (topic_ != nullptr) topic_->publish(touch_topic(touch(), cycle));
 }
 
-Vec3 SurfaceModel::force_n(const ToolState& tool, const Vec3& goal_model_m, double gone_m) noexcept {
+Vec3 SurfaceModel::force_n(const ToolState& tool, const Vec3& moved_model_m) noexcept {
+    const double scale = meta_.world_per_model;
     Vec3 turn_m = Vec3::Zero();
     for (std::uint32_t i = 0; settings_.shading && i < contact_.planes; ++i) {
         const ContactPlane& plane = contact_.plane[i];
         turn_m +=
             shaded_turn_m(solver_.mesh(), plane.triangle, contact_.proxy_m, plane.normal, plane.weight_m);
     }
-    const Vec3 pull_m = contact_.proxy_m - goal_model_m;
-    const Vec3 way_m =
-        meta_.world_per_model * (pull_m + turn_.follow(turn_m, pull_m, gone_m, solver_.settings().lag_m));
-    const double depth_m = way_m.norm();
-    if (!(depth_m > 0.0)) return Vec3::Zero();
-    const Vec3 normal = way_m / depth_m;
-    const Vec3& v = tool.twist_world.linear_m_s;
-    const double into_m_s = v.allFinite() ? -normal.dot(v) : 0.0;
-    const double damped = settings_.damping_n_s_m * into_m_s * std::min(1.0, depth_m / kDampedDepthM);
-    return std::clamp(settings_.stiffness_n_m * depth_m + damped, 0.0, settings_.force_n_max) * normal;
+    return force_.step({.lift_m = scale * contact_.lift_m,
+                        .turn_m = scale * turn_m,
+                        .rub_m = scale * contact_.rub_m,
+                        .moved_m = scale * moved_model_m,
+                        .velocity_m_s = tool.twist_world.linear_m_s,
+                        .gain = fade_.gain()});
 }
 
 // After a lag, friction and hollows may hold the proxy elsewhere than without it, for as long as it touches: on a sphere,
@@ -198,7 +200,7 @@ StepResult SurfaceModel::step(const ToolState& tool, const Budget& budget) noexc
             use_full_surface();
             solver_.seat(goal_m);
             seated_ = true;
-            turn_.reset();
+            force_.reset();
             ++grips_;
         }
         if (seated_) {
@@ -208,7 +210,7 @@ StepResult SurfaceModel::step(const ToolState& tool, const Budget& budget) noexc
                 fade_.rise();
             choose_surface(goal_m, budget.fidelity);
             const bool hurried = budget.deadline.passed();
-            const double gone_m = (goal_m - solver_.goal_m()).norm();
+            const Vec3 moved_m = goal_m - solver_.goal_m();
             contact_ = solver_.follow(goal_m, hurried ? 1 : moves(budget.fidelity), budget.deadline);
             const bool on_time = !hurried && !contact_.late;
             const double planned = lag_.moves(moves(budget.fidelity));
@@ -223,15 +225,15 @@ StepResult SurfaceModel::step(const ToolState& tool, const Budget& budget) noexc
             depth_m_ = (contact_.proxy_m - goal_m).norm();
             const double pulled_n = newton * depth_m_;
             note_lag();
-            result.load.error = 2.0 * newton * solver_.settings().margin_m;
+            result.wrench_world = fade_.show({force_n(tool, moved_m), Vec3::Zero()});
+            result.load.error = 2.0 * newton * solver_.settings().margin_m + force_.off_n();
             if (lagged_ || contact_.state != ContactState::settled)
                 result.load.error += 2.0 * std::min(pulled_n, settings_.force_n_max);
-            result.wrench_world = fade_.show({fade_.gain() * force_n(tool, goal_m, gone_m), Vec3::Zero()});
             if (pulled_n > kLostLimits * settings_.force_n_max) {
                 fade_.follow(fade_);
                 use_full_surface();
                 solver_.seat(goal_m);
-                turn_.reset();
+                force_.reset();
                 ++grips_;
                 ++released_;
             }

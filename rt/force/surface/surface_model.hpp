@@ -37,6 +37,7 @@
 #include "rt/force/force_model.hpp"
 #include "rt/force/surface/adaptive_tool_surface.hpp"
 #include "rt/force/surface/contact.hpp"
+#include "rt/force/surface/contact_force.hpp"
 #include "rt/force/surface/lag_record.hpp"
 #include "rt/force/surface/shading.hpp"
 #include "rt/force/surface/surface_touch.hpp"
@@ -93,7 +94,11 @@ public:
     void publish(const ModelCycle& cycle) noexcept TACT_RT override;
 
     [[nodiscard]] const SceneMeta& meta() const { return meta_; }
-    [[nodiscard]] const Contact& contact() const { return contact_; }       // of the last step
+    [[nodiscard]] const Contact& contact() const { return contact_; }  // of the last step
+    // The normal of the last step's force times its length per stiffness, in world metres: the axis of the friction cone.
+    [[nodiscard]] const Vec3& push_world_m() const { return force_.push_m(); }
+    // Difference of the last step's force from full shading without pace.
+    [[nodiscard]] double shading_loss_n() const { return force_.off_n(); }
     [[nodiscard]] std::uint64_t lagging_steps() const { return lagging_; }  // since construction
 
     [[nodiscard]] std::uint64_t released() const { return released_; }
@@ -115,9 +120,8 @@ public:
     }
 
 private:
-    // gone_m: displacement of the tool since the last step, in model metres.
-    [[nodiscard]] Vec3 force_n(const ToolState& tool, const Vec3& goal_model_m,
-                               double gone_m) noexcept TACT_RT;
+    // moved_model_m: displacement of the tool since the last step. The gain of the fade is included.
+    [[nodiscard]] Vec3 force_n(const ToolState& tool, const Vec3& moved_model_m) noexcept TACT_RT;
     void choose_surface(const Vec3& goal_m, float fidelity) noexcept TACT_RT;
     void use_full_surface() noexcept TACT_RT;
     void note_lag() noexcept TACT_RT;
@@ -127,7 +131,7 @@ private:
     SurfaceContact solver_;
     Contact contact_;
     ForceFade fade_;
-    PacedTurn<Vec3> turn_;  // by shading
+    ContactForce force_;
     LagRecord lag_;
     double depth_m_ = 0.0;  // from the tool to the proxy in the last step, model metres
     bool lagged_ = false;   // since the proxy was last free
