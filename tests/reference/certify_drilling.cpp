@@ -43,9 +43,9 @@ ref::Volume volume_of(const DrillBone& bone, double world_per_model) {
     return v;
 }
 
-class Certifier {
+class DrillCertifier {
 public:
-    Certifier(const SceneFile& scene, const CertifySettings& settings, ref::Promises& promises)
+    DrillCertifier(const SceneFile& scene, const CertifySettings& settings, ref::Promises& promises)
         : settings_(settings),
           meta_(read_meta(scene)),
           bone_(scene),
@@ -147,11 +147,14 @@ private:
     };
     struct Sum {
         Vec3 force_n = Vec3::Zero(), torque_n_m = Vec3::Zero();
-        double elastic_n = 0.0, lever_m = 0.0;
+        double elastic_n = 0.0;
+        double lever_m = 0.0;  // farthest place of the touching parts from the tool's origin
+
         bool limited = false;
     };
     [[nodiscard]] Sum wanted(const Pose& pose, double burr_rad_s) const {
         Sum sum;
+        sum.lever_m = drill_.tool.radius_m;
         const DrillTool& tool = model_.tool();
         for (std::uint32_t i = 0; i < tool.count; ++i) {
             const ToolBall& ball = tool.ball[i];
@@ -169,7 +172,7 @@ private:
             sum.force_n += ball.weight * w.force_n;
             sum.torque_n_m += ball.weight * (w.torque_n_m + arm_m.cross(w.force_n));
             sum.elastic_n += ball.weight * w.elastic_n;
-            sum.lever_m = std::max(sum.lever_m, arm_m.norm() + ball.radius_m);
+            if (w.elastic_n > 0.0) sum.lever_m = std::max(sum.lever_m, arm_m.norm() + ball.radius_m);
         }
         const double size_n = sum.force_n.norm();
         sum.limited = size_n > drill_.force_n_max;
@@ -187,7 +190,7 @@ private:
         if ((r.trace_flags & kTraceHeldIn) != 0) {
             note(held_in_, r.wrench_world.force_n.norm(),
                  right.elastic_n * (1.0 + drill_.law.friction_share) + allowed_n +
-                     drill_.law.impact_n_s_m3 * right.lever_m * right.lever_m * 2.0 *
+                     6.0 * drill_.law.impact_n_s_m3 * drill_.tool.radius_m * drill_.tool.radius_m *
                          tool_.twist_world.linear_m_s.norm());
         } else {
             note(force_, (r.wrench_world.force_n - right.force_n).norm(), allowed_n);
@@ -326,7 +329,7 @@ private:
 }  // namespace
 
 void certify_drilling(const SceneFile& scene, const CertifySettings& settings, ref::Promises& promises) {
-    Certifier(scene, settings, promises).run();
+    DrillCertifier(scene, settings, promises).run();
 }
 
 }  // namespace tact
