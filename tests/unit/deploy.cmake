@@ -45,6 +45,7 @@ endif()
 tact_test(unit/reproduce_test.cpp USES reproduce launch scene base)
 find_package(Python3 COMPONENTS Interpreter REQUIRED)
 add_test(NAME deploy_rights_test COMMAND Python3::Interpreter ${CMAKE_CURRENT_SOURCE_DIR}/unit/deploy_rights_test.py ${CMAKE_SOURCE_DIR})
+add_test(NAME certify_cli_test COMMAND Python3::Interpreter ${CMAKE_CURRENT_SOURCE_DIR}/unit/certify_cli_test.py $<TARGET_FILE_DIR:tact>)
 add_test(NAME config_check_test COMMAND Python3::Interpreter ${CMAKE_CURRENT_SOURCE_DIR}/unit/config_check_test.py $<TARGET_FILE_DIR:tact>
     WORKING_DIRECTORY ${CMAKE_SOURCE_DIR})
 add_test(NAME shared_core_test COMMAND Python3::Interpreter ${CMAKE_CURRENT_SOURCE_DIR}/unit/shared_core_test.py $<TARGET_FILE_DIR:tact>
