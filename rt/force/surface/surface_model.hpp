@@ -131,6 +131,7 @@ private:
     SurfaceContact solver_;
     Contact contact_;
     ForceFade fade_;
+    ShadedFacet shaded_;
     ContactForce force_;
     LagRecord lag_;
     double depth_m_ = 0.0;  // from the tool to the proxy in the last step, model metres
