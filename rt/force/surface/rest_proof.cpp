@@ -99,7 +99,7 @@ void RestProof::solve(const Vec3& pull_m) noexcept {
 bool RestProof::holds(double friction) const noexcept {
     const double left = residual_m_.norm(), push = lift_m_.norm();
     if (!(left <= friction * push + margin_m_)) return false;
-    if (friction <= 0.0) return left <= 0.5 * curvature() * margin_m_;
+    if (friction <= 0.0) return left <= curvature() * margin_m_;
     // Friction bears nothing along the normal: the touch itself has to be exact.
     for (std::size_t i = 0; i < count_; ++i) {
         const Touch& t = touch_[i];
