@@ -125,6 +125,40 @@ TEST(SurfaceEnergy, a_closed_excursion_gains_nothing_at_any_speed) {
     }
 }
 
+// The axis of the cone is the normal that the force uses; the settled test compares it with the triangles.
+TEST(SurfaceEnergy, on_curved_surfaces_with_shading_the_force_stays_in_the_friction_cone) {
+    for (const auto& scene : scenes()) {
+        for (const double friction : {0.0, 0.1, 0.5}) {
+            SeededRandom random(13);
+            double most = 0.0;
+            for (int k = 0; k < 20; ++k) {
+                const Path path = random_path(*scene, random);
+                SceneMeta meta{};
+                meta.kind = SceneKind::surface;
+                meta.world_per_model = 1.0;
+                SurfaceModel model(meta, scene->mesh, {.radius_m = k % 3 * 1e-3, .friction = friction});
+                const double radius_m = k % 3 * 1e-3;
+                model.reset(at(path.at(0.0, radius_m)));
+                for (int i = 0; i < 256; ++i) (void)model.step(at(path.at(0.0, radius_m)), {});
+                for (int i = 0; i <= 600; ++i) {
+                    ToolState tool = at(path.at(i / 600.0, radius_m));
+                    tool.twist_world.linear_m_s =
+                        600.0 * (path.at((i + 1) / 600.0, radius_m) - tool.T_world_tool.p_m);
+                    const Vec3 force_n = model.step(tool, {}).wrench_world.force_n;
+                    if (force_n.norm() < 1e-6) continue;
+                    const Vec3 normal = model.push_world_m().normalized();
+                    const double along_n = force_n.dot(normal),
+                                 across_n = (force_n - along_n * normal).norm();
+                    ASSERT_LE(across_n, friction * along_n + 1e-9)
+                        << scene->name << ", path " << k << ", step " << i;
+                    most = std::max(most, across_n / along_n);
+                }
+            }
+            EXPECT_GE(most, 0.99 * friction);
+        }
+    }
+}
+
 // Shading of a smooth surface does no work around a closed path, so it must stay on.
 TEST(SurfaceEnergy, on_a_smooth_sphere_shading_stays_on) {
     const MeshScene& scene = *scenes().back();

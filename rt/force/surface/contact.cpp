@@ -12,6 +12,7 @@ constexpr double kFollowedSteps = 1.5;  // a proxy on a slope travels farther th
 constexpr double kNextMove = 0.3;
 constexpr double kGoesOn = 1.5;  // next reach after a cut move, in lengths of its remainder
 constexpr double kSlidesOn = 1.15;
+constexpr double kStaysSteps = 3.0;  // a facet that holds for so many steps is worth a list of its neighbours
 constexpr int kRounds = 4;
 constexpr double kRestingMargins = 0.02;
 constexpr double kNearerMargins = 0.05;
@@ -28,14 +29,19 @@ SurfaceContact::SurfaceContact(const SurfaceMesh& mesh, const ContactSettings& s
       triangle_(4 * kLeavesMax),
       bound_m_(4 * kLeavesMax),
       slot_(4 * kLeavesMax + kLooks),
-      number_(4 * kLeavesMax + kLooks) {}
+      number_(4 * kLeavesMax + kLooks),
+      full_tree_(mesh.tree().data()),
+      whole_(!settings.brute) {}
 
 double SurfaceContact::looks_m(const Vec3& goal_m) const noexcept {
     const double allowed = kFollowedSteps * (goal_m - goal_m_).norm() + settings_.lag_m;
     return settings_.radius_m + (1.0 + kCollectedMoves) * std::max(allowed, settings_.margin_m);
 }
 
-void SurfaceContact::use(const SurfaceMesh& mesh) noexcept { mesh_ = mesh; }
+void SurfaceContact::use(const SurfaceMesh& mesh) noexcept {
+    mesh_ = mesh;
+    whole_ = !settings_.brute && mesh.tree().data() == full_tree_;
+}
 
 // Tries to prove rest after a move from the last query: with all triangles that the ball may touch, first those that bear
 // the pull as far as single precision tells.
@@ -132,7 +138,7 @@ void SurfaceContact::list_proof(Contact& contact) const noexcept {
 }
 
 // The free path from here to all triangles but the touched facet, for easy steps.
-void SurfaceContact::note_clear(const Contact& contact) noexcept {
+void SurfaceContact::note_clear(const Contact& contact, const Vec3& begin_m) noexcept {
     touches_ &= contact.planes > 0;
     const RestProof::Touch* const facet = contact.planes == 1 ? proof_.single_facet() : nullptr;
     if (contact.state != ContactState::settled || (contact.planes > 0 && facet == nullptr)) {
@@ -147,12 +153,36 @@ void SurfaceContact::note_clear(const Contact& contact) noexcept {
     else
         easy_.leave(proxy_m_);
     if (settings_.brute || collected_m_ < 0.0) return;
+    // Bounds of the nearest others, in order; the last entry is the one beyond them.
+    std::array<float, EasyStep::kPlanes + 1> bound;
+    std::array<std::uint32_t, EasyStep::kPlanes + 1> triangle;
+    std::size_t count = 0;
+    const bool stays = facet != nullptr && easy_.holds(proxy_m_, proxy_m_ - begin_m, kStaysSteps);
+    const std::size_t most = stays ? bound.size() : 1;
     float least = std::numeric_limits<float>::max();
-    for (std::size_t i = 0; i < collected_; ++i)
-        least = !easy_.has_facet(triangle_[i]) && bound_m_[i] < least ? bound_m_[i] : least;
-    const double bound = static_cast<double>(least) * (1.0 - kBoundSlack) - way_m_ - settings_.radius_m,
-                 collected = collected_m_ - (proxy_m_ - collected_at_m_).norm();
-    easy_.set_clear(proxy_m_, std::min(bound, collected) - settings_.margin_m);
+    for (std::size_t i = 0; i < collected_; ++i) {
+        if (bound_m_[i] >= least || easy_.has_facet(triangle_[i])) continue;
+        std::size_t at = count < most ? count++ : most - 1;
+        for (; at > 0 && bound[at - 1] > bound_m_[i]; --at) {
+            bound[at] = bound[at - 1];
+            triangle[at] = triangle[at - 1];
+        }
+        bound[at] = bound_m_[i];
+        triangle[at] = triangle_[i];
+        if (count == most) least = bound[most - 1];
+    }
+    const double collected = collected_m_ - (proxy_m_ - collected_at_m_).norm();
+    const auto free_m = [&](std::size_t i) {
+        return i < count ? static_cast<double>(bound[i]) * (1.0 - kBoundSlack) - way_m_ - settings_.radius_m
+                         : collected;
+    };
+    std::size_t above = 0;
+    easy_.set_clear(proxy_m_, 0.0);
+    while (
+        stays && above < std::min(count, EasyStep::kPlanes) &&
+        easy_.above(mesh_, triangle[above], proxy_m_, settings_.radius_m, RestProof::kBorderMargins * settings_.margin_m))
+        ++above;
+    easy_.limit_clear(std::min(free_m(above), collected) - settings_.margin_m);
 }
 
 Contact SurfaceContact::follow(const Vec3& goal_m, std::uint32_t moves_max,
@@ -289,7 +319,7 @@ Contact SurfaceContact::follow(const Vec3& goal_m, std::uint32_t moves_max,
     moved_m_ = (proxy_m_ - begin_m).norm();
     contact.proxy_m = proxy_m_;
     contact.after_m = {after_m_.data(), std::max(contact.moves, 1U) - 1};
-    note_clear(contact);
+    note_clear(contact, begin_m);
     return contact;
 }
 

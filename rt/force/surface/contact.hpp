@@ -103,7 +103,7 @@ private:
     bool step_easily(const Vec3& goal_m, double allowed_m, Contact& contact) noexcept TACT_RT;
     bool prove(const HalfSpaces::Solution& bearing, const Vec3& moved_m) noexcept TACT_RT;
     void settle(const Vec3& begin_m, Contact& contact) noexcept TACT_RT;
-    void note_clear(const Contact& contact) noexcept TACT_RT;
+    void note_clear(const Contact& contact, const Vec3& begin_m) noexcept TACT_RT;
     void list_proof(Contact& contact) const noexcept TACT_RT;
     [[nodiscard]] Vec3 slide() const noexcept TACT_RT;
     [[nodiscard]] HalfSpaces::Solution held_back(const HalfSpaces::Solution& free, const Vec3& goal_m,
@@ -125,6 +125,9 @@ private:
     std::size_t collected_ = 0;
     std::vector<std::uint32_t> slot_, number_;  // scratch: triangles in reach, by slot and by index
     Vec3 collected_at_m_ = Vec3::Zero();
+    const SurfaceNode* full_tree_;
+    bool whole_ = true;          // searches the tree of all triangles
+    double widen_ = 1.0;         // of the collected ball, where triangles are few
     double collected_m_ = -1.0;  // allowed distance of the ball from there; < 0: nothing collected
     double way_m_ = 0.0;         // path length since the collection
     Vec3 proxy_m_ = Vec3::Zero(), goal_m_ = Vec3::Zero();

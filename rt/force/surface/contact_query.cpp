@@ -9,6 +9,8 @@ namespace tact {
 namespace {
 
 constexpr double kCollectedTooFar = 8.0;
+constexpr std::size_t kCollectedSparse = 16;
+constexpr double kWidenMost = 256.0;
 constexpr std::size_t kCollectedFew = 4096;
 constexpr std::uint32_t kSeatVisits = 4096;  // tree nodes, about 100 us
 
@@ -34,7 +36,7 @@ bool SurfaceContact::collect(double& reach_m) noexcept {
     const double moved = (proxy_m_ - collected_at_m_).norm();
     const bool too_many = collected_ > kCollectedFew && collected_m_ - moved > kCollectedTooFar * reach_m;
     if (collected_m_ >= 0.0 && moved + reach_m <= collected_m_ && !too_many) return true;
-    double wide = kCollectedMoves * reach_m;
+    double wide = kCollectedMoves * reach_m * (whole_ ? widen_ : 1.0);
     for (int attempt = 0; attempt < 12; ++attempt) {
         if (find(settings_.radius_m + wide)) {
             std::fill_n(bound_m_.begin(), collected_, 0.0F);
@@ -42,9 +44,13 @@ bool SurfaceContact::collect(double& reach_m) noexcept {
             collected_m_ = wide;
             way_m_ = 0.0;
             reach_m = std::min(reach_m, wide);
+            // Few triangles cost little to query once, and many easy steps need none.
+            if (collected_ < kCollectedSparse) widen_ = std::min(2.0 * widen_, kWidenMost);
+            if (collected_ > 4 * kCollectedSparse) widen_ = std::max(0.5 * widen_, 1.0);
             return true;
         }
-        wide *= attempt == 0 ? 1.0 / kCollectedMoves : 0.5;
+        wide = attempt == 0 ? reach_m : 0.5 * wide;
+        widen_ = 1.0;
     }
     collected_m_ = -1.0;
     return false;

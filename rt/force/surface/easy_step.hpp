@@ -1,13 +1,16 @@
 // A step of a ball that touches one facet, or none, where no other triangle can be in its way: in closed form, without a
 // query. Most steps of a point on a coarse mesh are of this kind.
 //
-// Clear    set() gets a lower bound on the free path to all other triangles. Valid until the ball is that far away.
+// Clear    The nearest other triangles are in no way while the ball is above their planes (a flat patch, a convex edge). All
+//          others are farther than a free path, which set_clear() gets.
 // Exact    in double precision and a function of facet, ball and goal alone, so a step that queried the triangles and
 //          found the same facet ends at the same position, bit by bit.
 // Unit     metres of the model.  Thread  servo, TACT_RT
 #pragma once
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdint>
 
 #include "ipc/base/pose.hpp"
@@ -18,6 +21,9 @@ namespace tact {
 
 class EasyStep {
 public:
+    static constexpr std::size_t kPlanes = 12;
+    static constexpr double kLevel = 1e-9;  // sine of planes that count as one
+
     struct Move {
         bool known = false;  // false: not over the inside of the facet
         Vec3 to_m = Vec3::Zero();
@@ -54,10 +60,41 @@ public:
         clear_m_ = -1.0;
         has_facet_ = true;
     }
-    // From at_m no other triangle is nearer than the radius plus clear_m.
+    // From at_m no triangle but the facet and those of above() is nearer than the radius plus clear_m.
     void set_clear(const Vec3& at_m, double clear_m) noexcept TACT_RT {
         at_m_ = at_m;
         clear_m_ = clear_m;
+        planes_ = 0;
+    }
+    void limit_clear(double clear_m) noexcept TACT_RT { clear_m_ = clear_m; }
+    // False: the ball is not so far above the triangle's plane that it cannot touch. sunk_m: this much below is still above.
+    bool above(const SurfaceMesh& mesh, std::uint32_t triangle, const Vec3& ball_m, double radius_m,
+               double sunk_m) noexcept TACT_RT {
+        const auto corner = mesh.corners(triangle);
+        const Vec3 a = mesh.position_m(corner[0]), b = mesh.position_m(corner[1]),
+                   c = mesh.position_m(corner[2]);
+        Plane& plane = plane_[planes_];
+        plane.normal = (b - a).cross(c - a);
+        const double length = plane.normal.norm();
+        if (!(length > 0.0)) return false;
+        plane.normal *= std::copysign(1.0 / length, plane.normal.dot(ball_m - a));
+        // Beyond a border of the facet and not tilted towards it: over the facet, the ball is not over the triangle. Its edge is
+        // touched a margin below the plane's height only.
+        bool beside = false;
+        for (std::size_t k = 0; has_facet_ && k < 3; ++k)
+            beside |= inward_[k].dot(plane.normal) <= kLevel &&
+                      std::max({inward_[k].dot(a), inward_[k].dot(b), inward_[k].dot(c)}) <= border_[k];
+        plane.height_m = plane.normal.dot(a) + radius_m + (beside ? -sunk_m : band_m_);
+        if (!(plane.normal.dot(ball_m) >= plane.height_m)) return false;
+        ++planes_;
+        return true;
+    }
+    // More displacements like this one end on the facet too.
+    [[nodiscard]] bool holds(const Vec3& ball_m, const Vec3& moved_m, double times) const noexcept TACT_RT {
+        const Vec3 to_m = ball_m + times * moved_m;
+        bool holds = true;
+        for (std::size_t k = 0; k < 3; ++k) holds &= inward_[k].dot(to_m) > border_[k];
+        return holds;
     }
     [[nodiscard]] bool has_facet(std::uint32_t triangle) const noexcept TACT_RT {
         return has_facet_ && triangle == triangle_;
@@ -65,7 +102,9 @@ public:
     [[nodiscard]] const Vec3& normal() const noexcept TACT_RT { return normal_; }
     [[nodiscard]] std::uint32_t triangle() const noexcept TACT_RT { return triangle_; }
     [[nodiscard]] bool clear(const Vec3& to_m) const noexcept TACT_RT {
-        return clear_m_ > 0.0 && (to_m - at_m_).squaredNorm() < clear_m_ * clear_m_;
+        bool clear = clear_m_ > 0.0 && (to_m - at_m_).squaredNorm() < clear_m_ * clear_m_;
+        for (std::size_t i = 0; i < planes_; ++i) clear &= plane_[i].normal.dot(to_m) >= plane_[i].height_m;
+        return clear;
     }
 
     [[nodiscard]] Move move(const Vec3& ball_m, const Vec3& goal_m, double friction) const noexcept TACT_RT {
@@ -91,6 +130,12 @@ public:
     }
 
 private:
+    struct Plane {
+        Vec3 normal = Vec3::Zero();
+        double height_m = 0.0;
+    };
+    std::array<Plane, kPlanes> plane_;
+    std::size_t planes_ = 0;
     bool has_facet_ = false;
     std::uint32_t triangle_ = 0;
     std::array<Vec3, 3> inward_;

@@ -26,6 +26,10 @@ public:
         mean_ = 0.95 * mean_ + 0.05 * contact.moves;
         triangles_ = std::max(kKept * triangles_,
                               static_cast<double>(contact.triangles) / std::max(contact.moves, 1U));
+        if (!short_of && contact.after_m.empty()) {  // most steps: the record only fades
+            for (double& lagged : lagged_) lagged *= kKept;
+            return;
+        }
         double least = 0.0;  // a level below one that lags lags too
         for (std::size_t m = lagged_.size(); m-- > 0;) {
             bool lagged = all || (short_of && m < contact.moves);

@@ -4,7 +4,7 @@
 //          Distance and normal are computed in double precision.
 // Solve    the move nearest to the pull that no touched triangle forbids, and the weights of at most three of their normals.
 //          At rest (a Karush-Kuhn-Tucker point) this move is zero; else it is the residual.
-// Holds    if the true position is at most a margin away. It is at most the residual over the curvature of the distance
+// Holds    if the true position is at most a margin away: at most the residual over the curvature of the distance
 //          to the goal along the surface: 1 on facets, 1 - w / d with the weight w on an edge at distance d. With
 //          w > d the goal is nearer on either side of the edge: at rest, but not stable. Curvatures below kStable
 //          prove nothing. With friction, the residual may be larger by the coefficient times the lift (Coulomb).
@@ -31,7 +31,7 @@ struct ContactPlane {
 class RestProof {
 public:
     static constexpr std::size_t kTouches = 24;
-    static constexpr double kBandMargins = 0.5, kStable = 0.05;
+    static constexpr double kBandMargins = 0.5, kStable = 0.2;
     // Nearest points this close to the border count as over the inside, but need a second triangle of the plane: neither
     // rounding on the border of two triangles nor a place that the least push leaves may decide.
     static constexpr double kBorderMargins = 1e-3;

@@ -160,8 +160,10 @@ Vec3 SurfaceModel::force_n(const ToolState& tool, const Vec3& moved_model_m) noe
     Vec3 turn_m = Vec3::Zero();
     for (std::uint32_t i = 0; settings_.shading && i < contact_.planes; ++i) {
         const ContactPlane& plane = contact_.plane[i];
-        turn_m +=
-            shaded_turn_m(solver_.mesh(), plane.triangle, contact_.proxy_m, plane.normal, plane.weight_m);
+        turn_m += i == 0 ? shaded_.turn_m(solver_.mesh(), plane.triangle, contact_.proxy_m, plane.normal,
+                                          plane.weight_m)
+                         : shaded_turn_m(solver_.mesh(), plane.triangle, contact_.proxy_m, plane.normal,
+                                         plane.weight_m);
     }
     return force_.step({.lift_m = scale * contact_.lift_m,
                         .turn_m = scale * turn_m,

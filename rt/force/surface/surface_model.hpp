@@ -1,9 +1,7 @@
 // The force on a point or a ball that touches a triangle mesh.
 //
-// Force    k times the vector from the tool to the proxy (contact.hpp), which no triangle lets through. Without friction
-//          it is the gradient of the energy k/2 way^2, so a closed path gains no energy; friction and damping only
-//          dissipate. Force shading turns each contact's force towards the normal interpolated between the
-//          triangle's corners, if that is within about 30 degrees of the facet normal (shading.hpp).
+// Force    k times the vector from the tool to the proxy (contact.hpp), which no triangle lets through, with the normals
+//          of shading (shading.hpp), in the friction cone about them. A closed excursion gains no energy (contact_force.hpp).
 // Damping  along the force, proportional to the depth up to kDampedDepthM; never pulls. A sampled spring k with period T
 //          needs a damping of k T/2 from hand and arm (Colgate 1997), plus the model's own b: k T/2 + b must stay
 //          below the damping of hand and arm. By default 0.75 N s/m at 1 kHz.
@@ -13,8 +11,9 @@
 // Knob     "surface.force": maximum number of proxy moves per step, 4 to 24. A proxy that needs more lags and catches up in
 //          later steps. Most steps need two (README.md), so usually all levels are equal. predict() uses the moves of
 //          the last half second and the levels that would have lagged in it (lag_record.hpp).
-// Error    of a step that lagged: twice the force, until the proxy is free again, because until then it may be held
-//          elsewhere than without the lag.
+// Error    of a settled step: twice the margin, and what pace, energy and fading of shading change. A step that is not
+//          settled adds twice the force; one that lagged does so until the proxy is free again, because until then it may
+//          be held elsewhere than without the lag.
 // Modes    off_brute: every triangle in every step; off_tree: search in the tree over the full mesh; chr: search in the
 //          surface that slow_update() refines around the tool (adaptive_surface.hpp), or in the full tree if that
 //          surface does not contain the search radius. The force is the same; regime() tells which one was used. In
@@ -131,6 +130,7 @@ private:
     SurfaceContact solver_;
     Contact contact_;
     ForceFade fade_;
+    ShadedFacet shaded_;
     ContactForce force_;
     LagRecord lag_;
     double depth_m_ = 0.0;  // from the tool to the proxy in the last step, model metres
