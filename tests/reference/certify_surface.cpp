@@ -227,9 +227,16 @@ private:
         const Contact& contact = model_.contact();
         const Vec3 proxy_m = meta_.to_world(contact.proxy_m), way_m = proxy_m - goal_m;
         const double m = ball_.margin;
-        const ref::Judgement j =
-            ref::judge(cells_.near(proxy_m, ball_.radius + 4.0 * m), ball_, proxy_m, goal_m, 3.0 * m);
-        note(promises_.free, -j.least_gap, 0.5 * m);
+        const ref::Triangles near = cells_.near(proxy_m, ball_.radius + 4.0 * m);
+        double nearest_m = 1e300;
+        for (const auto& c : near.corner)
+            nearest_m = std::min(
+                nearest_m,
+                ref::nearest(near.vertex[c[0]], near.vertex[c[1]], near.vertex[c[2]], proxy_m).distance);
+        const double in_m = ball_.radius - m - nearest_m;
+        note(promises_.free, in_m, 0.5 * m);
+        if (in_m > 0.5 * m) return;  // in many triangles at once, where rest has no meaning
+        const ref::Judgement j = ref::judge(near, ball_, proxy_m, goal_m, 3.0 * m);
         const bool settled = contact.state == ContactState::settled;
         if (settled) note(promises_.settled, j.unborne, 2.0 * m);
         if (plain()) {

@@ -178,9 +178,9 @@ void SurfaceContact::note_clear(const Contact& contact, const Vec3& begin_m) noe
     };
     std::size_t above = 0;
     easy_.set_clear(proxy_m_, 0.0);
-    while (
-        stays && above < std::min(count, EasyStep::kPlanes) &&
-        easy_.above(mesh_, triangle[above], proxy_m_, settings_.radius_m, RestProof::kBorderMargins * settings_.margin_m))
+    while (stays && above < std::min(count, EasyStep::kPlanes) &&
+           easy_.above(mesh_, triangle[above], proxy_m_, settings_.radius_m,
+                       RestProof::kBorderMargins * settings_.margin_m))
         ++above;
     easy_.limit_clear(std::min(free_m(above), collected) - settings_.margin_m);
 }

@@ -161,6 +161,11 @@ void SurfaceContact::seat(const Vec3& goal_m) noexcept {
         proxy_m_ +=
             (settings_.radius_m - nearest.distance_m) / nearest.distance_m * (proxy_m_ - nearest.point_m);
     }
+    // No room outside, for example in a gap narrower than the ball: inside, it is free.
+    nearest = mesh_.nearest(proxy_m_, settings_.radius_m, nearest.triangle, kSeatVisits);
+    const bool in_triangles = nearest.triangle != SurfacePoint::kNone &&
+                              nearest.distance_m < settings_.radius_m - 0.5 * settings_.margin_m;
+    if (in_triangles && depth >= settings_.radius_m) proxy_m_ = goal_m;
 }
 
 }  // namespace tact
