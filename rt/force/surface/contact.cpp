@@ -14,6 +14,8 @@ constexpr double kGoesOn = 1.5;  // next reach after a cut move, in lengths of i
 constexpr double kSlidesOn = 1.15;
 constexpr double kStaysSteps = 3.0;  // a facet that holds for so many steps is worth a list of its neighbours
 constexpr int kRounds = 4;
+constexpr int kNewtonSteps = 2;
+constexpr double kNewtonMargins = 16.0, kNewtonRadii = 0.1;
 constexpr double kRestingMargins = 0.02;
 constexpr double kNearerMargins = 0.05;
 constexpr double kBorder = 0.1;  // margins: touches are judged again in double precision
@@ -44,21 +46,38 @@ void SurfaceContact::use(const SurfaceMesh& mesh) noexcept {
 }
 
 // Tries to prove rest after a move from the last query: with all triangles that the ball may touch, first those that bear
-// the pull as far as single precision tells.
-bool SurfaceContact::prove(const HalfSpaces::Solution& bearing, const Vec3& moved_m) noexcept {
-    proof_.begin(settings_.radius_m, settings_.margin_m);
-    for (std::size_t i = 0; i < bearing.active_count; ++i)
-        (void)proof_.add(mesh_, half_spaces_.triangle(bearing.active[i].half_space), proxy_m_);
+// the pull as far as single precision tells. Without friction, up to two short steps to the minimum replace whole moves.
+bool SurfaceContact::prove(const HalfSpaces::Solution& bearing, Vec3 moved_m) noexcept {
     // A facet rests a margin above an edge.
     const double slack =
         (1.0 + RestProof::kBandMargins + kBorder) * settings_.margin_m + kBoundSlack * settings_.radius_m;
-    std::array<std::uint32_t, 4 * RestProof::kTouches> near;
-    const std::size_t count = half_spaces_.near_after(moved_m, slack, near);
-    for (std::size_t i = 0; i < count; ++i) {
-        if (!proof_.add(mesh_, near[i], proxy_m_)) break;
+    const double newton_most_m =
+        std::min(kNewtonMargins * settings_.margin_m, kNewtonRadii * settings_.radius_m);
+    const Vec3 before_m = proxy_m_;
+    for (int attempt = 0;; ++attempt) {
+        proof_.begin(settings_.radius_m, settings_.margin_m);
+        for (std::size_t i = 0; i < bearing.active_count; ++i)
+            (void)proof_.add(mesh_, half_spaces_.triangle(bearing.active[i].half_space), proxy_m_);
+        std::array<std::uint32_t, 4 * RestProof::kTouches> near;
+        const std::size_t count = half_spaces_.near_after(moved_m, slack, near);
+        for (std::size_t i = 0; i < count; ++i) {
+            if (!proof_.add(mesh_, near[i], proxy_m_)) break;
+        }
+        proof_.solve(goal_m_ - proxy_m_);
+        const bool touches = proof_.lift_m().squaredNorm() > 0.0;
+        if (touches && proof_.holds(settings_.friction)) {
+            way_m_ += (proxy_m_ - before_m).norm();
+            return true;
+        }
+        if (!touches || settings_.friction > 0.0 || attempt == kNewtonSteps) break;
+        const Vec3 newton_m = proof_.shape().newton_m;
+        const double length = newton_m.norm();
+        if (!(length > 0.0 && length <= newton_most_m)) break;
+        proxy_m_ += newton_m;
+        moved_m += newton_m;
     }
-    proof_.solve(goal_m_ - proxy_m_);
-    return proof_.lift_m().squaredNorm() > 0.0 && proof_.holds(settings_.friction);
+    proxy_m_ = before_m;
+    return false;
 }
 
 // The move of a touching ball with friction, after touch_all().

@@ -38,7 +38,9 @@ bool RestProof::add(const SurfaceMesh& mesh, std::uint32_t triangle, const Vec3&
             // A part is a distance from the border over the triangle's height there.
             const double longest =
                 std::sqrt(std::max({ab.squaredNorm(), bc.squaredNorm(), (ab + bc).squaredNorm()}));
-            touch.border = !(at.part.minCoeff() * std::sqrt(square) > border * longest);
+            touch.inset_m =
+                longest > 0.0 ? std::max(at.part.minCoeff(), 0.0) * std::sqrt(square) / longest : 0.0;
+            touch.border = !(touch.inset_m > border);
             touch.normal = std::copysign(1.0 / std::sqrt(square), height) * across;
             touch.distance_m = std::abs(height);
         }
@@ -99,7 +101,7 @@ void RestProof::solve(const Vec3& pull_m) noexcept {
 bool RestProof::holds(double friction) const noexcept {
     const double left = residual_m_.norm(), push = lift_m_.norm();
     if (!(left <= friction * push + margin_m_)) return false;
-    if (friction <= 0.0) return left <= curvature() * margin_m_;
+    if (friction <= 0.0) return left <= shape().curvature * margin_m_;
     // Friction bears nothing along the normal: the touch itself has to be exact.
     for (std::size_t i = 0; i < count_; ++i) {
         const Touch& t = touch_[i];
@@ -120,44 +122,49 @@ bool RestProof::continued(std::size_t touch) const noexcept {
     return false;
 }
 
-// Of the distance to the goal (half its square), less the weights times the distances to the edges, along the directions
-// that keep the touch; the smallest. 0: not stable.
-double RestProof::curvature() const noexcept {
+// The distance to the goal (half its square), less the weights times the distances to the edges, along the directions that
+// keep the touch: the smallest curvature, and Newton's step to its minimum.
+RestProof::Shape RestProof::shape() const noexcept {
     const double least = kActive * lift_m_.norm();
     std::array<Vec3, 2> normal;
     std::size_t normals = 0;
     bool curved = false;
+    Eigen::Matrix3d bend = Eigen::Matrix3d::Zero();
     for (std::size_t i = 0; i < count_; ++i) {
         const Touch& t = touch_[i];
         if (t.weight_m <= least) continue;
-        curved |= !t.flat;
-        if (t.border && !continued(i)) return 0.0;
+        // The residual may lead off the facet.
+        if (t.flat && t.inset_m <= residual_m_.norm() + kBorderMargins * margin_m_ && !continued(i))
+            return {0.0, residual_m_};
+        if (!t.flat) {
+            curved = true;
+            bend +=
+                t.weight_m / t.distance_m *
+                (Eigen::Matrix3d::Identity() - t.normal * t.normal.transpose() - t.edge * t.edge.transpose());
+        }
         if (normals == 0) {
             normal[normals++] = t.normal;
         } else if (normals == 1) {
             const Vec3 both = normal[0].cross(t.normal);
             if (both.squaredNorm() > kParallel) normal[normals++] = both.normalized();
         } else if (std::abs(normal[1].dot(t.normal)) > kIndependent) {
-            return 1.0;  // three independent normals fix the place
+            return {1.0, residual_m_};  // three independent normals fix the place
         }
     }
-    if (!curved) return 1.0;
-    Eigen::Matrix3d bend = Eigen::Matrix3d::Zero();
-    for (std::size_t i = 0; i < count_; ++i) {
-        const Touch& t = touch_[i];
-        if (t.flat || t.weight_m <= least) continue;
-        bend += t.weight_m / t.distance_m *
-                (Eigen::Matrix3d::Identity() - t.normal * t.normal.transpose() - t.edge * t.edge.transpose());
-    }
-    double most = 0.0;
+    if (!curved) return {1.0, residual_m_};
     if (normals == 2) {
-        most = normal[1].dot(bend * normal[1]);
-    } else {
-        const Vec3 u = normal[0].unitOrthogonal(), v = normal[0].cross(u);
-        const double a = u.dot(bend * u), b = u.dot(bend * v), c = v.dot(bend * v);
-        most = 0.5 * (a + c) + std::hypot(0.5 * (a - c), b);
+        const Vec3& u = normal[1];
+        const double left = 1.0 - u.dot(bend * u);
+        if (left < kStable) return {};
+        return {left, residual_m_ + u.dot(residual_m_) * (1.0 / left - 1.0) * u};
     }
-    return 1.0 - most >= kStable ? 1.0 - most : 0.0;
+    const Vec3 u = normal[0].unitOrthogonal(), v = normal[0].cross(u);
+    const double a = 1.0 - u.dot(bend * u), b = -u.dot(bend * v), c = 1.0 - v.dot(bend * v);
+    const double left = 0.5 * (a + c) - std::hypot(0.5 * (a - c), b);
+    if (left < kStable) return {};
+    const double along_u = u.dot(residual_m_), along_v = v.dot(residual_m_), det = a * c - b * b;
+    const double to_u = (c * along_u - b * along_v) / det, to_v = (a * along_v - b * along_u) / det;
+    return {left, residual_m_ + (to_u - along_u) * u + (to_v - along_v) * v};
 }
 
 }  // namespace tact

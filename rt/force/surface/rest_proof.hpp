@@ -40,10 +40,10 @@ public:
         Vec3 normal = Vec3::Zero();
         Vec3 edge = Vec3::Zero();  // unit, if it touches an edge
         double gap_m = 0.0, distance_m = 0.0, weight_m = 0.0;
+        double inset_m = 0.0;  // of a flat touch: at most its distance from the border
         std::uint32_t triangle = 0;
-        bool flat = false;  // over the inside
-        bool border =
-            false;  // flat, and on the border: stable only together with the next triangle of the plane
+        bool flat = false;    // over the inside
+        bool border = false;  // flat, on the border: stable only together with the next triangle of the plane
     };
 
     void begin(double radius_m, double margin_m) noexcept TACT_RT {
@@ -63,6 +63,11 @@ public:
     [[nodiscard]] const Vec3& residual_m() const noexcept TACT_RT { return residual_m_; }
     // Sum of weight_m * normal.
     [[nodiscard]] const Vec3& lift_m() const noexcept TACT_RT { return lift_m_; }
+    struct Shape {
+        double curvature = 0.0;        // at most 1; 0: not stable
+        Vec3 newton_m = Vec3::Zero();  // to the minimum; zero if unknown
+    };
+    [[nodiscard]] Shape shape() const noexcept TACT_RT;
     // The touched triangle, if it is the only one and touched over its inside; else null.
     [[nodiscard]] const Touch* single_facet() const noexcept TACT_RT {
         return count_ == 1 && touch_[0].flat && !touch_[0].border && touch_[0].weight_m > 0.0 ? touch_.data()
@@ -71,8 +76,6 @@ public:
 
 private:
     [[nodiscard]] bool continued(std::size_t touch) const noexcept TACT_RT;
-    [[nodiscard]] double curvature() const noexcept TACT_RT;
-
     double radius_m_ = 0.0, margin_m_ = 0.0;
     std::array<Touch, kTouches> touch_;
     std::size_t count_ = 0;
