@@ -47,7 +47,7 @@ void SurfaceContact::use(const SurfaceMesh& mesh) noexcept {
 
 // Tries to prove rest after a move from the last query: with all triangles that the ball may touch, first those that bear
 // the pull as far as single precision tells. Without friction, up to two short steps to the minimum replace whole moves.
-bool SurfaceContact::prove(const HalfSpaces::Solution& bearing, Vec3 moved_m) noexcept {
+bool SurfaceContact::prove(const HalfSpaces::Solution& bearing, Vec3 moved_m, double reach_m) noexcept {
     // A facet rests a margin above an edge.
     const double slack =
         (1.0 + RestProof::kBandMargins + kBorder) * settings_.margin_m + kBoundSlack * settings_.radius_m;
@@ -72,7 +72,8 @@ bool SurfaceContact::prove(const HalfSpaces::Solution& bearing, Vec3 moved_m) no
         if (!touches || settings_.friction > 0.0 || attempt == kNewtonSteps) break;
         const Vec3 newton_m = proof_.shape().newton_m;
         const double length = newton_m.norm();
-        if (!(length > 0.0 && length <= newton_most_m)) break;
+        // Not beyond the reach of the query.
+        if (!(length > 0.0 && length <= newton_most_m && (moved_m + newton_m).norm() <= reach_m)) break;
         proxy_m_ += newton_m;
         moved_m += newton_m;
     }
@@ -243,7 +244,7 @@ Contact SurfaceContact::follow(const Vec3& goal_m, std::uint32_t moves_max,
         const double tolerance = 3e-7 * (request.norm() + settings_.radius_m) + 1e-3 * settings_.margin_m;
         bool slides = false;
         if (rubs || in_circle) {
-            if (prove(half_spaces_.solve_nearest(request, tolerance), Vec3::Zero())) {
+            if (prove(half_spaces_.solve_nearest(request, tolerance), Vec3::Zero(), reach_now)) {
                 settle(begin_m, contact);
                 break;
             }
@@ -294,7 +295,7 @@ Contact SurfaceContact::follow(const Vec3& goal_m, std::uint32_t moves_max,
         }
         left = allowed - (proxy_m_ - begin_m).norm();
         if (!cut) {
-            if (prove(move, moved_m)) {
+            if (prove(move, moved_m, reach_now)) {
                 settle(begin_m, contact);
                 break;
             }

@@ -101,7 +101,7 @@ private:
     void query(double& reach_m, double most_m, std::uint32_t& triangles) noexcept TACT_RT;
     bool half_space(std::uint32_t triangle, const TriangleQueries& seen, std::size_t lane) noexcept TACT_RT;
     bool step_easily(const Vec3& goal_m, double allowed_m, Contact& contact) noexcept TACT_RT;
-    bool prove(const HalfSpaces::Solution& bearing, Vec3 moved_m) noexcept TACT_RT;
+    bool prove(const HalfSpaces::Solution& bearing, Vec3 moved_m, double reach_m) noexcept TACT_RT;
     void settle(const Vec3& begin_m, Contact& contact) noexcept TACT_RT;
     void note_clear(const Contact& contact, const Vec3& begin_m) noexcept TACT_RT;
     void list_proof(Contact& contact) const noexcept TACT_RT;
