@@ -234,7 +234,6 @@ BakedDocking bake_docking(const DockingInput& input, SceneWriter& out, const Pro
                     i, body.density_home_sigma, 100.0 * body.inside_home));
     }
     DensityGrid force_map_grid;
-    std::optional<DensityMap> felt;
     if (input.force_map_resolution_m) {
         force_map_grid =
             low_pass(grid, statistics.background, *input.force_map_resolution_m, part(progress, 0.9, 0.92));
@@ -242,16 +241,19 @@ BakedDocking bake_docking(const DockingInput& input, SceneWriter& out, const Pro
             printed("force map: smoothed with a Gaussian of sigma = 0.225 * %.4g Å; sigma and background "
                     "are those of the original map",
                     *input.force_map_resolution_m / kAngstromM));
-        felt.emplace(force_map_grid, statistics.background, statistics.sigma);
     } else {
         say("force map: not smoothed");
     }
-    const DockingGain gain = docking_gain(felt ? *felt : map, input.structures, codebooks,
-                                          meta.world_per_model, {}, part(progress, 0.92, 0.98));
+    const LevelMaps level_maps = make_level_maps(
+        input.force_map_resolution_m ? force_map_grid : grid, statistics.background, statistics.sigma,
+        meta.resolution_m, level_smoothings_m(input.structures, codebooks, meta.resolution_m));
+    const DockingGain gain = docking_gain(level_maps, input.structures, codebooks, meta.world_per_model, {},
+                                          part(progress, 0.92, 0.98));
     meta.energy_j_per_sigma = gain.energy_j_per_sigma;
     say(printed(
-        "gain: %.4g J per sigma; force %.3g N (99th percentile near the density), stiffness up to %.3g N/m",
-        gain.energy_j_per_sigma, gain.force_n_p99, gain.stiffness_n_m_max));
+        "gain: %.4g J per sigma; force %.3g N (99th percentile near the density), stiffness up to %.3g N/m "
+        "and %.3g N m/rad",
+        gain.energy_j_per_sigma, gain.force_n_p99, gain.stiffness_n_m_max, gain.torque_n_m_rad_max));
 
     report(progress, 0.98, "packing the scene");
     write_meta(out, meta, note);

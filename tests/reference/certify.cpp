@@ -8,6 +8,9 @@ namespace tact {
 reference::Promises certify(const SceneFile& scene, const CertifySettings& settings) {
     reference::Promises promises;
     switch (read_meta(scene).kind) {
+        case SceneKind::docking:
+            certify_docking(scene, settings, promises);
+            break;
         case SceneKind::surface:
             certify_surface(scene, settings, promises);
             break;

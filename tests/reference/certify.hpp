@@ -20,6 +20,7 @@ struct CertifySettings {
 // By the kind of the scene.
 [[nodiscard]] reference::Promises certify(const SceneFile& scene, const CertifySettings& settings);
 
+void certify_docking(const SceneFile& scene, const CertifySettings& settings, reference::Promises& promises);
 void certify_surface(const SceneFile& scene, const CertifySettings& settings, reference::Promises& promises);
 void certify_drilling(const SceneFile& scene, const CertifySettings& settings, reference::Promises& promises);
 

@@ -2,6 +2,7 @@
 tact_test(unit/force_fade_test.cpp USES force)
 tact_test(unit/force_docking_test.cpp USES force)
 tact_test(unit/force_docking_levels_test.cpp USES force)
+tact_test(unit/force_docking_stiffness_test.cpp USES force scene reference)
 tact_test(unit/force_partial_sums_test.cpp USES force SYSTEM rapidcheck)
 tact_test(unit/force_clash_test.cpp USES force SYSTEM rapidcheck)
 tact_test(unit/force_docking_options_test.cpp USES force)

@@ -55,7 +55,9 @@ struct Scene {
         grid.values = simulated_map(grid, both, meta.resolution_m);
         meta.map_sigma = rms_of(grid);
         meta.energy_j_per_sigma =
-            docking_gain(DensityMap(grid, 0.0, meta.map_sigma), structures, codebooks, meta.world_per_model)
+            docking_gain(make_level_maps(grid, 0.0, meta.map_sigma, meta.resolution_m,
+                                         level_smoothings_m(structures, codebooks, meta.resolution_m)),
+                         structures, codebooks, meta.world_per_model)
                 .energy_j_per_sigma;
     }
 };

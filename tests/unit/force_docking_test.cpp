@@ -16,12 +16,16 @@ namespace {
 using namespace rod;
 
 INSTANTIATE_TEST_SUITE_P(Docking, ForceModelContract,
-                         testing::Values(ForceModelCase{.name = "rod",
-                                                        .make = [] { return make_model(); },
-                                                        .grip = kGrip,
-                                                        .touch = kTouch,
-                                                        .force_n_min = 0.05,
-                                                        .step_n_max = 0.05}),
+                         testing::Values(ForceModelCase{
+                             .name = "rod",
+                             .make = [] { return make_model(); },
+                             .grip = kGrip,
+                             .touch = kTouch,
+                             .force_n_min = 0.05,
+                             .step_n_max = 0.05,
+                             // The smallest levels of the rod are nearly equally wrong, and the
+                             // offset of a level change adds to the error.
+                             .items_tolerance = 1e-6}),
                          [](const auto& tested) { return tested.param.name; });
 
 // -k_E sum w rho, in double precision, one atom at a time.

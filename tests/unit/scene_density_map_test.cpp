@@ -46,15 +46,23 @@ double cardinal(double t) {
     return -6.0 * z / (1.0 - z * z) * sum;
 }
 
+// The same for values sharpened by 1 + (1 - cos w)^3 / 54.
+double sharp_cardinal(double t) {
+    double sum = cardinal(t);
+    const double taps[] = {2.5, -1.875, 0.75, -0.125};
+    for (int k = -3; k <= 3; ++k) sum += taps[std::abs(k)] / 54.0 * cardinal(t - k);
+    return sum;
+}
+
 double reference(const DensityGrid& grid, double background, double sigma, const Vec3& point) {
     const Vec3 t = (point - grid.origin_m).cwiseQuotient(grid.spacing_m);
     double sum = 0.0;
     for (std::uint32_t z = 0; z < grid.size[2]; ++z) {
         for (std::uint32_t y = 0; y < grid.size[1]; ++y) {
-            const double yz = cardinal(t.z() - z) * cardinal(t.y() - y);
+            const double yz = sharp_cardinal(t.z() - z) * sharp_cardinal(t.y() - y);
             for (std::uint32_t x = 0; x < grid.size[0]; ++x) {
-                sum +=
-                    yz * cardinal(t.x() - x) * (static_cast<double>(grid.at(x, y, z)) - background) / sigma;
+                sum += yz * sharp_cardinal(t.x() - x) * (static_cast<double>(grid.at(x, y, z)) - background) /
+                       sigma;
             }
         }
     }
@@ -71,9 +79,11 @@ Vec3 numeric_gradient(const DensityMap& map, const Vec3& p) {
     return gradient;
 }
 
-TEST(DensityMap, interpolates_every_voxel) {
+TEST(DensityMap, passes_through_every_voxel_if_asked_to_interpolate) {
     const DensityGrid grid = noise_grid({7, 9, 8}, 1);
-    const DensityMap map(grid, 2.0, 1.5);
+    DensityMap::Options options;
+    options.interpolating = true;
+    const DensityMap map(grid, 2.0, 1.5, options);
     Vec3 gradient;
     for (std::uint32_t z = 0; z < 8; ++z) {
         for (std::uint32_t y = 0; y < 9; ++y) {
@@ -94,6 +104,26 @@ TEST(DensityMap, agrees_with_the_cardinal_spline_inside_at_the_border_and_outsid
     for (int i = 0; i < 300; ++i) {
         const Vec3 p = in_voxels(grid, Vec3(place(random), place(random), place(random)));
         EXPECT_NEAR(map.sample(p, gradient), reference(grid, 2.0, 1.5, p), 5e-4);
+    }
+}
+
+// A wave along x, with the slope projected on that of the wave over a period in fine steps.
+TEST(DensityMap, the_slope_of_waves_of_three_voxels_and_more_is_right_on_average) {
+    for (const std::uint32_t voxels : {3U, 4U, 5U, 6U, 10U}) {
+        DensityGrid grid = noise_grid({120, 40, 40}, 1);
+        const double k = 2.0 * M_PI / voxels;
+        for (std::size_t i = 0; i < grid.values.size(); ++i)
+            grid.values[i] = static_cast<float>(std::cos(k * static_cast<double>(i % 120)));
+        const DensityMap map(grid, 0.0, 1.0);
+        double along = 0.0, whole = 0.0;
+        for (int i = 0; i < 500; ++i) {
+            const double x = 60.0 + voxels * (i + 0.5) / 500.0, wave = -k * std::sin(k * x);
+            Vec3 gradient;
+            (void)map.sample(in_voxels(grid, Vec3(x, 20.3, 19.6)), gradient);
+            along += gradient.x() * grid.spacing_m.x() * wave;
+            whole += wave * wave;
+        }
+        EXPECT_NEAR(along / whole, 1.0, 0.01) << voxels << " voxels";
     }
 }
 

@@ -44,11 +44,15 @@ Structure one_atom() {
     return s;
 }
 
+LevelMaps map_of(const DensityGrid& grid, double background, double sigma) {
+    return make_level_maps(grid, background, sigma, 0.0, {{}});
+}
+
 const std::vector<Structure> kStructures{one_atom()};
 const std::vector<Codebook> kNoCodebook(1);
 
 TEST(DockingGain, stiffness_reaches_its_limit_for_a_sharp_blob) {
-    const DensityMap map(blob(), 0.0, 1.0);
+    const LevelMaps map = map_of(blob(), 0.0, 1.0);
     const double scale = 0.1 / (150.0 * kA);
     GainSettings settings;
     settings.force_n = 1000.0;
@@ -59,7 +63,7 @@ TEST(DockingGain, stiffness_reaches_its_limit_for_a_sharp_blob) {
 }
 
 TEST(DockingGain, force_reaches_its_limit_for_a_wide_blob) {
-    const DensityMap map(blob(), 0.0, 1.0);
+    const LevelMaps map = map_of(blob(), 0.0, 1.0);
     const double scale = 0.1 / (150.0 * kA);
     GainSettings settings;
     settings.stiffness_n_m = 1e9;
@@ -70,7 +74,7 @@ TEST(DockingGain, force_reaches_its_limit_for_a_wide_blob) {
 }
 
 TEST(DockingGain, both_limits_hold) {
-    const DensityMap map(blob(), 0.0, 1.0);
+    const LevelMaps map = map_of(blob(), 0.0, 1.0);
     for (const double scale : {1e6, 1e7, 1e8}) {
         const DockingGain gain = docking_gain(map, kStructures, kNoCodebook, scale);
         EXPECT_LE(gain.force_n_p99, 2.0 * (1.0 + 1e-9));
@@ -81,17 +85,17 @@ TEST(DockingGain, both_limits_hold) {
 
 TEST(DockingGain, does_not_depend_on_the_unit_of_the_map) {
     DensityGrid grid = blob();
-    const DockingGain a = docking_gain(DensityMap(grid, 0.0, 1.0), kStructures, kNoCodebook, 1e7);
+    const DockingGain a = docking_gain(map_of(grid, 0.0, 1.0), kStructures, kNoCodebook, 1e7);
     for (float& v : grid.values) v = 1000.0F * v + 50.0F;
-    const DockingGain b = docking_gain(DensityMap(grid, 50.0, 1000.0), kStructures, kNoCodebook, 1e7);
+    const DockingGain b = docking_gain(map_of(grid, 50.0, 1000.0), kStructures, kNoCodebook, 1e7);
     EXPECT_NEAR(a.energy_j_per_sigma, b.energy_j_per_sigma, 1e-3 * a.energy_j_per_sigma);
 }
 
 TEST(DockingGain, an_empty_map_is_refused) {
     DensityGrid grid = blob();
     std::fill(grid.values.begin(), grid.values.end(), 0.0F);
-    EXPECT_THROW(docking_gain(DensityMap(grid, 0.0, 1.0), kStructures, kNoCodebook, 1e7), StartupError);
-    EXPECT_THROW(docking_gain(DensityMap(blob(), 0.0, 1.0), {}, {}, 1e7), StartupError);
+    EXPECT_THROW(docking_gain(map_of(grid, 0.0, 1.0), kStructures, kNoCodebook, 1e7), StartupError);
+    EXPECT_THROW(docking_gain(map_of(blob(), 0.0, 1.0), {}, {}, 1e7), StartupError);
 }
 
 }  // namespace

@@ -5,7 +5,7 @@
 //
 // The values serve as the spline's coefficients, not as its interpolation points. This smooths the field and
 // keeps it from going below zero at its edge. Applying the B-spline (1/6, 4/6, 1/6 along each axis) beforehand
-// cancels the prefilter of DensityMap.
+// cancels the interpolating prefilter of DensityMap.
 #include "rt/force/docking/clash_field.hpp"
 
 #include <algorithm>
@@ -276,7 +276,7 @@ ClashField::Made ClashField::make(const Structure& structure) {
     const Vec3 width_m = g.voxel_m * Vec3(static_cast<double>(g.n[0] - 1), static_cast<double>(g.n[1] - 1),
                                           static_cast<double>(g.n[2] - 1));
     // A spline ends two voxels beyond its last coefficient that is not zero; three, for the corners.
-    return {DensityMap(g.grid, 0.0, 1.0),
+    return {DensityMap(g.grid, 0.0, 1.0, {.interpolating = true}),
             std::move(points),
             std::move(runs),
             spread_out.weight,

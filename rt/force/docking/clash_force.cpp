@@ -22,11 +22,11 @@
 // bonds were cut, the domains of 1GTE repel each other with 0.1 N.
 #include "rt/force/docking/clash_force.hpp"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 
 #include "ipc/base/random.hpp"
+#include "ipc/scene/density/climb.hpp"
 
 namespace tact {
 
@@ -110,7 +110,7 @@ ClashGains choose_clash_gains(std::span<const ClashField> fields, double world_p
     ClashGains gains;
     if (fields.empty()) return gains;
     SeededRandom random(20261121);
-    double most = 0.0;
+    double most = 0.0, most_turn = 0.0;
     std::size_t one = 0, two = 0;
     const int pairs = static_cast<int>(fields.size() * (fields.size() + 1) / 2);
     for (int k = 0; k < std::max(kEncounters, 6 * pairs); ++k) {
@@ -126,20 +126,30 @@ ClashGains choose_clash_gains(std::span<const ClashField> fields, double world_p
             const double middle_m = 0.5 * (near_m + far_m);
             (felt(middle_m * side).depth_model_m > depth_m ? near_m : far_m) = middle_m;
         }
-        Eigen::Matrix3d slope;
+        Eigen::Matrix3d slope, turn;
+        constexpr double kTurnRad = 5e-3;
+        const auto twisted = [&](const Vec3& turn_rad) {
+            const Quat q = (quat_from_rotation_vector(turn_rad) * start.q).normalized();
+            return clash_force({&fields[one], {far_m * side, q}}, {&other, 1}, world_per_model, gains)
+                .wrench_world.torque_n_m;
+        };
         for (int a = 0; a < 3; ++a) {
+            turn.col(a) =
+                (twisted(kTurnRad * Vec3::Unit(a)) - twisted(-kTurnRad * Vec3::Unit(a))) / (2.0 * kTurnRad);
             const Vec3 step_m = 0.5e-10 * Vec3::Unit(a);
             slope.col(a) = (felt(far_m * side + step_m).wrench_world.force_n -
                             felt(far_m * side - step_m).wrench_world.force_n) /
                            (1e-10 * world_per_model);
         }
-        const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(0.5 * (slope + slope.transpose()),
-                                                                    Eigen::EigenvaluesOnly);
-        most = std::max(most, solver.eigenvalues().cwiseAbs().maxCoeff());
+        most = std::max(most, spectral_norm(0.5 * (slope + slope.transpose())));
+        most_turn = std::max(most_turn, spectral_norm(0.5 * (turn + turn.transpose())));
         two = two + 1 < fields.size() ? two + 1 : (one = one + 1 < fields.size() ? one + 1 : 0);
     }
+    const double before_n_m = gains.stiffness_n_m;
     if (most > 0.0) gains.stiffness_n_m *= kStiffnessMaxNM / (kMargin * most);
     gains.stiffness_n_m = std::min(gains.stiffness_n_m, kStiffnessMaxNM);
+    gains.stiffness_n_m_max = kStiffnessMaxNM;
+    gains.torque_n_m_rad_max = kMargin * most_turn * std::max(1.0, gains.stiffness_n_m / before_n_m);
     return gains;
 }
 

@@ -24,6 +24,8 @@ namespace tact {
 struct ClashGains {
     double force_n = 2.0;          // F
     double stiffness_n_m = 100.0;  // K
+    // Largest stiffness over the encounters of choose_clash_gains(), with its margin.
+    double stiffness_n_m_max = 300.0, torque_n_m_rad_max = 0.0;
 };
 
 struct ClashBody {

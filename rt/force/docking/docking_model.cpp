@@ -10,7 +10,6 @@
 #include <typeinfo>
 #include <utility>
 
-#include "ipc/scene/density/docking_gain.hpp"
 #include "rt/force/docking/reach.hpp"
 
 #include "ipc/topics/command.hpp"
@@ -18,7 +17,7 @@
 namespace tact {
 namespace {
 
-constexpr float kLevelJump = 0.01F;  // change of the knob in one step; its slew rate is below
+constexpr float kLevelJump = 0.011F;  // change of the knob in one step; its slew rate is below
 
 // 0: a command for another system.
 std::uint32_t option_of(std::uint8_t command) noexcept {
@@ -48,7 +47,10 @@ DockingModel::DockingModel(const SceneMeta& meta, const DensityGrid& grid,
     clash_gains_ = parts_->clash_gains;
     clash_gains_.force_n *= settings.force_scale;
     clash_gains_.stiffness_n_m *= settings.force_scale;
+    clash_gains_.stiffness_n_m_max *= settings.force_scale;
+    clash_gains_.torque_n_m_rad_max *= settings.force_scale;
     error_scale_.fill(1.0);
+    bends_scale_.fill({1.0, 1.0});
 }
 
 DockingModel::DockingModel(const DockingModel& like, const ModelBodies& bodies)
@@ -65,11 +67,12 @@ DockingModel::DockingModel(const DockingModel& like, const ModelBodies& bodies)
     force_map_ = built_.get();
     bodies_.list() = bodies;
     error_scale_.fill(1.0);
+    bends_scale_.fill({1.0, 1.0});
 }
 
 LevelBlend DockingModel::blend() const noexcept {
     const std::size_t structure = bodies_.structure();
-    return {.map = force_map_->map,
+    return {.maps = force_map_->maps,
             .levels = parts_->levels[structure],
             .metrics = force_map_->metrics[structure],
             .error_scale = error_scale_[structure],
@@ -96,23 +99,47 @@ std::uint32_t DockingModel::items(float fidelity) const noexcept {
     return bodies_.in_hand() ? blend().items(fidelity) : 0;
 }
 
+ModelStiffness DockingModel::of_clash() const noexcept {
+    const bool clash = (bodies_.list().options_asked & kDockingClash) != 0;
+    if (!clash || (stepped_ && !at_others_)) return {};
+    return {.force_n_m = clash_gains_.stiffness_n_m_max, .torque_n_m_rad = clash_gains_.torque_n_m_rad_max};
+}
+
 ModelStiffness DockingModel::stiffness() const noexcept {
-    const double scene = parts_->meta.energy_j_per_sigma;
-    const double scale = scene > 0.0 ? energy_j_per_sigma_ / scene : 1.0;
-    const bool clash = (bodies_.list().options & kDockingClash) != 0;
-    return {.force_n_m = GainSettings{}.stiffness_n_m * scale + (clash ? clash_gains_.stiffness_n_m : 0.0)};
+    if (!bodies_.in_hand()) return {};
+    const LevelBlend levels = blend();
+    const BendNorms& scale = bends_scale_[bodies_.structure()];
+    BendNorms bends;
+    if (stepped_) {
+        const Pose& body = bodies_.list().T_model_body[bodies_.list().active];
+        bends = stiffness_audit_.bound(levels, level_before_, body, scale);
+    }
+    // Any level, or any smaller one, may have been used.
+    const std::size_t unknown = !stepped_    ? levels.levels.size()
+                                : fell_back_ ? levels.plan(level_before_).lower
+                                             : 0;
+    for (std::size_t l = 0; l < unknown; ++l) {
+        const BendNorms& most = levels.metrics[l].bends;
+        bends.by_shift = std::max(bends.by_shift, scale.by_shift * most.by_shift);
+        bends.by_turn = std::max(bends.by_turn, scale.by_turn * most.by_turn);
+    }
+    const double scale_2 = parts_->meta.world_per_model * parts_->meta.world_per_model;
+    const ModelStiffness clash = of_clash();
+    return {.force_n_m = energy_j_per_sigma_ / scale_2 * bends.by_shift + clash.force_n_m,
+            .torque_n_m_rad = energy_j_per_sigma_ * bends.by_turn + clash.torque_n_m_rad};
 }
 
 StepResult DockingModel::evaluate(const Pose& T_model_body, const Budget& budget) const noexcept {
     if (T_model_body.finite() && !bodies_.in_hand()) return {};
     StepResult result = blend().evaluate(T_model_body, budget);
-    add_clash(T_model_body, result);
+    static_cast<void>(add_clash(T_model_body, result));
     return result;
 }
 
-void DockingModel::add_clash(const Pose& T_model_body, StepResult& result) const noexcept {
+bool DockingModel::add_clash(const Pose& T_model_body, StepResult& result) const noexcept {
     const ModelBodies& list = bodies_.list();
-    if ((list.options_asked & kDockingClash) == 0 || !bodies_.in_hand() || !T_model_body.finite()) return;
+    if ((list.options_asked & kDockingClash) == 0 || !bodies_.in_hand() || !T_model_body.finite())
+        return false;
     const Instant begin = Monotonic::now();
     std::array<ClashBody, ModelBodies::kMax> others{};
     std::size_t count = 0;
@@ -124,6 +151,7 @@ void DockingModel::add_clash(const Pose& T_model_body, StepResult& result) const
     result.wrench_world.force_n += clash.wrench_world.force_n;
     result.wrench_world.torque_n_m += clash.wrench_world.torque_n_m;
     result.load.cost += Monotonic::now() - begin;
+    return clash.points > 0;
 }
 
 void DockingModel::grip(const Pose& T_world_tool) noexcept {
@@ -179,9 +207,11 @@ StepResult DockingModel::feel(const ToolState& tool, const Budget& budget) noexc
         body.q = (hand.q * q_tool_body_).normalized();
     }
     StepResult clash;  // computed first: only the density can be shortened when time runs out
-    add_clash(body, clash);
+    at_others_ = add_clash(body, clash);
     StepResult result = blend().evaluate(body, budget, &kept_);
     audit(result, body);
+    stiffness_audit_.step(blend(), budget.fidelity, body, step_s(), bends_scale_[bodies_.structure()]);
+    stepped_ = true;
     glide(budget.fidelity, result);
     result.wrench_world.force_n += clash.wrench_world.force_n;
     result.wrench_world.torque_n_m += clash.wrench_world.torque_n_m;
@@ -207,7 +237,7 @@ void DockingModel::audit(const StepResult& result, const Pose& T_model_body) noe
     if (result.status != StepStatus::ok || result.load.recomputed_fraction < 1.0F) return;
     double& scale = error_scale_[bodies_.structure()];
     const double per_newton = 1.0 / std::max(newtons_per_gradient(), 1e-300);
-    if (!audit_.step(force_map_->map, parts_->levels[bodies_.structure()].back(), T_model_body,
+    if (!audit_.step(force_map_->maps.front(), parts_->levels[bodies_.structure()].back(), T_model_body,
                      per_newton * result.wrench_world.force_n, per_newton * result.load.error / scale,
                      result.load.items))
         return;
@@ -219,6 +249,8 @@ void DockingModel::fade(const ForceFade& shown) noexcept {
     fade_.follow(shown);
     glide_.restart();
     audit_.restart();
+    stiffness_audit_.restart();
+    stepped_ = false;
 }
 
 // Fades as above; the next good step takes a new grip.
@@ -303,6 +335,7 @@ bool DockingModel::adopt(const ForceModel& old) noexcept {
     q_tool_body_ = before.q_tool_body_;
     clutched_ = before.clutched_;  // keeps the state of the clutch
     error_scale_ = before.error_scale_;
+    bends_scale_ = before.bends_scale_;
     fade(before.fade_);
     static_cast<void>(choose_density());
     return true;

@@ -38,6 +38,7 @@
 #include "rt/force/docking/force_map.hpp"
 #include "rt/force/docking/level_blend.hpp"
 #include "rt/force/docking/level_glide.hpp"
+#include "rt/force/docking/stiffness_audit.hpp"
 #include "rt/force/force_fade.hpp"
 #include "rt/force/force_model.hpp"
 
@@ -52,7 +53,8 @@ public:
     [[nodiscard]] KnobSpec knob() const noexcept TACT_RT override;
     [[nodiscard]] std::uint32_t items(float fidelity) const noexcept TACT_RT override;
     [[nodiscard]] PathLoad predict(float fidelity) const noexcept TACT_RT override;
-    // Limit used for the scene's gain (ipc/scene/density/docking_gain.hpp), plus that of the clash force.
+    // Of the density at the level of the last step: measured at rest (stiffness_audit.hpp), bounded in motion; plus the bound of
+    // the clash force near other bodies. Before the first step, the largest of all levels.
     [[nodiscard]] ModelStiffness stiffness() const noexcept TACT_RT override;
     void reset(const ToolState& tool) noexcept TACT_RT override;
     StepResult step(const ToolState& tool, const Budget& budget) noexcept TACT_RT override;
@@ -68,12 +70,13 @@ public:
     // Turns options (DockingOption) on or off; constant time, as order(). False: unknown options.
     bool set_options(std::uint32_t options, bool on) noexcept TACT_RT;
 
-    [[nodiscard]] const DensityMap& map() const { return force_map_->map; }
+    [[nodiscard]] const DensityMap& map() const { return force_map_->maps.front(); }
     [[nodiscard]] const SceneMeta& meta() const { return parts_->meta; }
     [[nodiscard]] double energy_j_per_sigma() const { return energy_j_per_sigma_; }
     [[nodiscard]] Pose home() const { return parts_->structures[bodies_.structure()].home(); }
     [[nodiscard]] const ClashGains& clash_gains() const { return clash_gains_; }
     [[nodiscard]] const ErrorAudit& audit() const { return audit_; }
+    [[nodiscard]] const StiffnessAudit& stiffness_audit() const { return stiffness_audit_; }
 
     static constexpr const char* kKnobPath = "docking.force";
 
@@ -84,10 +87,12 @@ private:
         return energy_j_per_sigma_ / parts_->meta.world_per_model;
     }
     [[nodiscard]] LevelBlend blend() const noexcept;  // of the structure in the hand
-    void add_clash(const Pose& T_model_body, StepResult& result) const noexcept;
+    // Returns whether points of other bodies are near.
+    bool add_clash(const Pose& T_model_body, StepResult& result) const noexcept;
     void show_options() noexcept;
     void glide(float fidelity, StepResult& result) noexcept;
     [[nodiscard]] StepResult feel(const ToolState& tool, const Budget& budget) noexcept;
+    [[nodiscard]] ModelStiffness of_clash() const noexcept;
     void audit(const StepResult& result, const Pose& T_model_body) noexcept;
     void grip(const Pose& T_world_tool) noexcept;
     void fade(const ForceFade& shown) noexcept;
@@ -112,7 +117,12 @@ private:
     float level_before_ = 0.0F;
     bool fell_back_ = false;  // the last step used a smaller level than the budget's
     ErrorAudit audit_;
-    std::array<double, ModelBodies::kMax> error_scale_;  // by structure, from audits; at least 1
+    StiffnessAudit stiffness_audit_;
+    bool stepped_ = false;    // the last step had a force of the density
+    bool at_others_ = false;  // the last step had points near other bodies
+    // By structure, from audits; at least 1.
+    std::array<double, ModelBodies::kMax> error_scale_;
+    std::array<BendNorms, ModelBodies::kMax> bends_scale_;
 };
 
 // Reads map, structures and codebooks from the scene.

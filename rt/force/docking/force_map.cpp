@@ -2,9 +2,12 @@
 
 #include <algorithm>
 #include <array>
+#include <utility>
 
+#include "ipc/scene/density/climb.hpp"
 #include "ipc/scene/density/docking_gain.hpp"
 #include "ipc/scene/density/laplacian_map.hpp"
+#include "ipc/scene/density/level_maps.hpp"
 #include "ipc/scene/density/subtracted_map.hpp"
 #include "rt/force/docking/start_pose.hpp"
 
@@ -13,6 +16,9 @@ namespace tact {
 namespace {
 
 constexpr int kCalibrationPoses = 128;
+constexpr int kPosesPerBend = 3;  // of these, one has its stiffness measured
+constexpr int kClimbs = 6, kClimbSums = 150, kClimbSumsAtoms = 60;
+constexpr std::size_t kClimbVectors = 800;
 
 // Draws eight points in the map; returns the densest with a random rotation.
 Pose dense_pose(const DensityMap& map, SeededRandom& random) {
@@ -32,23 +38,51 @@ Pose dense_pose(const DensityMap& map, SeededRandom& random) {
     return pose;
 }
 
+// One structure and its levels in their maps.
+struct Felt {
+    const std::vector<DensityMap>& maps;
+    const std::vector<PointSet>& levels;
+    std::vector<LevelMetrics>& metrics;
+
+    [[nodiscard]] const DensityMap& map_of(std::size_t level) const { return maps[metrics[level].map]; }
+    void add_bends(const Pose& pose) {
+        for (std::size_t l = 0; l < levels.size(); ++l) {
+            const DensityBends bends = map_of(l).bends(levels[l].view(), pose);
+            BendNorms& most = metrics[l].bends;
+            most.by_shift = std::max(most.by_shift, kStiffnessMargin * spectral_norm(bends.by_shift));
+            most.by_turn = std::max(most.by_turn, kStiffnessMargin * spectral_norm(bends.by_turn));
+        }
+    }
+    // Where a start ends that follows its force: some hundreds of vectors first, then all atoms.
+    [[nodiscard]] Pose fit(const Pose& start) const {
+        std::size_t coarse = 0;
+        while (coarse + 1 < levels.size() && levels[coarse].size() < kClimbVectors) ++coarse;
+        const Pose nearby = climbed(map_of(coarse), levels[coarse].view(), start, kClimbSums);
+        return climbed(maps.front(), levels.back().view(), nearby, kClimbSumsAtoms);
+    }
+};
+
 // Errors: three quarters of the poses lie within 15 A and 30 degrees of home, one quarter in dense parts of the map
 // with random rotations. Cost: median of nine timed sums at home.
-std::vector<LevelMetrics> calibrated(const DensityMap& map, const std::vector<PointSet>& levels,
-                                     const Pose& home, double newtons_per_gradient) {
-    std::vector<LevelMetrics> metrics(levels.size());
+void calibrate(Felt felt, const Pose& home, double newtons_per_gradient) {
+    const std::vector<PointSet>& levels = felt.levels;
+    std::vector<LevelMetrics>& metrics = felt.metrics;
     SeededRandom random(20261120);
+    std::vector<Pose> starts{home};
     for (int k = 0; k < kCalibrationPoses; ++k) {
-        const Pose pose = k % 4 == 0 ? dense_pose(map, random)
+        const Pose pose = k % 4 == 0 ? dense_pose(felt.maps.front(), random)
                                      : start_pose(home, 15e-10 * random.uniform(), 0.5236 * random.uniform(),
                                                   random.next());
-        const Vec3 exact = map.sum(levels.back().view(), pose).gradient;
+        if (starts.size() < kClimbs) starts.push_back(pose);
+        const Vec3 exact = felt.maps.front().sum(levels.back().view(), pose).gradient;
         for (std::size_t l = 0; l + 1 < levels.size(); ++l) {
-            const Vec3 off = map.sum(levels[l].view(), pose).gradient - exact;
+            const Vec3 off = felt.map_of(l).sum(levels[l].view(), pose).gradient - exact;
             metrics[l].error_n =
                 std::max(metrics[l].error_n, kErrorMargin * newtons_per_gradient * off.norm());
         }
+        if (k % kPosesPerBend == 0) felt.add_bends(pose);
     }
+    for (const Pose& start : starts) felt.add_bends(felt.fit(start));
     // A smaller level may have a smaller error by chance; the knob requires errors that do not rise with the level.
     for (std::size_t l = levels.size() - 1; l-- > 0;)
         metrics[l].error_n = std::max(metrics[l].error_n, metrics[l + 1].error_n);
@@ -56,13 +90,12 @@ std::vector<LevelMetrics> calibrated(const DensityMap& map, const std::vector<Po
         std::array<Duration, 9> times{};
         for (Duration& time : times) {
             const Instant begin = Monotonic::now();
-            static_cast<void>(map.sum(levels[l].view(), home));
+            static_cast<void>(felt.map_of(l).sum(levels[l].view(), home));
             time = Monotonic::now() - begin;
         }
         std::nth_element(times.begin(), times.begin() + 4, times.end());
         metrics[l].cost = times[4];
     }
-    return metrics;
 }
 
 DensityGrid without_others(const DockingParts& parts, const ModelBodies& bodies) {
@@ -75,6 +108,11 @@ DensityGrid without_others(const DockingParts& parts, const ModelBodies& bodies)
     return subtract_placed(parts.grid, parts.meta.map_background, placed, parts.meta.resolution_m).grid;
 }
 
+double resolution_m(const DockingParts& parts) {
+    const double voxel_m = parts.grid.spacing_m.maxCoeff();
+    return parts.meta.resolution_m > 0.0 ? parts.meta.resolution_m : 4.0 * voxel_m;
+}
+
 double contour_resolution_m(const DockingParts& parts) {
     return std::max(parts.meta.resolution_m, kContourResolutionM);
 }
@@ -83,22 +121,29 @@ double contour_resolution_m(const DockingParts& parts) {
 // units of its root mean square r, so u = r k_E / k_L.
 double laplacian_unit(const DockingParts& parts, const DensityGrid& filtered) {
     const double rms = rms_of(filtered);
+    const DensityMap map(filtered, 0.0, rms);
     std::vector<GainBody> bodies;
-    for (std::size_t s = 0; s < parts.structures.size(); ++s) {
-        std::size_t level = 0;
-        while (level + 1 < parts.levels[s].size() && parts.levels[s][level].size() < kGainVectors) ++level;
-        bodies.push_back({parts.levels[s][level].view(), parts.structures[s].home()});
-    }
-    const DockingGain gain = docking_gain(DensityMap(filtered, 0.0, rms), bodies, parts.meta.world_per_model);
+    for (std::size_t s = 0; s < parts.structures.size(); ++s)
+        bodies.push_back({{{&map, parts.levels[s].back().view()}}, parts.structures[s].home()});
+    GainSettings settings;
+    settings.climbs = kClimbs;
+    const DockingGain gain = docking_gain(bodies, parts.meta.world_per_model, settings);
     const double unit = rms * parts.meta.energy_j_per_sigma / gain.energy_j_per_sigma;
     return unit > 0.0 ? unit : rms;  // a scene without force
 }
 
-DensityMap force_map(const DockingParts& parts, std::uint32_t options, const ModelBodies& bodies) {
+// The density of all atoms, as options and bodies demand, and what turns it into a map.
+struct FeltGrid {
+    DensityGrid grid;
+    double background, sigma, resolution_m;
+};
+
+FeltGrid felt_grid(const DockingParts& parts, std::uint32_t options, const ModelBodies& bodies) {
     const SceneMeta& meta = parts.meta;
     const bool subtracted = (options & kDockingSubtraction) != 0;
     if ((options & kDockingLaplacian) == 0) {
-        return {subtracted ? without_others(parts, bodies) : parts.grid, meta.map_background, meta.map_sigma};
+        return {subtracted ? without_others(parts, bodies) : parts.grid, meta.map_background, meta.map_sigma,
+                resolution_m(parts)};
     }
     const auto filtered = [&](const DensityGrid& grid) {
         return laplacian_map(grid, meta.map_background, contour_resolution_m(parts));
@@ -108,24 +153,36 @@ DensityMap force_map(const DockingParts& parts, std::uint32_t options, const Mod
     LaplacianUnit& unit = *parts.laplacian_unit;
     std::call_once(unit.once,
                    [&] { unit.value = laplacian_unit(parts, subtracted ? filtered(parts.grid) : felt); });
-    return {felt, 0.0, unit.value};
+    return {felt, 0.0, unit.value, contour_resolution_m(parts)};
 }
 
 }  // namespace
 
 std::shared_ptr<const ForceMap> make_force_map(const DockingParts& parts, double newtons_per_gradient,
                                                std::uint32_t options, const ModelBodies& bodies) {
-    auto felt = std::make_shared<ForceMap>(ForceMap{
-        .map = force_map(parts, options, bodies),
+    const FeltGrid felt = felt_grid(parts, options, bodies);
+    std::vector<std::vector<double>> smoothing_m;
+    for (const std::vector<PointSet>& levels : parts.levels) {
+        smoothing_m.emplace_back();
+        for (std::size_t l = 0; l + 1 < levels.size(); ++l)
+            smoothing_m.back().push_back(
+                level_smoothing_m(levels[l].view(), levels.back().view(), felt.resolution_m));
+    }
+    LevelMaps maps = make_level_maps(felt.grid, felt.background, felt.sigma, felt.resolution_m, smoothing_m);
+    auto made = std::make_shared<ForceMap>(ForceMap{
+        .maps = std::move(maps.maps),
         .options = options & kForceMapOptions,
         .active_id = bodies.active < bodies.count ? bodies.id[bodies.active] : 0,
         .others = bodies.others,
         .metrics = {},
     });
-    for (std::size_t s = 0; s < parts.structures.size(); ++s)
-        felt->metrics.push_back(
-            calibrated(felt->map, parts.levels[s], parts.structures[s].home(), newtons_per_gradient));
-    return felt;
+    for (std::size_t s = 0; s < parts.structures.size(); ++s) {
+        std::vector<LevelMetrics> metrics(parts.levels[s].size());
+        for (std::size_t l = 0; l + 1 < metrics.size(); ++l) metrics[l].map = maps.map_of[s][l];
+        calibrate({made->maps, parts.levels[s], metrics}, parts.structures[s].home(), newtons_per_gradient);
+        made->metrics.push_back(std::move(metrics));
+    }
+    return made;
 }
 
 }  // namespace tact

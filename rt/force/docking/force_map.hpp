@@ -1,4 +1,4 @@
-// The density map that makes the force, with cost and error of each level of each structure in it.
+// The density maps that make the force, with cost, error and stiffness of each level of each structure in its map.
 //
 // Options   kDockingSubtraction and kDockingLaplacian, as applied to the density; kForceMapOptions holds both.
 // Laplacian ipc/scene/density/laplacian_map.hpp, at the resolution of the map or 20 A, whichever is coarser. Its
@@ -6,11 +6,15 @@
 //           ipc/scene/density/docking_gain.hpp.
 // Subtract  removes all bodies except the one in the hand (ipc/scene/density/subtracted_map.hpp) before the
 //           Laplacian. The unit stays that of the whole map, so the remaining density keeps its force.
+// Levels    the first map is that of all atoms; codebook levels have smoothed ones (ipc/scene/density/level_maps.hpp).
+// Stiffness of a level: the largest over some of these poses and over the maxima to which home and other poses climb, with a
+//           margin; a bound without proof too, raised while the loop runs (stiffness_audit.hpp).
 // Error     of a level: the largest |F_level - F_atoms| over seeded poses, with a margin. It estimates a bound
 //           without proof; error_audit.hpp continues to measure while the loop runs.
 // Thread    made off the servo thread, in up to seconds; then immutable.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <vector>
@@ -23,13 +27,21 @@
 
 namespace tact {
 
+// Spectral norms of the second derivatives of the summed density (DensityBends).
+struct BendNorms {
+    double by_shift = 0.0;  // sigma per model metre squared
+    double by_turn = 0.0;   // sigma per radian squared
+};
+
 struct LevelMetrics {
     Duration cost{0};      // measured cost of a sum
     double error_n = 0.0;  // does not rise with the level; 0 for all atoms
+    std::size_t map = 0;   // index in ForceMap::maps
+    BendNorms bends{};     // bound
 };
 
 struct ForceMap {
-    DensityMap map;
+    std::vector<DensityMap> maps;
     std::uint32_t options = 0;
     // With subtraction: id of the body that was not subtracted, and ModelBodies::others at that time.
     std::uint32_t active_id = 0;
@@ -37,8 +49,8 @@ struct ForceMap {
     std::vector<std::vector<LevelMetrics>> metrics;  // by structure and level
 };
 
-// Factor on the largest error over the sampled poses.
-inline constexpr double kErrorMargin = 1.25;
+// Factors on the largest error and stiffness over the sampled poses.
+inline constexpr double kErrorMargin = 1.25, kStiffnessMargin = 1.25;
 inline constexpr std::uint32_t kForceMapOptions = kDockingSubtraction | kDockingLaplacian;
 // Finer maps use the contours of this resolution: their own are too narrow to find by hand (README.md).
 inline constexpr double kContourResolutionM = 20e-10;

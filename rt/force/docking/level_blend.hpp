@@ -1,6 +1,7 @@
 // Force of the density on a body at a pose, for any knob setting.
 //
-// Knob      from 0, the smallest level of the structure, to 1, all atoms; adjacent levels are blended linearly.
+// Knob      from 0, the smallest level of the structure, to 1, all atoms; adjacent levels are blended linearly. Each level is
+//           summed in a map of its own smoothness (ipc/scene/density/level_maps.hpp).
 // Work      with kept sums, large levels recompute only the budget's work fraction of their points
 //           (partial_sums.hpp); the possible error of older sums is part of the published error.
 // Frames    pose in model; wrench in world, at the body's centre of mass.
@@ -27,9 +28,9 @@ namespace tact {
 using KeptSums = std::array<PartialSums, 2>;
 
 struct LevelBlend {
-    const DensityMap& map;
+    const std::vector<DensityMap>& maps;
     const std::vector<PointSet>& levels;       // ascending sizes; the last is all atoms
-    const std::vector<LevelMetrics>& metrics;  // of each level, in this map
+    const std::vector<LevelMetrics>& metrics;  // of each level, in its map
     double error_scale;                        // factor on the errors in metrics
     double energy_j_per_sigma;
     double newtons_per_gradient;  // world force (N) per gradient (sigma per model metre)
@@ -44,13 +45,17 @@ struct LevelBlend {
     // Knob setting before the first measurement: the first level of 200 vectors or more.
     [[nodiscard]] float start_fidelity() const noexcept TACT_RT;
 
-private:
     struct Plan {  // levels to sum for a fidelity: (1 - blend) * lower + blend * upper
         std::size_t lower, upper;
         double blend;
     };
+    [[nodiscard]] Plan plan(float fidelity) const noexcept TACT_RT;
+    // The map in which a level is summed.
+    [[nodiscard]] const DensityMap& map_of(std::size_t level) const noexcept TACT_RT {
+        return maps[metrics[level].map];
+    }
 
-    [[nodiscard]] Plan plan(float fidelity) const noexcept;
+private:
     [[nodiscard]] double error_n(std::size_t level) const noexcept;
     // Sums one level at a pose.
     [[nodiscard]] PartialSums::Result sum_level(std::size_t level, const Pose& T_model_body,

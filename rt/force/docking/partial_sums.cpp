@@ -39,11 +39,11 @@ bool sum_until(const DensityMap& map, const PointsView& points, const Pose& T_mo
     return true;
 }
 
-double PartialSums::motion_m(const Pose& from, const Pose& to) const noexcept {
+double motion_m(const Pose& from, const Pose& to, double radius_m) noexcept {
     // |q1 - q2| = 2 sin(angle / 4), for the nearer of q and -q.
     const double apart =
         std::min((to.q.coeffs() - from.q.coeffs()).norm(), (to.q.coeffs() + from.q.coeffs()).norm());
-    return (to.p_m - from.p_m).norm() + 2.0 * points_->radius_m * apart;
+    return (to.p_m - from.p_m).norm() + 2.0 * radius_m * apart;
 }
 
 PartialSums::Result PartialSums::step(const DensityMap& map, const PointSet& points, const Pose& T_model_body,
@@ -62,7 +62,7 @@ PartialSums::Result PartialSums::step(const DensityMap& map, const PointSet& poi
     for (std::size_t turn = 0; turn < kSlices; ++turn) {
         const std::size_t k = (first + turn) % kSlices;
         Slice& slice = slices_[k];
-        const double moved_m = slice.made ? motion_m(slice.made_at, T_model_body) : 0.0;
+        const double moved_m = slice.made ? motion_m(slice.made_at, T_model_body, points.radius_m) : 0.0;
         const double most = slice.slope < 0.0 ? kStillVoxels : kFarthestVoxels;
         const bool near = slice.made && moved_m <= most * voxel_m;
         const std::size_t begin = k * n / kSlices, end = (k + 1) * n / kSlices;

@@ -51,13 +51,15 @@ private:
         double slope = -1.0;  // recent change of the gradient per motion; negative: unknown
         bool made = false;
     };
-    [[nodiscard]] double motion_m(const Pose& from, const Pose& to) const noexcept TACT_RT;
 
     std::array<Slice, kSlices> slices_{};
     std::size_t next_ = 0;
     const DensityMap* map_ = nullptr;
     const PointSet* points_ = nullptr;
 };
+
+// Largest motion between two poses of a point within radius_m of the body's origin.
+[[nodiscard]] double motion_m(const Pose& from, const Pose& to, double radius_m) noexcept TACT_RT;
 
 // Sums in chunks and checks the deadline before each; false: the deadline passed first.
 bool sum_until(const DensityMap& map, const PointsView& points, const Pose& T_model_body,
