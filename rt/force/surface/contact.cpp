@@ -65,7 +65,8 @@ bool SurfaceContact::prove(const HalfSpaces::Solution& bearing, Vec3 moved_m, do
         }
         proof_.solve(goal_m_ - proxy_m_);
         const bool touches = proof_.lift_m().squaredNorm() > 0.0;
-        if (touches && proof_.holds(settings_.friction)) {
+        // After such a step the ball has to be as free as a query would leave it.
+        if (touches && proof_.holds(settings_.friction) && (attempt == 0 || proof_.is_free())) {
             way_m_ += (proxy_m_ - before_m).norm();
             return true;
         }

@@ -11,6 +11,7 @@
 // Unit     metres of the model.  Thread  servo, TACT_RT: no allocation, at most kTouches triangles
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <span>
@@ -31,7 +32,7 @@ struct ContactPlane {
 class RestProof {
 public:
     static constexpr std::size_t kTouches = 24;
-    static constexpr double kBandMargins = 0.5, kStable = 0.2;
+    static constexpr double kBandMargins = 0.5, kFreeMargins = 0.1, kStable = 0.2;
     // Nearest points this close to the border count as over the inside, but need a second triangle of the plane: neither
     // rounding on the border of two triangles nor a place that the least push leaves may decide.
     static constexpr double kBorderMargins = 1e-3;
@@ -56,6 +57,12 @@ public:
     // pull_m: from the ball to its goal.
     void solve(const Vec3& pull_m) noexcept TACT_RT;
     [[nodiscard]] bool holds(double friction) const noexcept TACT_RT;
+    // The ball is in no touched triangle, and all of them had room.
+    [[nodiscard]] bool is_free() const noexcept TACT_RT {
+        return count_ < kTouches &&
+               std::all_of(touch_.data(), touch_.data() + count_,
+                           [this](const Touch& t) { return t.gap_m >= -kFreeMargins * margin_m_; });
+    }
 
     [[nodiscard]] std::span<const Touch> touches() const noexcept TACT_RT {
         return std::span(touch_).first(count_);
