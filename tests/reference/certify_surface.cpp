@@ -238,7 +238,7 @@ private:
         if (in_m > 0.5 * m) return;  // in many triangles at once, where rest has no meaning
         const ref::Judgement j = ref::judge(near, ball_, proxy_m, goal_m, 3.0 * m);
         const bool settled = contact.state == ContactState::settled;
-        if (settled) note(promises_.settled, j.unborne, 2.0 * m);
+        if (settled) note(promises_.settled, unborne_m(j, proxy_m, goal_m), 2.0 * m);
         if (plain()) {
             const Vec3 right_n =
                 std::min(settings_.stiffness_n_m, settings_.force_n_max / way_m.norm()) * way_m;
@@ -250,6 +250,15 @@ private:
             const double along = f.dot(n), across = (f - along * n).norm();
             note(promises_.cone, across, settings_.friction * along + r.load.error + 1e-3);
         }
+    }
+    // Where the touched triangles leave a pull, the slide that it makes: nearly parallel triangles may leave the set of those that
+    // bear it to rounding, but not the slide.
+    [[nodiscard]] double unborne_m(const ref::Judgement& j, const Vec3& proxy_m, const Vec3& goal_m) const {
+        const double m = ball_.margin, step_m = std::max(0.05 * ball_.radius, 0.25 * m);
+        if (j.unborne <= 2.0 * m || ball_.friction > 0.0) return j.unborne;
+        const ref::Triangles around = cells_.near(proxy_m, ball_.radius + 40.0 * step_m);
+        const Vec3 end_m = ref::descend(around, ball_, proxy_m, goal_m, step_m, 0.01 * m);
+        return std::min(j.unborne, (end_m - proxy_m).norm());
     }
     [[nodiscard]] bool plain() const {
         return !settings_.shading && settings_.friction == 0.0 && settings_.damping_n_s_m == 0.0;

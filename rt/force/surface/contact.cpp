@@ -46,7 +46,8 @@ void SurfaceContact::use(const SurfaceMesh& mesh) noexcept {
 }
 
 // Tries to prove rest after a move from the last query: with all triangles that the ball may touch, first those that bear
-// the pull as far as single precision tells. Without friction, up to two short steps to the minimum replace whole moves.
+// the pull as far as single precision tells. Under a still
+// hand and without friction, up to two short steps to the minimum replace whole moves.
 bool SurfaceContact::prove(const HalfSpaces::Solution& bearing, Vec3 moved_m, double reach_m) noexcept {
     // A facet rests a margin above an edge.
     const double slack =
@@ -70,7 +71,7 @@ bool SurfaceContact::prove(const HalfSpaces::Solution& bearing, Vec3 moved_m, do
             way_m_ += (proxy_m_ - before_m).norm();
             return true;
         }
-        if (!touches || settings_.friction > 0.0 || attempt == kNewtonSteps) break;
+        if (!touches || !still_ || settings_.friction > 0.0 || attempt == kNewtonSteps) break;
         const Vec3 newton_m = proof_.shape().newton_m;
         const double length = newton_m.norm();
         // Not beyond the reach of the query.
@@ -211,6 +212,7 @@ Contact SurfaceContact::follow(const Vec3& goal_m, std::uint32_t moves_max,
     Contact contact;
     const double step = kFollowedSteps * (goal_m - goal_m_).norm();
     goal_m_ = goal_m;
+    still_ = step <= settings_.margin_m;
     const double allowed = step + settings_.lag_m;
     if (step_easily(goal_m, allowed, contact)) return contact;
     if (settings_.brute) collected_m_ = -1.0;

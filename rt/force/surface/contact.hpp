@@ -117,6 +117,7 @@ private:
     RestProof proof_;
     EasyStep easy_;
     bool touches_ = false;  // at the end of the last step
+    bool still_ = false;    // the goal hardly moved in this step
     const QueryKernel* kernel_;
     std::vector<std::uint32_t> leaf_;  // scratch
     // The collected triangles. The distance of each is at least its bound minus the path since they were collected.
