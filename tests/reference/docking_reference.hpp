@@ -3,14 +3,14 @@
 // Method    The values are sharpened, padded with zeros, and the equations of the cubic B-spline are solved directly, axis by
 //           axis. Density, gradient and second derivatives are then sums over 4 x 4 x 4 coefficients per atom.
 // Units     lengths in model metres, density in sigma, force N and torque N m at the hand, about the body's origin
-// Thread    any; allocates, and takes about a microsecond per atom
+// Thread    any; allocates, and takes some microseconds per atom
 //
 // What the product promises, to be judged with this reference; each holds for every pose, body and scene:
 //   level 1.0   |F - F_ref| <= 1e-4 |F| + 1e-4 k_E / (S v) and |Q - Q_ref| <= the same times S r, with v the smallest voxel
 //               and r the body's radius: single precision of a sum of the order of its terms.
 //   level < 1   |F - F_ref| <= StepResult::load.error, with F_ref of all atoms in the map of the force as it is. The error is a
-//               bound that was tested over seeded poses with a margin, and that is raised once a step finds a larger one:
-//               at most one pose in a hundred may exceed it.
+//               bound that was tested over seeded poses with a margin, and that is raised once a step finds a larger one; it is no
+//               proof.
 //   stiffness   at rest for a tenth of a second, ModelStiffness is within 10 % of stiffness() here for the points and the map
 //               of the level; at any pose and any level it is an upper bound in the same sense as the error.
 #pragma once

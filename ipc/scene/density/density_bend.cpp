@@ -5,7 +5,7 @@
 // The sum of this over the points is symmetric only where the moment vanishes; its symmetric part is the curvature of the
 // energy over rotations.
 //
-// A point takes about four times as long as in the widest kernel of sum(): four floats at a time, and three times the
+// A point takes longer than in the widest kernel of sum(): four floats at a time, and three times the
 // weights. It is called for a few points per step (rt/force/docking/stiffness_audit.hpp).
 #include <cmath>
 #include <cstring>

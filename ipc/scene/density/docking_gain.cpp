@@ -8,7 +8,7 @@
 // density.
 //
 // Fits: the density is most curved where the body belongs, a place that random poses hardly hit: over the ring of 1OEL in its
-// map at 7 A they found a fifth of the stiffness at the answer. So some of the poses, and home, climb to their maxima: a short
+// map at 7 A they missed half and more of the stiffness at the answer. So some of the poses, and home, climb to their maxima: a short
 // way with some hundreds of vectors, then with all atoms. Forces are also sampled within 5 A and 10 degrees of the fits.
 #include "ipc/scene/density/docking_gain.hpp"
 

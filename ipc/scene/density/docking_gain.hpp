@@ -7,7 +7,7 @@
 //
 // Unit     joules per sigma, as SceneMeta::energy_j_per_sigma. World is the hand's space, see SceneMeta
 // Repeats  exactly for the same input and seed
-// Thread   slow (about 50 ms per thousand atoms); never on the servo thread
+// Thread   slow (about 150 ms per thousand atoms); never on the servo thread
 #pragma once
 
 #include <cstdint>

@@ -7,7 +7,8 @@
 //
 // Memory   a smoothed map has fewer voxels where its smoothness permits. Levels share a map where their smoothings are
 //          nearly equal, and where the maps would otherwise take more memory than kLevelMapBytes or the map itself:
-//          then with the larger smoothing. So 512^3 voxels take at most twice their memory.
+//          then with the larger smoothing. Not counted: the fourfold copies of small maps
+//          (DensityMap::Options), and one smoothed map is always made.
 // Thread   slow (as smoothed_map.hpp); never on the servo thread
 #pragma once
 

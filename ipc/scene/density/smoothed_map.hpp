@@ -4,7 +4,7 @@
 //           replaces a variance of the points by one of the map (level_maps.hpp)
 // Grid      every n-th voxel along each axis, and a border of three sigma, into which the density spreads. Unit and frame
 //           are unchanged; the map continues with its background outside its box
-// Thread    slow (some seconds for 512^3); never on the servo thread. Allocates two copies of the result
+// Thread    slow; never on the servo thread. Allocates two copies of the result
 #pragma once
 
 #include <cstdint>
