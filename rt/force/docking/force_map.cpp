@@ -138,7 +138,7 @@ struct FeltGrid {
     double background, sigma, resolution_m;
 };
 
-FeltGrid felt_grid(const DockingParts& parts, std::uint32_t options, const ModelBodies& bodies) {
+FeltGrid summed_grid(const DockingParts& parts, std::uint32_t options, const ModelBodies& bodies) {
     const SceneMeta& meta = parts.meta;
     const bool subtracted = (options & kDockingSubtraction) != 0;
     if ((options & kDockingLaplacian) == 0) {
@@ -160,7 +160,7 @@ FeltGrid felt_grid(const DockingParts& parts, std::uint32_t options, const Model
 
 std::shared_ptr<const ForceMap> make_force_map(const DockingParts& parts, double newtons_per_gradient,
                                                std::uint32_t options, const ModelBodies& bodies) {
-    const FeltGrid felt = felt_grid(parts, options, bodies);
+    const FeltGrid felt = summed_grid(parts, options, bodies);
     std::vector<std::vector<double>> smoothing_m;
     for (const std::vector<PointSet>& levels : parts.levels) {
         smoothing_m.emplace_back();
