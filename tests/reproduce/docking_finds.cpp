@@ -25,6 +25,7 @@
 
 #include "ipc/base/error.hpp"
 #include "ipc/base/units.hpp"
+#include "ipc/scene/density/climb.hpp"
 #include "ipc/scene/density/density_map.hpp"
 #include "ipc/scene/density/laplacian_map.hpp"
 #include "ipc/scene/density/subtracted_map.hpp"
@@ -53,29 +54,10 @@ double gyration_m(const Structure& s) {
     return std::sqrt(sum);
 }
 
-// Steepest ascent. Rotations are scaled by the radius of gyration to a displacement of the atoms. The step doubles
-// after a success and halves after a failure, until it is below a thousandth of an angstrom.
-Pose climb(const DensityMap& map, const Structure& s, Pose pose) {
-    const PointsView points = points_of(s);
-    const double radius_m = gyration_m(s);
-    double step_m = 0.5 * kA;
-    DensitySums here = map.sum(points, pose);
-    for (int i = 0; i < 3000 && step_m > 1e-3 * kA; ++i) {
-        const Vec3 turn = here.moment / radius_m;
-        const double slope = std::sqrt(here.gradient.squaredNorm() + turn.squaredNorm());
-        if (!(slope > 0.0)) break;
-        const Pose next{
-            pose.p_m + step_m / slope * here.gradient,
-            (quat_from_rotation_vector(step_m / (slope * radius_m) * turn) * pose.q).normalized()};
-        const DensitySums there = map.sum(points, next);
-        if (there.density_sigma > here.density_sigma + 0.1 * step_m * slope) {
-            pose = next, here = there;
-            step_m = std::min(2.0 * step_m, 2.0 * kA);
-        } else {
-            step_m *= 0.5;
-        }
-    }
-    return pose;
+// To a maximum of the summed density, in steps that do not depend on the voxels of the map.
+Pose climb(const DensityMap& map, const Structure& s, const Pose& pose) {
+    constexpr ClimbSteps kSteps{.first_m = 0.5 * kA, .most_m = 2.0 * kA, .least_m = 1e-3 * kA};
+    return climbed(map, points_of(s), pose, 3001, &kSteps);
 }
 
 // The poses equivalent by symmetry, which map the first chain onto each chain, if all chains are alike.
