@@ -182,38 +182,40 @@ public:
     [[nodiscard]] PathLoad predict(float) const noexcept override { return {}; }
 };
 
-TEST(StageShape, at_a_delay_force_and_torque_of_a_stiff_field_are_reduced_alike) {
-    CycleFixture f;
+// A stiff field that pushes and turns, at a device that can do both.
+struct StiffCycle : CycleFixture {
     StiffModel stiff;
-    HandCycle& h = f.c.hand[0];
-    h.model = &stiff;
-    h.torque = true;
-    h.step.wrench_world = {Vec3(1.0, 0.0, 0.0), Vec3(0.0, 0.02, 0.0)};
+    HandCycle& h = c.hand[0];
+    StiffCycle() {
+        h.model = &stiff;
+        h.torque = true;
+        h.step.wrench_world = {Vec3(1.0, 0.0, 0.0), Vec3(0.0, 0.02, 0.0)};
+    }
+    void expect_a_quarter() {
+        servo::shape(c, settings);
+        EXPECT_NEAR(h.wanted_world.force_n.x(), 0.25, 1e-9);
+        EXPECT_NEAR(h.wanted_world.torque_n_m.y(), 0.25 * 0.02, 1e-12);
+    }
+};
+
+TEST(StageShape, at_a_delay_force_and_torque_of_a_stiff_field_are_reduced_alike) {
+    StiffCycle f;
     f.c.bounds = {500.0, 1e9, 1e9};
+    f.expect_a_quarter();
+    f.h.torque = false;  // a device of three axes
     servo::shape(f.c, f.settings);
-    EXPECT_NEAR(h.wanted_world.force_n.x(), 0.25, 1e-9);
-    EXPECT_NEAR(h.wanted_world.torque_n_m.y(), 0.25 * 0.02, 1e-12);
-    h.torque = false;  // a device of three axes
-    servo::shape(f.c, f.settings);
-    EXPECT_EQ(h.wanted_world.torque_n_m, Vec3::Zero());
+    EXPECT_EQ(f.h.wanted_world.torque_n_m, Vec3::Zero());
 }
 
 // Force and torque shrink together, whichever is too stiff.
 TEST(StageShape, a_field_that_is_too_stiff_in_rotation_is_reduced) {
-    CycleFixture f;
-    StiffModel stiff;
-    stiff.torque_n_m_rad = 4.0;
-    HandCycle& h = f.c.hand[0];
-    h.model = &stiff;
-    h.torque = true;
-    h.step.wrench_world = {Vec3(1.0, 0.0, 0.0), Vec3(0.0, 0.02, 0.0)};
+    StiffCycle f;
+    f.stiff.torque_n_m_rad = 4.0;
     f.c.bounds = {1e9, 1e9, 1.0};
+    f.expect_a_quarter();
+    f.h.torque = false;
     servo::shape(f.c, f.settings);
-    EXPECT_NEAR(h.wanted_world.force_n.x(), 0.25, 1e-9);
-    EXPECT_NEAR(h.wanted_world.torque_n_m.y(), 0.25 * 0.02, 1e-12);
-    h.torque = false;
-    servo::shape(f.c, f.settings);
-    EXPECT_NEAR(h.wanted_world.force_n.x(), 1.0, 1e-9);
+    EXPECT_NEAR(f.h.wanted_world.force_n.x(), 1.0, 1e-9);
 }
 
 TEST(StageShape, the_stable_stiffness_in_rotation_is_the_damping_over_the_delay) {
