@@ -138,15 +138,15 @@ void free_running(const Theme& theme, const HealthTopic& h) {
     row(theme, "Idle", format("%.0f %%", 100.0 * static_cast<double>(h.rested)), "free running");
 }
 
-// Loop delay from encoders to motors, and the stiffness that it allows.
+// Loop delay from encoders to motors, and the stiffness of the field now beside that which the delay allows.
 void delay(const Theme& theme, const HealthTopic& h) {
     if (h.delay_p99_ns <= 0) return;
+    const double now = 1e-3 * static_cast<double>(h.model_n_m),
+                 most = 1e-3 * static_cast<double>(h.stiffness_n_m_max);
+    const bool reduced = h.field_gain < 0.995F;
     row(theme, "Loop delay", duration_text(1e-9 * static_cast<double>(h.delay_p99_ns)),
-        format("stable up to %.1f N/mm", 1e-3 * static_cast<double>(h.stiffness_n_m_max)));
-    row(theme, "Stiffness", format("%.2f N/mm", 1e-3 * static_cast<double>(h.model_n_m)),
-        h.field_gain < 0.995F
-            ? format("force reduced to %.0f %%, to stay stable", 100.0 * static_cast<double>(h.field_gain))
-            : "of the field, now");
+        reduced ? format("force at %.0f %%, to be stable", 100.0 * static_cast<double>(h.field_gain))
+                : format("%.2f of %.1f N/mm stable", now, most));
 }
 
 void law_and_goal(const Theme& theme, DashboardState& state) {
