@@ -233,5 +233,30 @@ TEST(DockingStiffness, the_gain_keeps_its_limits_at_the_answer_of_a_structure_aw
     }
 }
 
+// Vectors in the map of the atoms see details that the atoms average out; in a map smoothed by their cells they do not. Not of
+// the two coarsest levels, whose cells are wider than the map resolves (level_maps.cpp).
+TEST(DockingLevels, a_level_is_nearer_to_all_atoms_than_its_vectors_in_the_map_of_the_atoms) {
+    const auto model = make_chain_model();
+    const std::size_t levels = scene().codebook.levels.size();
+    SeededRandom random(8);
+    for (std::size_t level = 3; level < levels; ++level) {
+        const reference::Atoms vectors = atoms_of(scene().codebook.levels[level].view());
+        Budget budget;
+        budget.fidelity = static_cast<float>(level) / static_cast<float>(levels);
+        double smoothed = 0.0, sharp = 0.0;
+        for (int i = 0; i < 60; ++i) {
+            Pose at = scene().chain.home();
+            at.p_m += 6.0 * kA * random.uniform() * random.direction();
+            at.q = quat_from_rotation_vector(0.3 * random.uniform() * random.direction()) * at.q;
+            const Vec3 all_n =
+                reference::wrench(sum(exact_map(), atoms_of(scene().chain), place_of(at)), gain()).force_n;
+            smoothed += (model->evaluate(at, budget).wrench_world.force_n - all_n).squaredNorm();
+            sharp += (reference::wrench(sum(exact_map(), vectors, place_of(at)), gain()).force_n - all_n)
+                         .squaredNorm();
+        }
+        EXPECT_LT(std::sqrt(smoothed), 0.5 * std::sqrt(sharp)) << "level " << level;
+    }
+}
+
 }  // namespace
 }  // namespace tact

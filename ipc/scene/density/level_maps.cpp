@@ -9,7 +9,8 @@
 // must at least not show detail that is none: like any sampling, vectors a distance h apart represent waves longer than 2 h. With
 // h = sqrt(12) s_c, a map whose total width is kWidth s_c has 2 exp(-2 pi^2 kWidth^2 / 12) = 2 % of them left. 3MFP at
 // 6.6 A, N = 200 (s_c 1.7 A, map 1.5 A): bare 47 %; smoothed by s_c 51 % off all atoms, and as much off all atoms in any
-// smoother map; by 1.5 s_c 64 % off all atoms, and 6 % off all atoms in a map smoothed by 1.1 s_c.
+// smoother map; by 1.5 s_c 64 % off all atoms, and 6 % off all atoms in a map smoothed by 1.1 s_c. On a synthetic chain of 800 atoms at 9 A the
+// force of 25 and 50 vectors (runs of atoms) is off by 1.8 and 2.1 times as much as that of bare ones, of 200 and 400 by 0.37 and 0.2.
 //
 // Also possible, and not done: anisotropic second moments per vector need third derivatives of the map in the inner loop; weights
 // fitted to the force of sampled poses fit only those poses, and cannot restore a width; levels of more vectors are what the
