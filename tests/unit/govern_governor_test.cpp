@@ -43,6 +43,22 @@ TEST(Governor, lowers_the_display_first_and_the_force_last) {
     EXPECT_EQ(governor.paths()[1].reason, LevelReason::at_floor);
 }
 
+// A display whose model is off by a multiple would swing between two levels for ever.
+TEST(Governor, steps_to_and_fro_of_the_default_law_become_small) {
+    constexpr KnobSpec kMiddle{.path = "gui.mesh", .floor = 0.01F, .start = 0.3F};
+    Governor governor = with({.law = Law::elastic, .goal_hz = 1000.0}, {kMiddle});
+    std::array<double, 8> change{};
+    for (std::size_t turn = 0; turn < change.size(); ++turn) {
+        const float before = governor.level(0);
+        for (int i = 0; i < 100 && governor.level(0) == before; ++i)
+            static_cast<void>(governor.step(turn % 2 == 0 ? 960.0 : 1040.0, kStep));
+        ASSERT_NE(governor.level(0), before) << turn;
+        change[turn] = std::abs(std::log(static_cast<double>(governor.level(0) / before)));
+    }
+    EXPECT_LT(change[6], 0.3 * change[0]);
+    EXPECT_LT(change[7], 0.3 * change[1]);
+}
+
 TEST(Governor, a_knob_with_floor_zero_stays_high_enough_to_recover_within_sixty_steps) {
     constexpr KnobSpec kNoFloor{.path = "force", .floor = 0.0F, .start = 1.0F, .haptic = true};
     for (const Law law : {Law::sensitus, Law::elastic}) {
