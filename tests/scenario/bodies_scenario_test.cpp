@@ -18,7 +18,7 @@
 #include "rt/threads/model_builder.hpp"
 #include "tests/support/small_scene.hpp"
 
-namespace tact {
+namespace tact::bodies_scenario_test {
 namespace {
 
 // Structure 0: the helix of the small scene. Structure 1: ten times its atoms, at the same positions with small random
@@ -335,4 +335,4 @@ TEST(BodiesScenario, a_builder_can_end_at_any_time) {
 }
 
 }  // namespace
-}  // namespace tact
+}  // namespace tact::bodies_scenario_test

@@ -9,7 +9,7 @@
 #include "tests/scenario/lockstep.hpp"
 #include "tests/support/bone_block.hpp"
 
-namespace tact {
+namespace tact::drill_scenario_test {
 namespace {
 
 // A wall of bone about 5 mm from the hand at rest, and a hand that presses a burr into it.
@@ -249,4 +249,4 @@ TEST(TwoHandsScenario, a_lost_suction_tube_stops_both_hands) {
 }
 
 }  // namespace
-}  // namespace tact
+}  // namespace tact::drill_scenario_test

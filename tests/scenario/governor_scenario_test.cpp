@@ -3,7 +3,7 @@
 
 #include "tests/scenario/lockstep.hpp"
 
-namespace tact {
+namespace tact::governor_scenario_test {
 namespace {
 
 using std::chrono::microseconds;
@@ -427,4 +427,4 @@ TEST(GovernorScenario, with_a_gui_the_display_is_reduced_and_the_force_keeps_its
 }
 
 }  // namespace
-}  // namespace tact
+}  // namespace tact::governor_scenario_test

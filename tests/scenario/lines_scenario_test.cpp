@@ -5,7 +5,7 @@
 #include "hal/sim/sim_lines.hpp"
 #include "tests/scenario/lockstep.hpp"
 
-namespace tact {
+namespace tact::lines_scenario_test {
 namespace {
 
 using std::chrono::milliseconds;
@@ -205,4 +205,4 @@ TEST(LinesScenarios, the_watchdog_line_toggles_once_per_cycle) {
 }
 
 }  // namespace
-}  // namespace tact
+}  // namespace tact::lines_scenario_test

@@ -5,7 +5,7 @@
 #include "ipc/recorder/flight.hpp"
 #include "tests/scenario/lockstep.hpp"
 
-namespace tact {
+namespace tact::record_scenario_test {
 namespace {
 
 using record::Batch;
@@ -160,4 +160,4 @@ TEST(FlightTape, only_a_fault_an_overrun_and_a_mark_are_causes) {
 }
 
 }  // namespace
-}  // namespace tact
+}  // namespace tact::record_scenario_test

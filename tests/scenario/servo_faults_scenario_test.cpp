@@ -4,7 +4,7 @@
 
 #include "tests/scenario/lockstep.hpp"
 
-namespace tact {
+namespace tact::servo_faults_scenario_test {
 namespace {
 
 using std::chrono::microseconds;
@@ -162,4 +162,4 @@ TEST(ServoFaults, overruns_are_counted_and_skip_forward_without_a_burst) {
 }
 
 }  // namespace
-}  // namespace tact
+}  // namespace tact::servo_faults_scenario_test

@@ -5,7 +5,7 @@
 
 #include "tests/scenario/lockstep.hpp"
 
-namespace tact {
+namespace tact::servo_scenario_test {
 namespace {
 
 using std::chrono::milliseconds;
@@ -250,4 +250,4 @@ TEST(ServoScenario, a_new_model_enters_with_zero_force_and_the_old_one_comes_bac
 }
 
 }  // namespace
-}  // namespace tact
+}  // namespace tact::servo_scenario_test

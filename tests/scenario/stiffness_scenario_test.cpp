@@ -8,7 +8,7 @@
 #include "rt/safety/stages.hpp"
 #include "tests/scenario/lockstep.hpp"
 
-namespace tact {
+namespace tact::stiffness_scenario_test {
 namespace {
 
 using std::chrono::milliseconds;
@@ -132,4 +132,4 @@ TEST_F(StallScenario, without_force_the_bound_applies_at_once) {
 }
 
 }  // namespace
-}  // namespace tact
+}  // namespace tact::stiffness_scenario_test

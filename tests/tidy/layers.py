@@ -1,8 +1,9 @@
 #!/usr/bin/env python3
 """Checks that includes point downward and are covered by USES.
 
-Reads every CMakeLists.txt and *.cmake for tact_library, tact_program, tact_plugin, tact_test, tact_bench and tact_fuzz, finds
-the target of each source (for a header: the target of its .cpp, else the library of its folder), and reports
+Reads every CMakeLists.txt and *.cmake for tact_library, tact_program, tact_plugin, tact_test, tact_tests, tact_bench and
+tact_fuzz, finds the target of each source (for a header: the target of its .cpp, else the library of its folder), and
+reports
   1. an include of another folder's header that the target's USES do not reach,
   2. an include of a folder that ARCHITECTURE's table puts above or beside the including one,
   3. a third-party header outside the folder that wraps it,
@@ -102,7 +103,7 @@ WRAPPED = [
 # Names that only these files of a folder may use: the tables of its systems.
 NAMED = [("gui/", re.compile(r"\bSceneKind::"), ["gui/window/systems.cpp"]),
          ("rt/", re.compile(r"\bSceneKind::"), ["rt/start/systems.cpp"])]
-CALL = re.compile(r"\b(tact_library|tact_program|tact_test|tact_bench|tact_fuzz|tact_plugin)\s*\(([^()]*)\)", re.S)
+CALL = re.compile(r"\b(tact_library|tact_program|tact_tests|tact_test|tact_bench|tact_fuzz|tact_plugin)\s*\(([^()]*)\)", re.S)
 INCLUDE = re.compile(r'^\s*#\s*include\s*([<"])([^>"]+)[>"]')
 KEYWORDS = {"SOURCES", "USES", "SYSTEM", "LABELS", "EXTRA", "TIMEOUT"}
 SKIP = {"build", "out", ".git", ".cache"}

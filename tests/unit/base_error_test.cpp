@@ -5,7 +5,7 @@
 
 #include "ipc/base/error.hpp"
 
-namespace tact {
+namespace tact::base_error_test {
 namespace {
 
 TEST(StartupError, states_problem_cause_and_fix) {
@@ -20,4 +20,4 @@ TEST(StartupError, text_from_a_file_cannot_end_the_message_or_control_a_terminal
 }
 
 }  // namespace
-}  // namespace tact
+}  // namespace tact::base_error_test

@@ -8,7 +8,7 @@
 
 #include "ipc/base/histogram.hpp"
 
-namespace tact {
+namespace tact::base_histogram_test {
 namespace {
 
 TEST(DurationHistogram, every_duration_lies_in_its_bucket_and_buckets_are_narrow) {
@@ -114,4 +114,4 @@ TEST(DurationHistogram, hostile_durations_are_counted_at_the_ends) {
 }
 
 }  // namespace
-}  // namespace tact
+}  // namespace tact::base_histogram_test

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <limits>
 
-namespace tact {
+namespace tact::base_motor_heat_test {
 namespace {
 
 // Motor RE25 of a Premium 1.5.
@@ -98,4 +98,4 @@ TEST(MotorHeat, invalid_input_keeps_it_finite) {
 }
 
 }  // namespace
-}  // namespace tact
+}  // namespace tact::base_motor_heat_test

@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 #include <rapidcheck.h>
 
-namespace tact {
+namespace tact::base_pacer_test {
 namespace {
 
 using std::chrono::microseconds;
@@ -47,4 +47,4 @@ TEST(Pacer, planned_instants_stay_on_the_grid_ahead_of_the_end_and_cycles_plus_s
 }
 
 }  // namespace
-}  // namespace tact
+}  // namespace tact::base_pacer_test

@@ -2,7 +2,7 @@
 
 #include "ipc/base/whole_numbers.hpp"
 
-namespace tact {
+namespace tact::base_whole_numbers_test {
 namespace {
 
 TEST(WholeNumbers, are_read_with_letters_between) {
@@ -22,4 +22,4 @@ TEST(WholeNumbers, other_text_is_refused) {
 }
 
 }  // namespace
-}  // namespace tact
+}  // namespace tact::base_whole_numbers_test

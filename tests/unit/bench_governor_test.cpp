@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-namespace tact {
+namespace tact::bench_governor_test {
 namespace {
 
 const GovernorRun kGood{
@@ -43,4 +43,4 @@ TEST(BenchGovernor, without_a_fitting_fixed_level_nothing_is_compared) {
 }
 
 }  // namespace
-}  // namespace tact
+}  // namespace tact::bench_governor_test

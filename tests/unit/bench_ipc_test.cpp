@@ -2,7 +2,7 @@
 
 #include "tests/bench/bench_ipc.hpp"
 
-namespace tact {
+namespace tact::bench_ipc_test {
 namespace {
 
 TEST(BenchIpc, every_metric_is_measured_and_no_value_is_torn) {
@@ -21,4 +21,4 @@ TEST(BenchIpc, every_metric_is_measured_and_no_value_is_torn) {
 }
 
 }  // namespace
-}  // namespace tact
+}  // namespace tact::bench_ipc_test

@@ -3,7 +3,7 @@
 
 #include "tests/bench/bench_servo.hpp"
 
-namespace tact {
+namespace tact::bench_servo_test {
 namespace {
 
 TEST(BenchServo, counts_every_cycle_and_orders_its_percentiles) {
@@ -21,4 +21,4 @@ TEST(BenchServo, counts_every_cycle_and_orders_its_percentiles) {
 }
 
 }  // namespace
-}  // namespace tact
+}  // namespace tact::bench_servo_test

@@ -4,7 +4,7 @@
 #include "tests/reference/certify.hpp"
 #include "tests/support/small_scene.hpp"
 
-namespace tact {
+namespace tact::certify_docking_test {
 namespace {
 
 TEST(CertifyDocking, keeps_every_promise) {
@@ -19,4 +19,4 @@ TEST(CertifyDocking, keeps_every_promise) {
 }
 
 }  // namespace
-}  // namespace tact
+}  // namespace tact::certify_docking_test

@@ -8,7 +8,7 @@
 #include "tests/reference/certify.hpp"
 #include "tests/support/bone_block.hpp"
 
-namespace tact {
+namespace tact::certify_drilling_test {
 namespace {
 
 constexpr std::uint32_t kEdge = 72;
@@ -52,4 +52,4 @@ TEST(CertifyDrilling, keeps_every_promise_at_fine_and_coarse_voxels) {
 }
 
 }  // namespace
-}  // namespace tact
+}  // namespace tact::certify_drilling_test

@@ -11,7 +11,7 @@
 #include "tests/unit/force_surface_fixture.hpp"
 #include "tests/unit/force_surface_meshes.hpp"
 
-namespace tact {
+namespace tact::certify_surface_test {
 namespace {
 
 using namespace surface_test;
@@ -66,4 +66,4 @@ TEST(CertifySurface, keeps_every_promise_on_scanned_meshes) {
 }
 
 }  // namespace
-}  // namespace tact
+}  // namespace tact::certify_surface_test

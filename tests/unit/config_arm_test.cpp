@@ -10,7 +10,7 @@
 #include "rt/config/config.hpp"
 #include "tests/support/says.hpp"
 
-namespace tact {
+namespace tact::config_arm_test {
 namespace {
 
 RtConfig read(const std::string& text) {
@@ -83,4 +83,4 @@ TEST(ConfigArm, errors_name_line_key_and_fix) {
 }
 
 }  // namespace
-}  // namespace tact
+}  // namespace tact::config_arm_test

@@ -9,7 +9,7 @@
 
 #include "tests/support/says.hpp"
 
-namespace tact {
+namespace tact::config_problems_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -70,4 +70,4 @@ TEST(CheckConfig, the_report_ends_with_the_number_of_problems_and_the_exit_code_
 }
 
 }  // namespace
-}  // namespace tact
+}  // namespace tact::config_problems_test

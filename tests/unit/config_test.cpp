@@ -11,7 +11,7 @@
 #include "ipc/base/error.hpp"
 #include "tests/support/says.hpp"
 
-namespace tact {
+namespace tact::config_test {
 namespace {
 
 class TempFile {
@@ -385,4 +385,4 @@ TEST(Config, a_fast_loop_keeps_time_to_sleep) {
 }
 
 }  // namespace
-}  // namespace tact
+}  // namespace tact::config_test

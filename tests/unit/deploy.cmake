@@ -1,23 +1,24 @@
 # Tests of deploy.
-tact_test(unit/deploy_child_test.cpp USES launch base)
-tact_test(unit/deploy_servo_core_test.cpp USES launch base)
-tact_test(unit/deploy_doctor_test.cpp USES launch)
-tact_test(unit/deploy_station_test.cpp USES base launch_station)
-tact_test(unit/deploy_station_verify_test.cpp USES topics station station_metrics launch_station SYSTEM nlohmann_json::nlohmann_json)
+tact_tests(launch_tests SOURCES
+        unit/deploy_child_test.cpp unit/deploy_servo_core_test.cpp unit/deploy_doctor_test.cpp
+        unit/deploy_probe_test.cpp unit/deploy_x_server_test.cpp unit/deploy_eval_test.cpp
+    USES launch base probe force bench_docking SYSTEM nlohmann_json::nlohmann_json)
+tact_tests(station_tests SOURCES
+        unit/deploy_station_test.cpp unit/deploy_station_verify_test.cpp unit/deploy_metrics_test.cpp
+        unit/deploy_monitoring_test.cpp
+    USES base launch_station topics station station_metrics version shm launch SYSTEM nlohmann_json::nlohmann_json
+        PkgConfig::HTTPLIB)
 pkg_check_modules(HTTPLIB REQUIRED IMPORTED_TARGET cpp-httplib)
-tact_test(unit/deploy_metrics_test.cpp USES base version shm topics launch SYSTEM PkgConfig::HTTPLIB)
-tact_test(unit/deploy_monitoring_test.cpp USES shm topics launch SYSTEM nlohmann_json::nlohmann_json)
-tact_test(unit/deploy_probe_test.cpp USES base launch probe SYSTEM nlohmann_json::nlohmann_json)
 add_test(NAME reproduce_draw_test COMMAND /usr/bin/python3 tests/reproduce/draw.py --self-test WORKING_DIRECTORY ${CMAKE_SOURCE_DIR})
 set_tests_properties(reproduce_draw_test PROPERTIES TIMEOUT 120 SKIP_RETURN_CODE 77)
-tact_test(unit/deploy_drill_test.cpp USES bench reproduce launch scene base SYSTEM nlohmann_json::nlohmann_json)
-tact_test(unit/deploy_drilling_test.cpp USES launch shm topics scene base SYSTEM nlohmann_json::nlohmann_json)
+tact_tests(drill_command_tests SOURCES
+        unit/deploy_drill_test.cpp unit/deploy_drilling_test.cpp unit/reproduce_test.cpp
+    USES bench reproduce launch scene base shm topics SYSTEM nlohmann_json::nlohmann_json)
 tact_test(unit/deploy_run_test.cpp USES launch shm topics scene base)
 tact_test(unit/deploy_run_save_test.cpp USES launch shm topics scene base)
 tact_test(unit/deploy_scene_switch_test.cpp USES launch shm topics scene base)
-tact_test(unit/deploy_x_server_test.cpp USES launch)
 add_test(NAME deploy_run_script_test COMMAND tests/unit/deploy_run_script_test.sh WORKING_DIRECTORY ${CMAKE_SOURCE_DIR})
-if(TACT_GUI AND NOT TACT_SANITIZE AND NOT TACT_FUZZ)
+if(TACT_GUI AND NOT TACT_SANITIZE)
     add_test(NAME deploy_install_test COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/unit/deploy_install_test.sh ${CMAKE_BINARY_DIR} ${CMAKE_SOURCE_DIR})
 endif()
 if(TACT_GUI)
@@ -25,12 +26,11 @@ if(TACT_GUI)
         ${CMAKE_RUNTIME_OUTPUT_DIRECTORY} ${PROJECT_VERSION})
 endif()
 add_test(NAME deploy_shell_test COMMAND tests/unit/deploy_shell_test.sh WORKING_DIRECTORY ${CMAKE_SOURCE_DIR})
-tact_test(unit/deploy_eval_test.cpp USES launch force bench_docking)
 if(TARGET manual)
     find_package(Python3 COMPONENTS Interpreter REQUIRED)
     add_test(NAME deploy_manual_test COMMAND Python3::Interpreter ${CMAKE_CURRENT_SOURCE_DIR}/unit/deploy_manual_test.py $<TARGET_FILE_DIR:tact>)
 endif()
-if(TACT_GUI AND NOT TACT_FUZZ)
+if(TACT_GUI)
     add_test(NAME deploy_e2e_test COMMAND tests/unit/deploy_e2e_test.sh $<TARGET_FILE_DIR:tact> WORKING_DIRECTORY ${CMAKE_SOURCE_DIR})
     set_tests_properties(deploy_e2e_test PROPERTIES LABELS e2e TIMEOUT 600 SKIP_RETURN_CODE 77 RUN_SERIAL TRUE)
     add_test(NAME deploy_drill_e2e_test COMMAND tests/unit/deploy_drill_e2e_test.sh $<TARGET_FILE_DIR:tact> WORKING_DIRECTORY ${CMAKE_SOURCE_DIR})
@@ -42,7 +42,6 @@ if(TACT_GUI AND NOT TACT_FUZZ)
         set_tests_properties(operate_test PROPERTIES LABELS e2e TIMEOUT 900 SKIP_RETURN_CODE 77 RUN_SERIAL TRUE)
     endif()
 endif()
-tact_test(unit/reproduce_test.cpp USES reproduce launch scene base)
 find_package(Python3 COMPONENTS Interpreter REQUIRED)
 add_test(NAME deploy_rights_test COMMAND Python3::Interpreter ${CMAKE_CURRENT_SOURCE_DIR}/unit/deploy_rights_test.py ${CMAKE_SOURCE_DIR})
 add_test(NAME certify_cli_test COMMAND Python3::Interpreter ${CMAKE_CURRENT_SOURCE_DIR}/unit/certify_cli_test.py $<TARGET_FILE_DIR:tact>)

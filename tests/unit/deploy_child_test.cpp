@@ -10,7 +10,7 @@
 #include "deploy/tact/signals.hpp"
 #include "ipc/base/error.hpp"
 
-namespace tact::launch {
+namespace tact::launch::deploy_child_test {
 namespace {
 
 using std::chrono::milliseconds;
@@ -219,4 +219,4 @@ TEST(ContentHash, differs_for_different_splits_of_the_same_text) {
 }
 
 }  // namespace
-}  // namespace tact::launch
+}  // namespace tact::launch::deploy_child_test

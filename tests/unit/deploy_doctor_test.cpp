@@ -11,7 +11,7 @@
 #include "ipc/base/fifo.hpp"
 #include "ipc/base/rights.hpp"
 
-namespace tact::launch {
+namespace tact::launch::deploy_doctor_test {
 namespace {
 
 // A PC set up for a haptic device: Debian 12, linux-image-rt-amd64, core 3 isolated.
@@ -213,4 +213,4 @@ TEST(Doctor, reading_a_machine_without_the_files_gives_no_crash) {
 }
 
 }  // namespace
-}  // namespace tact::launch
+}  // namespace tact::launch::deploy_doctor_test

@@ -15,7 +15,7 @@
 #include "tests/bench/drill_run.hpp"
 #include "tests/reproduce/drilling.hpp"
 
-namespace tact::launch {
+namespace tact::launch::deploy_drill_test {
 namespace {
 
 TEST(DrillRun, repeats_the_same_path_through_fresh_bone_in_every_pass) {
@@ -105,4 +105,4 @@ TEST(DrillingInfo, has_all_data_for_another_program_to_compute_the_same) {
 }
 
 }  // namespace
-}  // namespace tact::launch
+}  // namespace tact::launch::deploy_drill_test

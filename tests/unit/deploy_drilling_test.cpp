@@ -14,7 +14,7 @@
 #include "deploy/tact/scene_cache.hpp"
 #include "ipc/base/error.hpp"
 
-namespace tact::launch {
+namespace tact::launch::deploy_drilling_test {
 namespace {
 
 DrillTopic two_tools() {
@@ -142,4 +142,4 @@ TEST(LetTheHandsDrill, unless_another_hand_or_device_is_requested) {
 }
 
 }  // namespace
-}  // namespace tact::launch
+}  // namespace tact::launch::deploy_drilling_test

@@ -13,7 +13,7 @@
 #include "rt/force/docking/docking_model.hpp"
 #include "tests/bench/bench_docking.hpp"
 
-namespace tact::launch {
+namespace tact::launch::deploy_eval_test {
 namespace {
 
 constexpr char kHeader[] = "t_s,x_m,y_m,z_m,qx,qy,qz,qw\n";
@@ -177,4 +177,4 @@ TEST(BenchDocking, measures_positive_times) {
 }
 
 }  // namespace
-}  // namespace tact::launch
+}  // namespace tact::launch::deploy_eval_test

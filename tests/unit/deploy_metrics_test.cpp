@@ -19,7 +19,7 @@
 #include "ipc/version/version.hpp"
 #include "tests/unit/deploy_metrics_region.hpp"
 
-namespace tact::launch {
+namespace tact::launch::deploy_metrics_test {
 namespace {
 
 // The value of a line that begins with this text and a space; NaN: no such line.
@@ -245,4 +245,4 @@ TEST(Metrics, promtool_accepts_the_page_and_the_rules) {
 }
 
 }  // namespace
-}  // namespace tact::launch
+}  // namespace tact::launch::deploy_metrics_test

@@ -13,7 +13,7 @@
 #include "deploy/tact/metrics.hpp"
 #include "tests/unit/deploy_metrics_region.hpp"
 
-namespace tact::launch {
+namespace tact::launch::deploy_monitoring_test {
 namespace {
 
 using Labels = std::map<std::string, std::string>;
@@ -174,4 +174,4 @@ TEST(Monitoring, the_readme_lists_every_cause_of_a_fault) {
 }
 
 }  // namespace
-}  // namespace tact::launch
+}  // namespace tact::launch::deploy_monitoring_test

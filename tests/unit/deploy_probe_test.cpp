@@ -13,7 +13,7 @@
 #include "ipc/base/rights.hpp"
 #include "tests/support/says.hpp"
 
-namespace tact::launch {
+namespace tact::launch::deploy_probe_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -404,4 +404,4 @@ TEST(Probe, the_controllers_reading_of_the_configuration_decides_what_is_probed)
 }
 
 }  // namespace
-}  // namespace tact::launch
+}  // namespace tact::launch::deploy_probe_test

@@ -11,7 +11,7 @@
 
 #include "deploy/tact/child.hpp"
 
-namespace tact::launch {
+namespace tact::launch::deploy_servo_core_test {
 namespace {
 
 cpu_set_t cores_of(pid_t thread) {
@@ -81,4 +81,4 @@ TEST(ServoCore, without_a_pinned_servo_others_keep_their_cores) {
 }
 
 }  // namespace
-}  // namespace tact::launch
+}  // namespace tact::launch::deploy_servo_core_test

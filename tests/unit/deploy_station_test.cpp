@@ -16,7 +16,7 @@
 #include "deploy/tact/station/transaction.hpp"
 #include "ipc/base/error.hpp"
 
-namespace tact::launch {
+namespace tact::launch::deploy_station_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -302,4 +302,4 @@ TEST(StationTools, packages_to_install_are_read_from_apt_get) {
 }
 
 }  // namespace
-}  // namespace tact::launch
+}  // namespace tact::launch::deploy_station_test

@@ -15,7 +15,7 @@
 #include "ipc/station/station_report.hpp"
 #include "ipc/topics/health.hpp"
 
-namespace tact::launch {
+namespace tact::launch::deploy_station_verify_test {
 namespace {
 
 VerifyMetrics good() {
@@ -203,4 +203,4 @@ TEST(StationSmi, is_read_from_its_register_and_otherwise_gives_the_reason) {
 }
 
 }  // namespace
-}  // namespace tact::launch
+}  // namespace tact::launch::deploy_station_verify_test

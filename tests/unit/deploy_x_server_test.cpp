@@ -4,7 +4,7 @@
 
 #include "deploy/tact/files.hpp"
 
-namespace tact::launch {
+namespace tact::launch::deploy_x_server_test {
 namespace {
 
 TEST(XServer, several_start_at_once_with_different_numbers) {
@@ -34,4 +34,4 @@ TEST(XServer, its_cookie_is_readable_only_by_this_user) {
 }
 
 }  // namespace
-}  // namespace tact::launch
+}  // namespace tact::launch::deploy_x_server_test

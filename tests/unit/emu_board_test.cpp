@@ -7,7 +7,7 @@
 
 #include "hal/arm/arm_drive.hpp"
 
-namespace tact::emu {
+namespace tact::emu::emu_board_test {
 namespace {
 
 using phantom::AmplifierState;
@@ -196,4 +196,4 @@ TEST_F(BoardWithRitual, the_person_waits_for_a_query_and_repeats_the_calibration
 }
 
 }  // namespace
-}  // namespace tact::emu
+}  // namespace tact::emu::emu_board_test

@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-namespace tact::emu {
+namespace tact::emu::emu_cp2112_test {
 namespace {
 
 constexpr std::uint8_t kConfig = 2, kGet = 3, kSet = 4;
@@ -58,4 +58,4 @@ TEST(Cp2112, short_or_unknown_reports_and_invalid_pins_change_nothing) {
 }
 
 }  // namespace
-}  // namespace tact::emu
+}  // namespace tact::emu::emu_cp2112_test

@@ -9,7 +9,7 @@
 #include "tests/emu/script.hpp"
 #include "tests/emu/usb_descriptors.hpp"
 
-namespace tact::emu {
+namespace tact::emu::emu_script_test {
 namespace {
 
 using std::chrono::milliseconds;
@@ -198,4 +198,4 @@ TEST(Descriptors, are_those_of_the_protocol) {
 }
 
 }  // namespace
-}  // namespace tact::emu
+}  // namespace tact::emu::emu_script_test

@@ -1,25 +1,24 @@
 # Tests of force.
-tact_test(unit/force_fade_test.cpp USES force)
+tact_tests(force_docking_tests SOURCES
+        unit/force_fade_test.cpp unit/force_docking_levels_test.cpp unit/force_docking_stiffness_test.cpp
+        unit/force_partial_sums_test.cpp unit/force_clash_test.cpp unit/force_docking_options_test.cpp
+    USES force scene reference SYSTEM rapidcheck)
 tact_test(unit/force_docking_test.cpp USES force)
-tact_test(unit/force_docking_levels_test.cpp USES force)
-tact_test(unit/force_docking_stiffness_test.cpp USES force scene reference)
-tact_test(unit/force_partial_sums_test.cpp USES force SYSTEM rapidcheck)
-tact_test(unit/force_clash_test.cpp USES force SYSTEM rapidcheck)
-tact_test(unit/force_docking_options_test.cpp USES force)
-tact_test(unit/force_surface_test.cpp USES force prep_surface prep_synthetic)
+tact_tests(force_surface_tests SOURCES
+        unit/force_surface_test.cpp unit/force_surface_modes_test.cpp unit/force_surface_settled_test.cpp
+        unit/force_surface_energy_test.cpp
+    USES force prep_surface prep_synthetic prep_mesh_file reference)
 tact_test(unit/force_surface_slide_test.cpp USES force prep_surface prep_synthetic)
 tact_test(unit/force_tool_test.cpp USES force prep_surface prep_synthetic)
-tact_test(unit/force_touch_tool_test.cpp USES force prep_surface prep_synthetic)
-tact_test(unit/force_tool_modes_test.cpp USES force prep_surface prep_synthetic)
-tact_test(unit/force_tool_dense_test.cpp USES force prep_surface prep_synthetic)
-tact_test(unit/force_surface_modes_test.cpp USES force prep_surface prep_synthetic)
-tact_test(unit/force_surface_settled_test.cpp USES force prep_mesh_file prep_surface prep_synthetic reference)
-tact_test(unit/force_surface_energy_test.cpp USES force prep_mesh_file prep_surface prep_synthetic reference)
-tact_test(unit/force_bone_test.cpp USES force)
+tact_tests(force_tool_tests SOURCES
+        unit/force_touch_tool_test.cpp unit/force_tool_modes_test.cpp unit/force_tool_dense_test.cpp
+    USES force prep_surface prep_synthetic)
+tact_tests(force_drilling_tests SOURCES
+        unit/force_bone_test.cpp unit/force_drill_levels_test.cpp
+    USES force)
 tact_test(unit/force_drill_test.cpp USES force)
-tact_test(unit/force_drill_levels_test.cpp USES force)
-tact_test(unit/certify_drilling_test.cpp USES certify scene)
-tact_test(unit/certify_docking_test.cpp USES certify scene)
-tact_test(unit/certify_surface_test.cpp USES certify scene prep_surface prep_synthetic prep_mesh_file)
+tact_tests(certify_tests SOURCES
+        unit/certify_drilling_test.cpp unit/certify_docking_test.cpp unit/certify_surface_test.cpp
+    USES certify scene prep_surface prep_synthetic prep_mesh_file)
 tact_test(unit/force_refinement_test.cpp USES scene force prep_mesh prep_surface prep_synthetic LABELS tsan)
 tact_test(unit/force_field_test.cpp USES base scene force prep_field)

@@ -12,7 +12,7 @@
 #include "rt/force/drilling/burr_shapes.hpp"
 #include "tests/support/bone_block.hpp"
 
-namespace tact {
+namespace tact::force_bone_test {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
@@ -427,4 +427,4 @@ TEST(BurrShapes, weights_count_each_part_of_the_volume_once) {
 }
 
 }  // namespace
-}  // namespace tact
+}  // namespace tact::force_bone_test

@@ -10,7 +10,7 @@
 #include "ipc/base/error.hpp"
 #include "ipc/base/random.hpp"
 
-namespace tact {
+namespace tact::force_clash_test {
 namespace {
 
 constexpr double kA = 1e-10, kScale = 6e6;
@@ -242,4 +242,4 @@ TEST(Clash, refuses_structures_without_atoms_or_size) {
 }
 
 }  // namespace
-}  // namespace tact
+}  // namespace tact::force_clash_test

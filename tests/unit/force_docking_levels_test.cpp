@@ -7,7 +7,7 @@
 #include "rt/force/docking/start_pose.hpp"
 #include "tests/unit/force_rod_scene.hpp"
 
-namespace tact {
+namespace tact::force_docking_levels_test {
 namespace {
 
 using namespace rod;
@@ -81,4 +81,4 @@ TEST(DockingLevels, predicted_cost_grows_with_the_level) {
 }
 
 }  // namespace
-}  // namespace tact
+}  // namespace tact::force_docking_levels_test

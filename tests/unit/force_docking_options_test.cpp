@@ -10,7 +10,7 @@
 #include "rt/force/docking/docking_model.hpp"
 #include "rt/force/docking/start_pose.hpp"
 
-namespace tact {
+namespace tact::force_docking_options_test {
 namespace {
 
 constexpr double kA = 1e-10;
@@ -271,4 +271,4 @@ TEST(DockingOptions, unknown_options_are_refused) {
 }
 
 }  // namespace
-}  // namespace tact
+}  // namespace tact::force_docking_options_test

@@ -12,7 +12,7 @@
 #include "tests/unit/chain_sample.hpp"
 #include "tests/unit/force_rod_scene.hpp"
 
-namespace tact {
+namespace tact::force_docking_stiffness_test {
 namespace {
 
 using namespace chain;
@@ -259,4 +259,4 @@ TEST(DockingLevels, a_level_is_nearer_to_all_atoms_than_its_vectors_in_the_map_o
 }
 
 }  // namespace
-}  // namespace tact
+}  // namespace tact::force_docking_stiffness_test

@@ -7,7 +7,7 @@
 #include "rt/force/drilling/drill_model.hpp"
 #include "tests/support/bone_block.hpp"
 
-namespace tact {
+namespace tact::force_drill_levels_test {
 namespace {
 
 constexpr double kVoxelM = 3e-4, kFullRadS = 6283.0;
@@ -273,4 +273,4 @@ TEST(DrillLevels, the_depth_of_the_step_before_makes_no_step_and_no_oscillation)
 }
 
 }  // namespace
-}  // namespace tact
+}  // namespace tact::force_drill_levels_test

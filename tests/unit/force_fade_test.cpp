@@ -8,7 +8,7 @@
 
 #include "rt/force/force_fade.hpp"
 
-namespace tact {
+namespace tact::force_fade_test {
 namespace {
 
 constexpr double kFadeS = 0.256;
@@ -146,4 +146,4 @@ TEST(ForceFade, a_pause_or_an_impossible_length_is_no_step_of_the_force) {
 }
 
 }  // namespace
-}  // namespace tact
+}  // namespace tact::force_fade_test

@@ -9,7 +9,7 @@
 
 #include "rt/force/docking/partial_sums.hpp"
 
-namespace tact {
+namespace tact::force_partial_sums_test {
 namespace {
 
 constexpr double kA = 1e-10;
@@ -223,4 +223,4 @@ TEST(PartialSums, without_older_sums_nearby_a_passed_deadline_leaves_the_step_in
 }
 
 }  // namespace
-}  // namespace tact
+}  // namespace tact::force_partial_sums_test

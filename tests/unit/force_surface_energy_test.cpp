@@ -9,7 +9,7 @@
 #include "tests/unit/force_surface_fixture.hpp"
 #include "tests/unit/force_surface_meshes.hpp"
 
-namespace tact {
+namespace tact::force_surface_energy_test {
 namespace {
 
 using namespace surface_test;
@@ -171,4 +171,4 @@ TEST(SurfaceEnergy, on_a_smooth_sphere_shading_stays_on) {
 }
 
 }  // namespace
-}  // namespace tact
+}  // namespace tact::force_surface_energy_test

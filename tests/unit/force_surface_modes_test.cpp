@@ -12,7 +12,7 @@
 #include "rt/force/surface/near_surface.hpp"
 #include "rt/force/surface/surface_model.hpp"
 
-namespace tact {
+namespace tact::force_surface_modes_test {
 namespace {
 
 constexpr double kStepS = 1e-3;
@@ -259,4 +259,4 @@ TEST(SurfaceModes, a_new_filter_shape_changes_the_cut) {
 }
 
 }  // namespace
-}  // namespace tact
+}  // namespace tact::force_surface_modes_test

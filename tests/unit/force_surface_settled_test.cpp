@@ -10,7 +10,7 @@
 #include "tests/unit/force_surface_fixture.hpp"
 #include "tests/unit/force_surface_meshes.hpp"
 
-namespace tact {
+namespace tact::force_surface_settled_test {
 namespace {
 
 using namespace surface_test;
@@ -180,4 +180,4 @@ TEST(SurfaceSettled, the_error_bounds_the_difference_from_the_reference_with_sha
 }
 
 }  // namespace
-}  // namespace tact
+}  // namespace tact::force_surface_settled_test

@@ -11,7 +11,7 @@
 #include "prep/surface/bake_surface.hpp"
 #include "tests/unit/force_surface_fixture.hpp"
 
-namespace tact {
+namespace tact::force_surface_test {
 namespace {
 
 using namespace surface_test;
@@ -250,4 +250,4 @@ TEST(Surface, a_wrong_scene_or_setting_is_refused) {
 }
 
 }  // namespace
-}  // namespace tact
+}  // namespace tact::force_surface_test

@@ -10,7 +10,7 @@
 #include "prep/synthetic/rough_sphere.hpp"
 #include "rt/force/surface/tool_model.hpp"
 
-namespace tact {
+namespace tact::force_tool_dense_test {
 namespace {
 
 // A bumpy patch of 10 x 6 mm, y up, with edges of 0.025 mm.
@@ -67,4 +67,4 @@ TEST(DenseSurface, does_not_hold_the_tool_back) {
 }
 
 }  // namespace
-}  // namespace tact
+}  // namespace tact::force_tool_dense_test

@@ -11,7 +11,7 @@
 #include "prep/synthetic/rough_sphere.hpp"
 #include "rt/force/surface/tool_model.hpp"
 
-namespace tact {
+namespace tact::force_tool_modes_test {
 namespace {
 
 constexpr double kStepS = 1e-3;
@@ -135,4 +135,4 @@ TEST(ToolModes, the_slow_update_is_reported) {
 }
 
 }  // namespace
-}  // namespace tact
+}  // namespace tact::force_tool_modes_test

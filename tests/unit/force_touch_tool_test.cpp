@@ -9,7 +9,7 @@
 #include "rt/force/surface/twist_half_spaces.hpp"
 #include "tests/unit/force_tool_fixture.hpp"
 
-namespace tact {
+namespace tact::force_touch_tool_test {
 namespace {
 
 using namespace tool_test;
@@ -140,4 +140,4 @@ TEST(TwistHalfSpaces, the_solution_is_the_nearest_twist_inside_all_half_spaces) 
 }
 
 }  // namespace
-}  // namespace tact
+}  // namespace tact::force_touch_tool_test

@@ -11,7 +11,7 @@
 #include "rt/govern/display_watch.hpp"
 #include "tests/unit/govern_fixture.hpp"
 
-namespace tact {
+namespace tact::govern_display_test {
 namespace {
 
 using namespace govern_test;
@@ -303,4 +303,4 @@ TEST(DisplayWatch, returns_each_frame_that_applied_the_levels_once) {
 }
 
 }  // namespace
-}  // namespace tact
+}  // namespace tact::govern_display_test

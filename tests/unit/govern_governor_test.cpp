@@ -11,7 +11,7 @@
 
 #include "tests/unit/govern_fixture.hpp"
 
-namespace tact {
+namespace tact::govern_governor_test {
 namespace {
 
 using std::chrono::milliseconds;
@@ -330,4 +330,4 @@ TEST(Governor, refuses_impossible_knobs_and_goals) {
 }
 
 }  // namespace
-}  // namespace tact
+}  // namespace tact::govern_governor_test

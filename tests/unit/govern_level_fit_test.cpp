@@ -10,7 +10,7 @@
 #include <random>
 #include <vector>
 
-namespace tact {
+namespace tact::govern_level_fit_test {
 namespace {
 
 using Rows = std::vector<LevelFit::Row>;
@@ -379,4 +379,4 @@ TEST(LevelFit, invalid_rows_are_ignored) {
 }
 
 }  // namespace
-}  // namespace tact
+}  // namespace tact::govern_level_fit_test

@@ -10,7 +10,7 @@
 
 #include "rt/govern/rate_hold.hpp"
 
-namespace tact {
+namespace tact::govern_rate_hold_test {
 namespace {
 
 constexpr double kGoal_hz = 1000.0;
@@ -208,4 +208,4 @@ TEST(RateHold, any_times_and_goals_give_a_valid_work_fraction_and_sleep) {
 }
 
 }  // namespace
-}  // namespace tact
+}  // namespace tact::govern_rate_hold_test

@@ -11,7 +11,7 @@
 
 #include "tests/support/shared_core_plant.hpp"
 
-namespace tact {
+namespace tact::govern_replay_test {
 namespace {
 
 constexpr double kGoal_hz = 1000.0;
@@ -283,4 +283,4 @@ TEST(LawReplay, a_display_with_time_to_spare_returns_to_full_detail) {
 }
 
 }  // namespace
-}  // namespace tact
+}  // namespace tact::govern_replay_test

@@ -12,7 +12,7 @@
 #include "tests/support/bone_block.hpp"
 #include "tests/unit/gui_canvas.hpp"
 
-namespace tact {
+namespace tact::gui_bone_draw_test {
 namespace {
 
 constexpr int kWidth = 200, kHeight = 160;
@@ -260,4 +260,4 @@ TEST_F(BoneDraw, the_bound_frame_buffer_is_restored) {
 }
 
 }  // namespace
-}  // namespace tact
+}  // namespace tact::gui_bone_draw_test

@@ -10,7 +10,7 @@
 
 #include "gui/drilling/bone_follower.hpp"
 
-namespace tact {
+namespace tact::gui_bone_follower_test {
 namespace {
 
 constexpr std::size_t kVoxels = BoneBricks::kVoxels;
@@ -175,4 +175,4 @@ TEST(BoneFollower, voxels_beyond_the_size_stay_zero) {
 }
 
 }  // namespace
-}  // namespace tact
+}  // namespace tact::gui_bone_follower_test

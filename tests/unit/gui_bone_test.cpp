@@ -11,7 +11,7 @@
 #include "gui/drilling/ray_pace.hpp"
 #include "tests/support/bone_block.hpp"
 
-namespace tact {
+namespace tact::gui_bone_test {
 namespace {
 
 TEST(BoneField, a_soft_labelled_voxel_is_solid_in_proportion_to_its_remaining_density) {
@@ -276,4 +276,4 @@ TEST(DrillHands, tools_are_drawn_in_model_units_and_rotate_only_when_driven) {
 }
 
 }  // namespace
-}  // namespace tact
+}  // namespace tact::gui_bone_test

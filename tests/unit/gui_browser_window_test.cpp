@@ -13,7 +13,7 @@
 #include "deploy/tact/x_server.hpp"
 #include "tests/unit/gui_fake.hpp"
 
-namespace tact {
+namespace tact::gui_browser_window_test {
 namespace {
 
 using std::chrono::milliseconds;
@@ -137,4 +137,4 @@ TEST_F(BrowserInTheWindow, marked_raw_data_in_the_folder_is_imported_and_run) {
 }
 
 }  // namespace
-}  // namespace tact
+}  // namespace tact::gui_browser_window_test

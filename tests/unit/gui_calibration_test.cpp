@@ -17,7 +17,7 @@
 #include "ipc/base/error.hpp"
 #include "ipc/base/random.hpp"
 
-namespace tact {
+namespace tact::gui_calibration_test {
 namespace {
 
 double normal(SeededRandom& random) {
@@ -545,4 +545,4 @@ TEST(TestPicture, the_texts_for_the_two_eyes_are_inside_the_circle_and_separate)
 }
 
 }  // namespace
-}  // namespace tact
+}  // namespace tact::gui_calibration_test

@@ -20,7 +20,7 @@
 #include "rt/threads/head_feed.hpp"
 #include "tests/unit/gui_wait.hpp"
 
-namespace tact {
+namespace tact::gui_calibration_window_test {
 namespace {
 
 constexpr double kWidthM = 0.44, kHeightM = 0.34;
@@ -248,4 +248,4 @@ TEST_F(CalibrationWindow, completes_with_emulated_devices_from_the_first_key_to_
 }
 
 }  // namespace
-}  // namespace tact
+}  // namespace tact::gui_calibration_window_test

@@ -11,7 +11,7 @@
 #include "ipc/base/units.hpp"
 #include "tests/unit/gui_canvas.hpp"
 
-namespace tact {
+namespace tact::gui_cloud_test {
 namespace {
 
 constexpr int kWidth = 160, kHeight = 120;
@@ -207,4 +207,4 @@ TEST_F(GuiCloud, a_scene_draws_no_more_particles_than_its_limit) {
 }
 
 }  // namespace
-}  // namespace tact
+}  // namespace tact::gui_cloud_test

@@ -19,7 +19,7 @@
 #include "tests/unit/gui_wait.hpp"
 #include "tests/unit/prep_mesh_fixtures.hpp"
 
-namespace tact {
+namespace tact::gui_contour_test {
 namespace {
 
 using test::wait_for;
@@ -281,4 +281,4 @@ TEST(ContourOption, gives_level_colour_opacity_and_style) {
 }
 
 }  // namespace
-}  // namespace tact
+}  // namespace tact::gui_contour_test

@@ -7,7 +7,7 @@
 #include "gui/dashboard/knob_changes.hpp"
 #include "gui/dashboard/lateness_window.hpp"
 
-namespace tact {
+namespace tact::gui_dashboard_test {
 namespace {
 
 // A controller that counts cycles and publishes once per second.
@@ -169,4 +169,4 @@ TEST(KnobChanges, invalid_changes_are_ignored_and_dropped_ones_are_counted) {
 }
 
 }  // namespace
-}  // namespace tact
+}  // namespace tact::gui_dashboard_test

@@ -15,7 +15,7 @@
 #include "tests/unit/gui_canvas.hpp"
 #include "tests/unit/gui_fake.hpp"
 
-namespace tact {
+namespace tact::gui_detail_test {
 namespace {
 
 using std::chrono::milliseconds;
@@ -384,4 +384,4 @@ TEST(ContentKey, differs_when_a_number_differs_and_not_for_noise) {
 }
 
 }  // namespace
-}  // namespace tact
+}  // namespace tact::gui_detail_test

@@ -16,7 +16,7 @@
 #include "tests/unit/gui_fake.hpp"
 #include "tests/unit/gui_wait.hpp"
 
-namespace tact {
+namespace tact::gui_draw_test {
 namespace {
 
 constexpr int kWidth = 160, kHeight = 120;
@@ -438,4 +438,4 @@ TEST_F(GuiDrawScene, a_moved_contour_is_visible_in_every_style_and_opacity) {
 }
 
 }  // namespace
-}  // namespace tact
+}  // namespace tact::gui_draw_test

@@ -10,7 +10,7 @@
 #include "gui/window/load_scene.hpp"
 #include "tests/unit/gui_fake.hpp"
 
-namespace tact {
+namespace tact::gui_drill_controller_test {
 namespace {
 
 constexpr double kVoxelM = 5e-4;
@@ -200,4 +200,4 @@ TEST_F(DrillControllerTest, unseen_cycles_are_counted) {
 }
 
 }  // namespace
-}  // namespace tact
+}  // namespace tact::gui_drill_controller_test

@@ -11,7 +11,7 @@
 #include "gui/drilling/drill_report.hpp"
 #include "ipc/base/error.hpp"
 
-namespace tact {
+namespace tact::gui_drilling_test {
 namespace {
 
 // A cube of 16 mm of bone; a nerve begins at x = 10 mm, and beyond x = 0 is a sinus.
@@ -271,4 +271,4 @@ TEST(DrillReport, is_written_completely_or_not_at_all) {
 }
 
 }  // namespace
-}  // namespace tact
+}  // namespace tact::gui_drilling_test

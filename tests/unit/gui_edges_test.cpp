@@ -7,7 +7,7 @@
 #include "gui/render/edge_smoothing.hpp"
 #include "tests/unit/gui_canvas.hpp"
 
-namespace tact {
+namespace tact::gui_edges_test {
 namespace {
 
 constexpr int kSize = 128, kMargin = 9;
@@ -89,4 +89,4 @@ TEST_F(EdgesDrawn, change_nothing_else) {
 }
 
 }  // namespace
-}  // namespace tact
+}  // namespace tact::gui_edges_test

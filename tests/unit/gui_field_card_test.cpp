@@ -4,7 +4,7 @@
 #include "gui/field/field_panels.hpp"
 #include "tests/unit/gui_dashboard_fixture.hpp"
 
-namespace tact {
+namespace tact::gui_field_card_test {
 namespace {
 
 TEST(FieldPanels, the_card_is_drawn) {
@@ -17,4 +17,4 @@ TEST(FieldPanels, the_card_is_drawn) {
 }
 
 }  // namespace
-}  // namespace tact
+}  // namespace tact::gui_field_card_test

@@ -7,7 +7,7 @@
 #include "gui/docking/fit_worker.hpp"
 #include "tests/unit/gui_fake.hpp"
 
-namespace tact {
+namespace tact::gui_fit_test {
 namespace {
 
 FitOutcome next(FitWorker& worker, FitOutcome outcome) {
@@ -112,4 +112,4 @@ TEST(Moved, ignores_motion_below_the_displayed_precision) {
 }
 
 }  // namespace
-}  // namespace tact
+}  // namespace tact::gui_fit_test

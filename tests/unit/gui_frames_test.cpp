@@ -7,7 +7,7 @@
 #include "ipc/base/error.hpp"
 #include "tests/unit/gui_canvas.hpp"
 
-namespace tact {
+namespace tact::gui_frames_test {
 namespace {
 
 using std::chrono::milliseconds;
@@ -122,4 +122,4 @@ TEST(FrameReport, refuses_an_unwritable_path) {
 }
 
 }  // namespace
-}  // namespace tact
+}  // namespace tact::gui_frames_test

@@ -7,7 +7,7 @@
 #include "gui/docking/fit_history.hpp"
 #include "ipc/base/units.hpp"
 
-namespace tact {
+namespace tact::gui_history_test {
 namespace {
 
 using Move = FitHistory::Move;
@@ -220,4 +220,4 @@ RC_GTEST_PROP(FitHistory, any_sequence_matches_a_list_of_states, ()) {
 }
 
 }  // namespace
-}  // namespace tact
+}  // namespace tact::gui_history_test

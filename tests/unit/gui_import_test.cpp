@@ -10,7 +10,7 @@
 #include "ipc/base/clock.hpp"
 #include "ipc/scene/file/scene_switch.hpp"
 
-namespace tact {
+namespace tact::gui_import_test {
 namespace {
 
 class Import : public testing::Test {
@@ -151,4 +151,4 @@ TEST_F(Import, without_a_launcher_the_window_explains_how_to_open_a_scene) {
 }
 
 }  // namespace
-}  // namespace tact
+}  // namespace tact::gui_import_test

@@ -5,7 +5,7 @@
 
 #include "gui/system/keys.hpp"
 
-namespace tact {
+namespace tact::gui_keys_test {
 namespace {
 
 KeySituation where_applies(KeyWhen when) {
@@ -84,4 +84,4 @@ TEST(Keys, the_sheet_handles_esc_before_the_bodies) {
 }
 
 }  // namespace
-}  // namespace tact
+}  // namespace tact::gui_keys_test

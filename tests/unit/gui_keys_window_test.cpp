@@ -13,7 +13,7 @@
 #include "gui/system/keys.hpp"
 #include "tests/unit/gui_fake.hpp"
 
-namespace tact {
+namespace tact::gui_keys_window_test {
 namespace {
 
 using std::chrono::milliseconds;
@@ -199,4 +199,4 @@ TEST_F(KeysInTheWindow, a_digit_selects_the_body_of_that_number) {
 }
 
 }  // namespace
-}  // namespace tact
+}  // namespace tact::gui_keys_window_test

@@ -14,7 +14,7 @@
 #include "gui/link/region_checks.hpp"
 #include "gui/render/mesh_level.hpp"
 
-namespace tact {
+namespace tact::gui_link_test {
 namespace {
 
 BodiesTopic good_bodies() {
@@ -551,4 +551,4 @@ TEST(StatusTexts, of_the_force_on_a_burr_give_the_time_above_the_limit) {
 }
 
 }  // namespace
-}  // namespace tact
+}  // namespace tact::gui_link_test

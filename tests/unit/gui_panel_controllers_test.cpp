@@ -14,7 +14,7 @@
 #include "ipc/scene/file/scene_peek.hpp"
 #include "tests/unit/scene_samples.hpp"
 
-namespace tact {
+namespace tact::gui_panel_controllers_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -244,4 +244,4 @@ TEST_F(TestDashboard, sizes_and_times_have_readable_units) {
 }
 
 }  // namespace
-}  // namespace tact
+}  // namespace tact::gui_panel_controllers_test

@@ -7,7 +7,7 @@
 #include "gui/drilling/particles.hpp"
 #include "ipc/base/error.hpp"
 
-namespace tact {
+namespace tact::gui_particles_test {
 namespace {
 
 constexpr double kPlenty = 1.0;  // seconds of budget: every particle is moved in every step
@@ -329,4 +329,4 @@ TEST(Particles, refuse_impossible_positions_and_settings) {
 }
 
 }  // namespace
-}  // namespace tact
+}  // namespace tact::gui_particles_test

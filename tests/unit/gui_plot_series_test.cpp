@@ -10,7 +10,7 @@
 #include "gui/dashboard/plot_series.hpp"
 #include "gui/dashboard/widgets.hpp"
 
-namespace tact {
+namespace tact::gui_plot_series_test {
 namespace {
 
 struct Extremes {
@@ -139,4 +139,4 @@ TEST(Numbers, that_round_to_zero_have_no_sign) {
 }
 
 }  // namespace
-}  // namespace tact
+}  // namespace tact::gui_plot_series_test

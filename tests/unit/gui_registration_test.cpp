@@ -8,7 +8,7 @@
 #include "gui/stereo/registration.hpp"
 #include "ipc/base/random.hpp"
 
-namespace tact {
+namespace tact::gui_registration_test {
 namespace {
 
 double normal(SeededRandom& random) {
@@ -112,4 +112,4 @@ TEST(Registration, a_mirrored_frame_is_refused) {
 }
 
 }  // namespace
-}  // namespace tact
+}  // namespace tact::gui_registration_test

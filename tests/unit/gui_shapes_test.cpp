@@ -15,7 +15,7 @@
 #include "prep/surface/bake_surface.hpp"
 #include "prep/synthetic/rough_sphere.hpp"
 
-namespace tact {
+namespace tact::gui_shapes_test {
 namespace {
 
 void add(Structure& s, std::uint8_t element, std::array<double, 3> a, std::int32_t residue = 1,
@@ -242,4 +242,4 @@ TEST(Detail, the_drawn_surface_is_fine_around_the_probe_and_its_colour_shows_it)
 }
 
 }  // namespace
-}  // namespace tact
+}  // namespace tact::gui_shapes_test

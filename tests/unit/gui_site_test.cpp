@@ -9,7 +9,7 @@
 #include "gui/drilling/burr_sight.hpp"
 #include "gui/drilling/site_effects.hpp"
 
-namespace tact {
+namespace tact::gui_site_test {
 namespace {
 
 constexpr std::size_t kVoxels = BoneBricks::kVoxels;
@@ -318,4 +318,4 @@ TEST(SiteEffects, counts_the_time_the_burr_was_visible_while_drilling) {
 }
 
 }  // namespace
-}  // namespace tact
+}  // namespace tact::gui_site_test

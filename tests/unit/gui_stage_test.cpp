@@ -11,7 +11,7 @@
 #include "ipc/base/error.hpp"
 #include "ipc/base/random.hpp"
 
-namespace tact {
+namespace tact::gui_stage_test {
 namespace {
 
 constexpr double kWidthPx = 1920.0, kHeightPx = 1080.0;
@@ -262,4 +262,4 @@ TEST(Stereo, each_eye_has_its_area_of_the_output) {
 }
 
 }  // namespace
-}  // namespace tact
+}  // namespace tact::gui_stage_test

@@ -10,7 +10,7 @@
 #include "ipc/base/error.hpp"
 #include "tests/unit/gui_wait.hpp"
 
-namespace tact {
+namespace tact::gui_trace_export_test {
 namespace {
 
 class Export : public testing::Test {
@@ -85,4 +85,4 @@ TEST_F(Export, a_failed_write_leaves_no_partial_file) {
 }
 
 }  // namespace
-}  // namespace tact
+}  // namespace tact::gui_trace_export_test

@@ -6,7 +6,7 @@
 #include "ipc/base/run_state.hpp"
 #include "tests/unit/gui_dashboard_fixture.hpp"
 
-namespace tact {
+namespace tact::gui_traces_panel_test {
 namespace {
 
 constexpr char kCard[] = "Over time";
@@ -165,4 +165,4 @@ TEST_F(TracesPanel, no_data_garbage_and_every_mode_can_be_drawn) {
 }
 
 }  // namespace
-}  // namespace tact
+}  // namespace tact::gui_traces_panel_test

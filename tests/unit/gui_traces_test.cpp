@@ -11,7 +11,7 @@
 #include "gui/dashboard/trace_scope.hpp"
 #include "ipc/base/run_state.hpp"
 
-namespace tact {
+namespace tact::gui_traces_test {
 namespace {
 
 constexpr std::int64_t kMs = 1'000'000;
@@ -273,4 +273,4 @@ TEST(PlotAxis, range_axis_covers_its_range_on_whole_steps) {
 }
 
 }  // namespace
-}  // namespace tact
+}  // namespace tact::gui_traces_test

@@ -10,7 +10,7 @@
 #include "gui/render/tube.hpp"
 #include "tests/unit/gui_fake.hpp"
 
-namespace tact {
+namespace tact::gui_view_test {
 namespace {
 
 Eigen::Vector3f on_screen(const Camera& camera, const Eigen::Vector3f& p, float aspect) {
@@ -211,4 +211,4 @@ TEST(CodebookLevel, is_the_largest_legible_one_within_the_points_of_the_force) {
 }
 
 }  // namespace
-}  // namespace tact
+}  // namespace tact::gui_view_test

@@ -9,7 +9,7 @@
 #include "gui/window/window_state.hpp"
 #include "ipc/base/error.hpp"
 
-namespace tact {
+namespace tact::gui_window_state_test {
 namespace {
 
 WindowState one_of_all() {
@@ -127,4 +127,4 @@ TEST(WindowStateFile, a_camera_is_restored_and_impossible_places_are_ignored) {
 }
 
 }  // namespace
-}  // namespace tact
+}  // namespace tact::gui_window_state_test

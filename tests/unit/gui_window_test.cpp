@@ -16,7 +16,7 @@
 #include "ipc/image/png.hpp"
 #include "tests/unit/gui_fake.hpp"
 
-namespace tact {
+namespace tact::gui_window_test {
 namespace {
 
 using std::chrono::milliseconds;
@@ -508,4 +508,4 @@ TEST_F(GuiWindow, an_unwritable_screenshot_is_an_error_and_arguments_are_checked
 }
 
 }  // namespace
-}  // namespace tact
+}  // namespace tact::gui_window_test

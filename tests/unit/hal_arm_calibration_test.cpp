@@ -5,7 +5,7 @@
 
 #include "tests/unit/hal_arm_samples.hpp"
 
-namespace tact {
+namespace tact::hal_arm_calibration_test {
 namespace {
 
 class Bench {
@@ -145,4 +145,4 @@ TEST(AnyStyle, lost_counts_restart_the_calibration) {
 }
 
 }  // namespace
-}  // namespace tact
+}  // namespace tact::hal_arm_calibration_test

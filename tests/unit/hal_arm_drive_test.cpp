@@ -9,7 +9,7 @@
 
 #include "tests/unit/hal_arm_samples.hpp"
 
-namespace tact {
+namespace tact::hal_arm_drive_test {
 namespace {
 
 template <class Property>
@@ -129,4 +129,4 @@ TEST(Premium, its_motors_give_the_specified_forces) {
 }
 
 }  // namespace
-}  // namespace tact
+}  // namespace tact::hal_arm_drive_test

@@ -8,7 +8,7 @@
 
 #include "tests/unit/hal_arm_samples.hpp"
 
-namespace tact {
+namespace tact::hal_arm_kinematics_test {
 namespace {
 
 template <class Property>
@@ -343,4 +343,4 @@ TEST(Gimbal, without_motors_there_is_no_torque) {
 }
 
 }  // namespace
-}  // namespace tact
+}  // namespace tact::hal_arm_kinematics_test

@@ -10,7 +10,7 @@
 #include "tests/support/says.hpp"
 #include "tests/unit/hal_arm_samples.hpp"
 
-namespace tact {
+namespace tact::hal_arm_table_test {
 namespace {
 
 std::string error_of(const ArmParameterSet& f) {
@@ -112,4 +112,4 @@ TEST(ArmTable, the_readme_has_a_row_for_every_key_and_every_model) {
 }
 
 }  // namespace
-}  // namespace tact
+}  // namespace tact::hal_arm_table_test

@@ -10,7 +10,7 @@
 
 #include "tests/unit/hal_arm_samples.hpp"
 
-namespace tact {
+namespace tact::hal_arm_velocity_test {
 namespace {
 
 template <class Property>
@@ -184,4 +184,4 @@ TEST(ArmVelocity, linear_and_angular_velocity_come_from_the_same_encoders) {
 }
 
 }  // namespace
-}  // namespace tact
+}  // namespace tact::hal_arm_velocity_test

@@ -11,7 +11,7 @@
 #include "tests/support/falcon_board.hpp"
 #include "tests/support/says.hpp"
 
-namespace tact {
+namespace tact::hal_falcon_boot_test {
 namespace {
 
 using emu::FalconBoard;
@@ -198,4 +198,4 @@ TEST_F(FalconBoot, a_failed_restart_is_retried_without_force) {
 }
 
 }  // namespace
-}  // namespace tact
+}  // namespace tact::hal_falcon_boot_test

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <random>
 
-namespace tact::falcon {
+namespace tact::falcon::hal_falcon_kinematics_test {
 namespace {
 
 class FalconKinematics : public testing::Test {
@@ -201,4 +201,4 @@ TEST_F(FalconKinematics, any_counts_give_a_reachable_position_or_none) {
 }
 
 }  // namespace
-}  // namespace tact::falcon
+}  // namespace tact::falcon::hal_falcon_kinematics_test

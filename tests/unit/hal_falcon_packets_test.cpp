@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-namespace tact::falcon {
+namespace tact::falcon::hal_falcon_packets_test {
 namespace {
 
 template <class Bytes>
@@ -151,4 +151,4 @@ TEST_F(Stream, reset_discards_half_a_packet) {
 }
 
 }  // namespace
-}  // namespace tact::falcon
+}  // namespace tact::falcon::hal_falcon_packets_test

@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <array>
 
-namespace tact {
+namespace tact::hal_line_logic_test {
 namespace {
 
 constexpr Duration kMs = std::chrono::milliseconds(1);
@@ -237,4 +237,4 @@ TEST(LineLogic, inputs_that_are_not_fitted_stop_nothing) {
 }
 
 }  // namespace
-}  // namespace tact
+}  // namespace tact::hal_line_logic_test

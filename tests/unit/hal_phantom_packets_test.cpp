@@ -10,7 +10,7 @@
 
 #include "hal/phantom/amplifier.hpp"
 
-namespace tact::phantom {
+namespace tact::phantom::hal_phantom_packets_test {
 namespace {
 
 template <class T>
@@ -372,4 +372,4 @@ TEST(Amplifier, a_fault_is_latched_until_its_cause_ends_and_enable_was_low) {
 }
 
 }  // namespace
-}  // namespace tact::phantom
+}  // namespace tact::phantom::hal_phantom_packets_test

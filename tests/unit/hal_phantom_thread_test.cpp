@@ -5,7 +5,7 @@
 
 #include "tests/support/board_bus.hpp"
 
-namespace tact {
+namespace tact::hal_phantom_thread_test {
 namespace {
 
 using std::chrono::milliseconds;
@@ -122,4 +122,4 @@ TEST_F(PhantomThread, ends_at_once_after_open_and_relax) {
 }
 
 }  // namespace
-}  // namespace tact
+}  // namespace tact::hal_phantom_thread_test

@@ -4,7 +4,7 @@
 #include "hal/sim/sim_device.hpp"
 #include "hal/sim/sim_tracker.hpp"
 
-namespace tact {
+namespace tact::hal_sim_hold_test {
 namespace {
 
 TEST(SimHold, the_sensor_is_measured_at_the_held_position_and_then_on_the_head) {
@@ -48,4 +48,4 @@ TEST(SimHold, the_hand_comes_to_rest_at_the_held_position_with_any_script) {
 }
 
 }  // namespace
-}  // namespace tact
+}  // namespace tact::hal_sim_hold_test

@@ -14,7 +14,7 @@
 #include "hal/tracker/socket_can.hpp"
 #include "ipc/base/error.hpp"
 
-namespace tact {
+namespace tact::hal_socket_can_test {
 namespace {
 
 using std::chrono::milliseconds;
@@ -255,4 +255,4 @@ TEST(SocketCan, poses_sent_through_a_socket_become_samples_and_its_end_is_detect
 }
 
 }  // namespace
-}  // namespace tact
+}  // namespace tact::hal_socket_can_test

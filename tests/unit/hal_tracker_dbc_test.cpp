@@ -11,7 +11,7 @@
 
 #include "hal/tracker/pose_frames.hpp"
 
-namespace tact {
+namespace tact::hal_tracker_dbc_test {
 namespace {
 
 struct DbcSignal {
@@ -184,4 +184,4 @@ TEST(TrackerDbc, decodes_the_frames_of_the_driver) {
 }
 
 }  // namespace
-}  // namespace tact
+}  // namespace tact::hal_tracker_dbc_test

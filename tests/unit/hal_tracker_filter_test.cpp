@@ -8,7 +8,7 @@
 #include "ipc/base/random.hpp"
 #include "ipc/base/units.hpp"
 
-namespace tact {
+namespace tact::hal_tracker_filter_test {
 namespace {
 
 using std::chrono::microseconds;
@@ -194,4 +194,4 @@ TEST(HeadFilter, the_sign_of_a_quaternion_does_not_matter) {
 }
 
 }  // namespace
-}  // namespace tact
+}  // namespace tact::hal_tracker_filter_test

@@ -8,7 +8,7 @@
 #include "hal/tracker/fix_assembler.hpp"
 #include "ipc/base/random.hpp"
 
-namespace tact {
+namespace tact::hal_tracker_frames_test {
 namespace {
 
 constexpr std::array<std::uint8_t, 9> kDigits{'1', '2', '3', '4', '5', '6', '7', '8', '9'};
@@ -295,4 +295,4 @@ TEST(TrackerFd, reserved_bits_and_a_wrong_sensor_number_are_malformed_and_a_long
 }
 
 }  // namespace
-}  // namespace tact
+}  // namespace tact::hal_tracker_frames_test

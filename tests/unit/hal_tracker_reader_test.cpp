@@ -7,7 +7,7 @@
 #include "ipc/base/error.hpp"
 #include "ipc/base/random.hpp"
 
-namespace tact {
+namespace tact::hal_tracker_reader_test {
 namespace {
 
 using std::chrono::microseconds;
@@ -271,4 +271,4 @@ TEST(TrackerClock, restarts_after_the_tracker_was_power_cycled) {
 }
 
 }  // namespace
-}  // namespace tact
+}  // namespace tact::hal_tracker_reader_test

@@ -17,7 +17,7 @@
 #include "ipc/topics/bone_region.hpp"
 #include "ipc/topics/regions.hpp"
 
-namespace tact {
+namespace tact::ipc_bone_region_test {
 namespace {
 
 FileDescriptor copy_of(int fd) { return FileDescriptor(fcntl(fd, F_DUPFD_CLOEXEC, 0)); }
@@ -139,4 +139,4 @@ TEST(BoneRegion, forged_counts_are_refused_with_both_values) {
 }
 
 }  // namespace
-}  // namespace tact
+}  // namespace tact::ipc_bone_region_test

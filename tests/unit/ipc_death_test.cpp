@@ -21,7 +21,7 @@
 #include "ipc/topics/regions.hpp"
 #include "tests/stress/pattern.hpp"
 
-namespace tact {
+namespace tact::ipc_death_test {
 namespace {
 
 using Pattern = stress::Pattern<512>;  // 4 KiB: most of the time the writer is inside a copy
@@ -218,4 +218,4 @@ TEST_F(LinkDeath, the_visual_process_survives_a_killed_controller_and_attaches_t
 }
 
 }  // namespace
-}  // namespace tact
+}  // namespace tact::ipc_death_test

@@ -12,7 +12,7 @@
 #include "ipc/topics/frames.hpp"
 #include "ipc/topics/levels.hpp"
 
-namespace tact {
+namespace tact::ipc_frames_test {
 namespace {
 
 FrameMetrics good() {
@@ -98,4 +98,4 @@ TEST(RecentTimes, percentiles_cover_only_the_window) {
 }
 
 }  // namespace
-}  // namespace tact
+}  // namespace tact::ipc_frames_test

@@ -19,7 +19,7 @@
 #include "ipc/topics/bone_region.hpp"
 #include "ipc/topics/regions.hpp"
 
-namespace tact {
+namespace tact::ipc_link_test {
 namespace {
 
 class Link : public ::testing::Test {
@@ -350,4 +350,4 @@ TEST_F(Link, session_names_are_names_and_not_paths) {
 }
 
 }  // namespace
-}  // namespace tact
+}  // namespace tact::ipc_link_test

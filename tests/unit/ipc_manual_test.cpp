@@ -13,7 +13,7 @@
 #include "ipc/manual/page.hpp"
 #include "ipc/manual/roff.hpp"
 
-namespace tact::manual {
+namespace tact::manual::ipc_manual_test {
 namespace {
 
 enum class Style { trace, tube };
@@ -147,4 +147,4 @@ TEST(Manual, pages_that_cannot_be_written_are_an_error) {
 }
 
 }  // namespace
-}  // namespace tact::manual
+}  // namespace tact::manual::ipc_manual_test

@@ -7,7 +7,7 @@
 #include "ipc/base/error.hpp"
 #include "ipc/image/png.hpp"
 
-namespace tact {
+namespace tact::ipc_png_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -60,4 +60,4 @@ TEST_F(Png, unwritable_path_and_wrong_size_are_errors) {
 }
 
 }  // namespace
-}  // namespace tact
+}  // namespace tact::ipc_png_test

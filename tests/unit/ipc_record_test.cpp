@@ -14,7 +14,7 @@
 #include "ipc/record/without_folders.hpp"
 #include "tests/support/library_leaks.hpp"
 
-namespace tact {
+namespace tact::ipc_record_test {
 namespace {
 
 class RecordFile : public ::testing::Test {
@@ -264,4 +264,4 @@ TEST_F(RecordFile, a_truncated_or_corrupt_file_is_read_or_refused) {
 }
 
 }  // namespace
-}  // namespace tact
+}  // namespace tact::ipc_record_test

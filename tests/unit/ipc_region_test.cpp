@@ -14,7 +14,7 @@
 #include "ipc/shm/region_header.hpp"
 #include "ipc/topics/regions.hpp"
 
-namespace tact {
+namespace tact::ipc_region_test {
 namespace {
 
 FileDescriptor again(int fd) { return FileDescriptor(fcntl(fd, F_DUPFD_CLOEXEC, 0)); }
@@ -212,4 +212,4 @@ TEST(Region, layout_hash_changes_with_any_topic) {
 }
 
 }  // namespace
-}  // namespace tact
+}  // namespace tact::ipc_region_test

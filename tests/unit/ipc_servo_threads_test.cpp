@@ -7,7 +7,7 @@
 #include <filesystem>
 #include <fstream>
 
-namespace tact {
+namespace tact::ipc_servo_threads_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -107,4 +107,4 @@ TEST(ServoThreads, the_real_proc_can_be_read) {
 }
 
 }  // namespace
-}  // namespace tact
+}  // namespace tact::ipc_servo_threads_test

@@ -11,7 +11,7 @@
 #include "ipc/topics/level_text.hpp"
 #include "ipc/topics/text.hpp"
 
-namespace tact {
+namespace tact::ipc_text_test {
 namespace {
 
 // Each value of an enum up to `last` has its own text; values beyond give "unknown".
@@ -154,4 +154,4 @@ TEST(Text, schedule_is_spelled_out) {
 }
 
 }  // namespace
-}  // namespace tact
+}  // namespace tact::ipc_text_test

@@ -1,30 +1,27 @@
 # Tests of prep.
-tact_test(unit/prep_map_test.cpp USES prep_map SYSTEM ZLIB::ZLIB)
-tact_test(unit/prep_structure_test.cpp USES prep_structure)
-tact_test(unit/prep_real_files_test.cpp USES prep_map prep_structure)
-tact_test(unit/prep_neural_gas_test.cpp USES prep_codebook)
-tact_test(unit/prep_synthetic_test.cpp USES prep_map prep_synthetic)
-tact_test(unit/prep_contraction_test.cpp USES prep_mesh prep_synthetic)
-tact_test(unit/prep_mesh_file_test.cpp USES prep_mesh prep_mesh_file SYSTEM ZLIB::ZLIB)
-tact_test(unit/prep_clean_mesh_test.cpp USES prep_surface)
-tact_test(unit/prep_forest_test.cpp USES scene prep_surface prep_synthetic)
-tact_test(unit/prep_simplify_test.cpp USES prep_mesh SYSTEM rapidcheck)
-tact_test(unit/prep_simplify_to_keep_test.cpp USES prep_mesh)
-tact_test(unit/prep_bake_test.cpp USES prep_docking prep_synthetic)
+tact_tests(prep_docking_tests SOURCES
+        unit/prep_map_test.cpp unit/prep_structure_test.cpp unit/prep_real_files_test.cpp unit/prep_neural_gas_test.cpp
+        unit/prep_synthetic_test.cpp unit/prep_bake_test.cpp
+    USES prep_map prep_structure prep_codebook prep_synthetic prep_docking SYSTEM ZLIB::ZLIB)
+tact_tests(prep_mesh_tests SOURCES
+        unit/prep_contraction_test.cpp unit/prep_mesh_file_test.cpp unit/prep_clean_mesh_test.cpp
+        unit/prep_forest_test.cpp unit/prep_simplify_test.cpp unit/prep_simplify_to_keep_test.cpp
+    USES prep_mesh prep_synthetic prep_mesh_file prep_surface scene SYSTEM ZLIB::ZLIB rapidcheck)
 find_package(nlohmann_json REQUIRED)
-tact_test(unit/prep_cli_test.cpp USES scene SYSTEM nlohmann_json::nlohmann_json)
-target_compile_definitions(prep_cli_test PRIVATE TACT_PREP="$<TARGET_FILE:tact-prep>")
-add_dependencies(prep_cli_test tact-prep)
-tact_test(unit/prep_export_test.cpp USES prep_export prep_cif prep_structure prep_input scene base SYSTEM tact_gemmi)
-tact_test(unit/prep_poses_file_test.cpp USES prep_export scene base)
-tact_test(unit/prep_best_codebook_test.cpp USES prep_codebook)
+tact_tests(prep_files_tests SOURCES
+        unit/prep_cli_test.cpp unit/prep_export_test.cpp unit/prep_poses_file_test.cpp unit/prep_best_codebook_test.cpp
+        unit/prep_field_test.cpp
+    USES scene prep_export prep_cif prep_structure prep_input base prep_codebook prep_field SYSTEM
+        nlohmann_json::nlohmann_json tact_gemmi)
+target_compile_definitions(prep_files_tests PRIVATE TACT_PREP="$<TARGET_FILE:tact-prep>")
+add_dependencies(prep_files_tests tact-prep)
 # Two of the ten pairs; all of them take a minute and are run by hand.
 add_test(NAME save_pairs_test COMMAND tests/e2e/save_pairs_test.py $<TARGET_FILE_DIR:tact-prep> 1gte 2dqj
     WORKING_DIRECTORY ${CMAKE_SOURCE_DIR})
 set_tests_properties(save_pairs_test PROPERTIES LABELS e2e TIMEOUT 300 SKIP_RETURN_CODE 77)
-tact_test(unit/prep_volume_test.cpp USES prep_drilling prep_volume prep_synthetic scene)
-tact_test(unit/prep_scan_test.cpp USES prep_drilling prep_volume image base SYSTEM ZLIB::ZLIB)
+tact_tests(prep_scan_tests SOURCES
+        unit/prep_volume_test.cpp unit/prep_scan_test.cpp
+    USES prep_drilling prep_volume prep_synthetic scene image base SYSTEM ZLIB::ZLIB)
 tact_test(unit/prep_dicom_packed_test.cpp USES prep_drilling prep_volume base)
 target_link_libraries(prep_dicom_packed_test PRIVATE ${TACT_GDCM_MSFF} ${TACT_GDCM_DSED} ${TACT_GDCM_Common})
 target_include_directories(prep_dicom_packed_test SYSTEM PRIVATE ${TACT_GDCM_INCLUDE})
-tact_test(unit/prep_field_test.cpp USES base scene prep_field)

@@ -11,7 +11,7 @@
 #include "prep/synthetic/ring.hpp"
 #include "tests/unit/prep_samples.hpp"
 
-namespace tact {
+namespace tact::prep_bake_test {
 namespace {
 
 const DockingInput& ring_input() {
@@ -217,4 +217,4 @@ TEST(Bake, stops_at_any_report_that_cancels_it) {
 }
 
 }  // namespace
-}  // namespace tact
+}  // namespace tact::prep_bake_test

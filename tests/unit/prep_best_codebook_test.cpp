@@ -8,7 +8,7 @@
 #include <numbers>
 #include <random>
 
-namespace tact {
+namespace tact::prep_best_codebook_test {
 namespace {
 
 constexpr double kA = 1e-10;
@@ -120,4 +120,4 @@ TEST(BestCodebook, large_structures_get_fewer_restarts) {
 }
 
 }  // namespace
-}  // namespace tact
+}  // namespace tact::prep_best_codebook_test

@@ -7,7 +7,7 @@
 #include "prep/surface/clean_mesh.hpp"
 #include "tests/unit/prep_mesh_fixtures.hpp"
 
-namespace tact {
+namespace tact::prep_clean_mesh_test {
 namespace {
 
 // A square of two triangles, vertices 0 to 3.
@@ -98,4 +98,4 @@ TEST(CleanMesh, irreparable_meshes_are_refused) {
 }
 
 }  // namespace
-}  // namespace tact
+}  // namespace tact::prep_clean_mesh_test

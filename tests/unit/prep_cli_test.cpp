@@ -15,7 +15,7 @@
 #include "ipc/scene/file/scene_meta.hpp"
 #include "tests/unit/prep_samples.hpp"
 
-namespace tact {
+namespace tact::prep_cli_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -309,4 +309,4 @@ TEST_F(Program, ctrl_c_leaves_no_partial_file) {
 }
 
 }  // namespace
-}  // namespace tact
+}  // namespace tact::prep_cli_test

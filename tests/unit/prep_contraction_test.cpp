@@ -11,7 +11,7 @@
 #include "prep/synthetic/rough_sphere.hpp"
 #include "tests/unit/prep_mesh_fixtures.hpp"
 
-namespace tact::test {
+namespace tact::test::prep_contraction_test {
 namespace {
 
 // A sphere of vertex rings between two poles.
@@ -272,4 +272,4 @@ TEST(NearPairs, match_the_slow_search) {
 }
 
 }  // namespace
-}  // namespace tact::test
+}  // namespace tact::test::prep_contraction_test

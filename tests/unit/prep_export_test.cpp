@@ -18,7 +18,7 @@
 #include "prep/structure/import_structure.hpp"
 #include "tests/unit/scene_samples.hpp"
 
-namespace tact {
+namespace tact::prep_export_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -365,4 +365,4 @@ TEST_F(Export, damaged_files_are_refused) {
 }
 
 }  // namespace
-}  // namespace tact
+}  // namespace tact::prep_export_test

@@ -12,7 +12,7 @@
 #include "prep/field/charges.hpp"
 #include "prep/field/import_field.hpp"
 
-namespace tact {
+namespace tact::prep_field_test {
 namespace {
 
 std::string error_of(const std::string& csv) {
@@ -144,4 +144,4 @@ TEST(FieldBake, the_scene_reads_back_unchanged) {
 }
 
 }  // namespace
-}  // namespace tact
+}  // namespace tact::prep_field_test

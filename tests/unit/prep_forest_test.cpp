@@ -8,7 +8,7 @@
 #include "prep/synthetic/rough_torus.hpp"
 #include "tests/unit/prep_mesh_fixtures.hpp"
 
-namespace tact {
+namespace tact::prep_forest_test {
 namespace {
 
 TriangleMesh two_spheres_and_a_sheet() {
@@ -193,4 +193,4 @@ TEST(VertexForest, reads_back_unchanged_and_refuses_invalid_data) {
 }
 
 }  // namespace
-}  // namespace tact
+}  // namespace tact::prep_forest_test

@@ -9,7 +9,7 @@
 #include "prep/map/import_map.hpp"
 #include "tests/unit/prep_samples.hpp"
 
-namespace tact {
+namespace tact::prep_map_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -306,4 +306,4 @@ TEST(MrcMap, a_small_skew_file_does_not_grow_into_a_huge_grid) {
 }
 
 }  // namespace
-}  // namespace tact
+}  // namespace tact::prep_map_test

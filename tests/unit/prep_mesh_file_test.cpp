@@ -13,7 +13,7 @@
 #include "prep/mesh_file/write_ply.hpp"
 #include "tests/unit/prep_samples.hpp"
 
-namespace tact {
+namespace tact::prep_mesh_file_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -276,4 +276,4 @@ TEST(MeshFile, real_meshes_are_read_and_simplified_without_new_folds) {
 }
 
 }  // namespace
-}  // namespace tact
+}  // namespace tact::prep_mesh_file_test

@@ -11,7 +11,7 @@
 #include "ipc/base/error.hpp"
 #include "prep/codebook/vector_grid.hpp"
 
-namespace tact {
+namespace tact::prep_neural_gas_test {
 namespace {
 
 constexpr double kA = 1e-10;
@@ -221,4 +221,4 @@ TEST(VectorGrid, matches_a_slow_search_while_vectors_move) {
 }
 
 }  // namespace
-}  // namespace tact
+}  // namespace tact::prep_neural_gas_test

@@ -5,7 +5,7 @@
 
 #include "tests/unit/scene_samples.hpp"
 
-namespace tact {
+namespace tact::prep_poses_file_test {
 namespace {
 
 using sample::error_of;
@@ -55,4 +55,4 @@ TEST(PosesFile, invalid_input_is_refused) {
 }
 
 }  // namespace
-}  // namespace tact
+}  // namespace tact::prep_poses_file_test

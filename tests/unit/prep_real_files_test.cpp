@@ -11,7 +11,7 @@
 #include "prep/structure/import_structure.hpp"
 #include "tests/unit/prep_samples.hpp"
 
-namespace tact {
+namespace tact::prep_real_files_test {
 namespace {
 
 double trilinear(const DensityGrid& g, const Vec3& p_m) {
@@ -136,4 +136,4 @@ TEST(RealFiles, structures_of_all_kinds_are_read) {
 }
 
 }  // namespace
-}  // namespace tact
+}  // namespace tact::prep_real_files_test

@@ -12,19 +12,9 @@
 #include <string>
 #include <vector>
 
-#include "ipc/base/error.hpp"
+#include "tests/support/error_of.hpp"
 
 namespace tact::sample {
-
-template <class Call>
-std::string error_of(Call&& call) {
-    try {
-        call();
-    } catch (const StartupError& error) {
-        return error.what();
-    }
-    return {};
-}
 
 // Returns an empty path without the data folder.
 inline std::filesystem::path em_folder() {

@@ -11,7 +11,7 @@
 #include "tests/support/says.hpp"
 #include "tests/unit/prep_scan_samples.hpp"
 
-namespace tact {
+namespace tact::prep_scan_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -505,4 +505,4 @@ TEST(RealScans, all_real_scans_are_read) {
 }
 
 }  // namespace
-}  // namespace tact
+}  // namespace tact::prep_scan_test

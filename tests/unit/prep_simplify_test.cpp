@@ -10,7 +10,7 @@
 #include "prep/mesh/simplify_to_keep.hpp"
 #include "tests/unit/prep_mesh_fixtures.hpp"
 
-namespace tact::test {
+namespace tact::test::prep_simplify_test {
 namespace {
 
 // Loss at the outline: mean distance from a corner of the unit square to the nearest vertex.
@@ -165,4 +165,4 @@ TEST(Simplify, can_be_cancelled) {
 }
 
 }  // namespace
-}  // namespace tact::test
+}  // namespace tact::test::prep_simplify_test

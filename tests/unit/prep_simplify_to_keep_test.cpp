@@ -10,7 +10,7 @@
 #include "prep/mesh/mesh_folds.hpp"
 #include "tests/unit/prep_mesh_fixtures.hpp"
 
-namespace tact::test {
+namespace tact::test::prep_simplify_to_keep_test {
 namespace {
 
 TEST(SimplifyToKeep, keeps_a_border_weight_that_no_other_beats_in_both_distances) {
@@ -62,4 +62,4 @@ TEST(BorderDistance, of_nested_squares_is_the_mean_over_both_borders) {
 }
 
 }  // namespace
-}  // namespace tact::test
+}  // namespace tact::test::prep_simplify_to_keep_test

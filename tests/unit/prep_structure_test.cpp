@@ -6,7 +6,7 @@
 #include "prep/structure/import_structure.hpp"
 #include "tests/unit/prep_samples.hpp"
 
-namespace tact {
+namespace tact::prep_structure_test {
 namespace {
 
 using sample::pdb_atom;
@@ -152,4 +152,4 @@ TEST(MmcifStructure, invalid_files_are_refused_with_the_row) {
 }
 
 }  // namespace
-}  // namespace tact
+}  // namespace tact::prep_structure_test

@@ -9,7 +9,7 @@
 #include "prep/map/map_statistics.hpp"
 #include "prep/synthetic/ring.hpp"
 
-namespace tact {
+namespace tact::prep_synthetic_test {
 namespace {
 
 constexpr double kA = 1e-10;
@@ -136,4 +136,4 @@ TEST_F(Ring, no_other_rotation_fits_the_map_as_well) {
 }
 
 }  // namespace
-}  // namespace tact
+}  // namespace tact::prep_synthetic_test

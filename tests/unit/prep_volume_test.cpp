@@ -10,7 +10,7 @@
 #include "prep/synthetic/temporal_bone.hpp"
 #include "tests/unit/scene_samples.hpp"
 
-namespace tact {
+namespace tact::prep_volume_test {
 namespace {
 
 // Brute force: distance of a point (in voxels) to the surface of all voxel cubes with the label.
@@ -233,4 +233,4 @@ TEST(BoneHeights, without_a_valid_position_the_outermost_voxel_is_chosen) {
 }
 
 }  // namespace
-}  // namespace tact
+}  // namespace tact::prep_volume_test

@@ -13,7 +13,7 @@
 #include <cmath>
 #include <map>
 
-namespace tact::launch {
+namespace tact::launch::reproduce_test {
 namespace {
 
 // Ten samples per second: `slow` cycles per sample within [slow_from_s, slow_to_s), else `fast`.
@@ -301,4 +301,4 @@ TEST(TouchRow, a_proxy_stuck_for_five_cycles_is_jammed_from_the_first_one) {
 }
 
 }  // namespace
-}  // namespace tact::launch
+}  // namespace tact::launch::reproduce_test

@@ -2,58 +2,51 @@
 find_package(rapidcheck REQUIRED)
 find_package(spdlog REQUIRED)
 
-tact_test(unit/safety_state_machine_test.cpp USES base safety)
-tact_test(unit/safety_output_chain_test.cpp USES base safety SYSTEM rapidcheck)
-tact_test(unit/safety_smooth_gain_test.cpp USES base safety SYSTEM rapidcheck)
-tact_test(unit/safety_watchdogs_test.cpp USES base safety)
-tact_test(unit/govern_governor_test.cpp USES base govern SYSTEM rapidcheck)
-tact_test(unit/govern_display_test.cpp USES base govern SYSTEM rapidcheck)
-tact_test(unit/govern_level_fit_test.cpp USES base govern)
-tact_test(unit/govern_rate_hold_test.cpp USES base govern)
-tact_test(unit/govern_replay_test.cpp USES base govern)
+tact_tests(safety_tests SOURCES
+        unit/safety_state_machine_test.cpp unit/safety_output_chain_test.cpp unit/safety_smooth_gain_test.cpp
+        unit/safety_watchdogs_test.cpp
+    USES base safety SYSTEM rapidcheck)
+tact_tests(govern_tests SOURCES
+        unit/govern_governor_test.cpp unit/govern_display_test.cpp unit/govern_level_fit_test.cpp
+        unit/govern_rate_hold_test.cpp unit/govern_replay_test.cpp
+    USES base govern SYSTEM rapidcheck)
 tact_test(unit/hal_sim_test.cpp USES base hal)
-tact_test(unit/base_pacer_test.cpp USES base SYSTEM rapidcheck)
-tact_test(unit/base_motor_heat_test.cpp USES base)
-tact_test(unit/hal_arm_kinematics_test.cpp USES base arm SYSTEM rapidcheck)
-tact_test(unit/hal_arm_drive_test.cpp USES base arm SYSTEM rapidcheck)
-tact_test(unit/hal_arm_velocity_test.cpp USES base arm SYSTEM rapidcheck)
-tact_test(unit/hal_arm_calibration_test.cpp USES base arm)
-tact_test(unit/hal_arm_table_test.cpp USES base arm)
-tact_test(unit/hal_phantom_packets_test.cpp USES phantom SYSTEM rapidcheck)
-tact_test(unit/config_test.cpp USES base hal servo threads config govern)
-tact_test(unit/threads_head_feed_test.cpp USES base hal topics servo threads config LABELS tsan)
-tact_test(unit/threads_supervisor_test.cpp USES base servo threads config LABELS tsan)
-tact_test(unit/config_arm_test.cpp USES base arm hal servo threads config)
-tact_test(unit/threads_housekeeping_test.cpp USES base topics servo threads config)
-tact_test(unit/threads_command_feed_test.cpp USES base topics servo threads)
-tact_test(unit/threads_log_sink_test.cpp USES servo threads config SYSTEM spdlog::spdlog)
-tact_test(unit/config_problems_test.cpp USES base hal servo threads config start)
-tact_test(unit/threads_service_notify_test.cpp USES base servo threads config SYSTEM spdlog::spdlog)
-tact_test(unit/start_scene_bone_test.cpp USES base shm topics scene force start)
-tact_test(unit/start_bodies_test.cpp USES base scene force start)
-tact_test(unit/start_systems_test.cpp USES base shm topics scene hal force servo threads config start)
-tact_test(unit/start_drill_test.cpp USES base shm topics scene hal force servo threads config start)
+tact_tests(arm_tests SOURCES
+        unit/base_pacer_test.cpp unit/base_motor_heat_test.cpp unit/hal_arm_kinematics_test.cpp
+        unit/hal_arm_drive_test.cpp unit/hal_arm_velocity_test.cpp unit/hal_arm_calibration_test.cpp
+        unit/hal_arm_table_test.cpp
+    USES base arm SYSTEM rapidcheck)
+tact_tests(config_tests SOURCES
+        unit/config_test.cpp unit/config_arm_test.cpp unit/config_problems_test.cpp
+    USES base hal servo threads config govern arm start)
+tact_tests(threads_shared_tests SOURCES
+        unit/threads_head_feed_test.cpp unit/threads_supervisor_test.cpp unit/servo_orders_test.cpp
+    USES base hal topics servo threads config shm LABELS tsan)
+tact_tests(threads_tests SOURCES
+        unit/threads_housekeeping_test.cpp unit/threads_command_feed_test.cpp unit/threads_log_sink_test.cpp
+        unit/threads_service_notify_test.cpp
+    USES base topics servo threads config SYSTEM spdlog::spdlog)
+tact_tests(start_tests SOURCES
+        unit/start_scene_bone_test.cpp unit/start_bodies_test.cpp unit/start_systems_test.cpp unit/start_drill_test.cpp
+    USES base shm topics scene force start hal servo threads config)
 
 # The stages of a cycle, without a Servo.
-tact_test(unit/servo_orders_test.cpp USES base shm topics servo LABELS tsan)
-tact_test(unit/servo_input_stages_test.cpp USES base topics hal_api force servo)
-tact_test(unit/servo_force_stages_test.cpp USES base topics hal_api force servo)
-tact_test(unit/servo_armed_metrics_test.cpp USES base servo)
-tact_test(unit/servo_output_stages_test.cpp USES base topics hal_api force servo)
+tact_tests(servo_tests SOURCES
+        unit/servo_input_stages_test.cpp unit/servo_force_stages_test.cpp unit/servo_armed_metrics_test.cpp
+        unit/servo_output_stages_test.cpp unit/bench_servo_test.cpp unit/bench_governor_test.cpp
+    USES base topics hal_api force servo bench_servo bench SYSTEM nlohmann_json::nlohmann_json)
 
-tact_test(unit/bench_servo_test.cpp USES base bench_servo)
-tact_test(unit/bench_governor_test.cpp USES base bench SYSTEM nlohmann_json::nlohmann_json)
 
 # The whole loop in lockstep.
-tact_test(scenario/servo_scenario_test.cpp USES base topics hal force servo threads config start)
-tact_test(scenario/drill_scenario_test.cpp USES base topics hal force servo threads config start)
-tact_test(scenario/stiffness_scenario_test.cpp USES base topics hal force servo threads config start safety)
+tact_tests(cycle_scenario_tests SOURCES
+        scenario/servo_scenario_test.cpp scenario/drill_scenario_test.cpp scenario/stiffness_scenario_test.cpp
+        scenario/record_scenario_test.cpp
+    USES base topics hal force servo threads config start safety recorder)
 tact_test(scenario/supervisor_scenario_test.cpp USES base topics hal io force servo threads config start LABELS tsan)
-tact_test(scenario/servo_faults_scenario_test.cpp USES base topics hal force servo threads config start)
-tact_test(scenario/lines_scenario_test.cpp USES base topics hal force servo threads config start)
-tact_test(scenario/record_scenario_test.cpp USES base topics hal force servo threads config start recorder)
-tact_test(scenario/bodies_scenario_test.cpp USES base topics scene hal force servo threads config start)
-tact_test(scenario/governor_scenario_test.cpp USES base topics hal force servo threads config start govern)
+tact_tests(system_scenario_tests SOURCES
+        scenario/servo_faults_scenario_test.cpp scenario/lines_scenario_test.cpp scenario/bodies_scenario_test.cpp
+        scenario/governor_scenario_test.cpp
+    USES base topics hal force servo threads config start scene govern)
 
 # The servo path uses neither heap nor mutex: the test includes the interposers of tact-rt.
 tact_program(rt_safe_test SOURCES rt_safe/rt_safe_test.cpp ${CMAKE_SOURCE_DIR}/rt/servo/interpose.cpp

@@ -10,7 +10,7 @@
 
 #include "rt/safety/stages.hpp"
 
-namespace tact {
+namespace tact::safety_output_chain_test {
 namespace {
 
 using std::chrono::microseconds;
@@ -431,4 +431,4 @@ TEST(PassivityControl, a_credit_is_used_up_before_it_damps) {
 }
 
 }  // namespace
-}  // namespace tact
+}  // namespace tact::safety_output_chain_test

@@ -10,7 +10,7 @@
 
 #include "rt/safety/stages.hpp"
 
-namespace tact {
+namespace tact::safety_smooth_gain_test {
 namespace {
 
 constexpr double kMs = 1e-3;
@@ -146,4 +146,4 @@ TEST(DampingLimit, within_the_limit_a_late_damper_damps_and_at_twice_it_oscillat
 }
 
 }  // namespace
-}  // namespace tact
+}  // namespace tact::safety_smooth_gain_test

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-namespace tact {
+namespace tact::safety_state_machine_test {
 namespace {
 
 constexpr std::array kStates{RunState::off, RunState::ready, RunState::armed, RunState::active,
@@ -190,4 +190,4 @@ TEST(StateMachine, the_reasons_that_can_latch_a_fault_are_those_that_trip_in_som
 }
 
 }  // namespace
-}  // namespace tact
+}  // namespace tact::safety_state_machine_test

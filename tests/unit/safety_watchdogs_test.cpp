@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-namespace tact {
+namespace tact::safety_watchdogs_test {
 namespace {
 
 using std::chrono::microseconds;
@@ -105,4 +105,4 @@ TEST(Watchdogs, a_lost_device_is_reported_before_its_consequences) {
 }
 
 }  // namespace
-}  // namespace tact
+}  // namespace tact::safety_watchdogs_test

@@ -1,22 +1,18 @@
 # Tests of the scene file and of its contents.
-tact_test(unit/scene_file_test.cpp USES scene)
-tact_test(unit/scene_kinds_test.cpp USES scene)
-tact_test(unit/scene_content_test.cpp USES scene)
-tact_test(unit/scene_density_map_test.cpp USES scene)
-tact_test(unit/scene_density_sum_test.cpp USES scene SYSTEM rapidcheck)
-tact_test(unit/scene_density_reference_test.cpp USES scene reference)
-tact_test(unit/scene_contour_test.cpp USES scene base)
-tact_test(unit/scene_isosurface_test.cpp USES scene)
+tact_tests(scene_file_tests SOURCES
+        unit/scene_file_test.cpp unit/scene_kinds_test.cpp unit/scene_content_test.cpp unit/scene_contour_test.cpp
+        unit/scene_isosurface_test.cpp unit/scene_clashes_test.cpp
+    USES scene base)
+tact_tests(scene_density_tests SOURCES
+        unit/scene_density_map_test.cpp unit/scene_density_sum_test.cpp unit/scene_density_reference_test.cpp
+        unit/scene_laplacian_map_test.cpp unit/scene_subtracted_map_test.cpp unit/scene_docking_gain_test.cpp
+    USES scene reference SYSTEM rapidcheck)
 tact_test(unit/scene_mesh_cut_test.cpp USES scene prep_mesh SYSTEM rapidcheck)
-tact_test(unit/scene_mesh_parts_test.cpp USES scene base SYSTEM rapidcheck)
-tact_test(unit/scene_progressive_mesh_test.cpp USES scene prep_mesh SYSTEM rapidcheck)
-tact_test(unit/scene_fit_metrics_test.cpp USES scene)
-tact_test(unit/scene_simulated_map_test.cpp USES scene)
-tact_test(unit/scene_refine_test.cpp USES scene)
-tact_test(unit/scene_fit_real_test.cpp USES scene prep_map prep_structure)
-tact_test(unit/scene_clashes_test.cpp USES scene)
-tact_test(unit/scene_laplacian_map_test.cpp USES scene)
-tact_test(unit/scene_subtracted_map_test.cpp USES scene)
-tact_test(unit/scene_docking_gain_test.cpp USES scene)
-tact_test(unit/scene_surface_mesh_test.cpp USES scene prep_surface SYSTEM rapidcheck)
-tact_test(unit/scene_bone_test.cpp USES scene)
+tact_tests(scene_mesh_tests SOURCES
+        unit/scene_mesh_parts_test.cpp unit/scene_progressive_mesh_test.cpp unit/scene_surface_mesh_test.cpp
+        unit/scene_bone_test.cpp
+    USES scene base prep_mesh prep_surface SYSTEM rapidcheck)
+tact_tests(scene_fit_tests SOURCES
+        unit/scene_fit_metrics_test.cpp unit/scene_simulated_map_test.cpp unit/scene_refine_test.cpp
+        unit/scene_fit_real_test.cpp
+    USES scene prep_map prep_structure)

@@ -10,7 +10,7 @@
 #include "ipc/scene/file/scene_meta.hpp"
 #include "tests/unit/scene_samples.hpp"
 
-namespace tact {
+namespace tact::scene_bone_test {
 namespace {
 
 constexpr SectionTag kBone{'B', 'O', 'N', 'E'}, kLabl{'L', 'A', 'B', 'L'}, kDist{'D', 'I', 'S', 'T'};
@@ -191,4 +191,4 @@ TEST(DistanceField, is_linear_between_its_points_and_a_lower_bound_beyond_them) 
 }
 
 }  // namespace
-}  // namespace tact
+}  // namespace tact::scene_bone_test

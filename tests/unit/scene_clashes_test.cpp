@@ -8,7 +8,7 @@
 
 #include "ipc/base/random.hpp"
 
-namespace tact {
+namespace tact::scene_clashes_test {
 namespace {
 
 constexpr double kA = 1e-10;
@@ -120,4 +120,4 @@ TEST(Clashes, non_finite_positions_clash_with_nothing) {
 }
 
 }  // namespace
-}  // namespace tact
+}  // namespace tact::scene_clashes_test

@@ -8,7 +8,7 @@
 #include "ipc/scene/file/bytes.hpp"
 #include "tests/unit/scene_samples.hpp"
 
-namespace tact {
+namespace tact::scene_content_test {
 namespace {
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
@@ -216,4 +216,4 @@ TEST(SceneContent, hostile_counts_are_refused_before_memory_is_taken) {
 }
 
 }  // namespace
-}  // namespace tact
+}  // namespace tact::scene_content_test

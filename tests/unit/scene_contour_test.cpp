@@ -10,7 +10,7 @@
 #include "ipc/scene/density/contour_scale.hpp"
 #include "tests/unit/prep_mesh_fixtures.hpp"
 
-namespace tact::test {
+namespace tact::test::scene_contour_test {
 namespace {
 
 TEST(ContourScale, fractions_match_counted_voxels) {
@@ -100,4 +100,4 @@ TEST(ContourMesh, reads_back_and_is_refused_for_another_scene_or_level) {
 }
 
 }  // namespace
-}  // namespace tact::test
+}  // namespace tact::test::scene_contour_test

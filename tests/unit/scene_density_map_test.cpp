@@ -10,7 +10,7 @@
 #include "ipc/base/error.hpp"
 #include "ipc/scene/density/density_kernels.hpp"
 
-namespace tact {
+namespace tact::scene_density_map_test {
 namespace {
 
 constexpr double kVoxelM = 2.5e-10;
@@ -239,4 +239,4 @@ TEST(DensityMap, refuses_invalid_maps) {
 }
 
 }  // namespace
-}  // namespace tact
+}  // namespace tact::scene_density_map_test

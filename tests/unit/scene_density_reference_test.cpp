@@ -5,7 +5,7 @@
 
 #include "tests/unit/chain_sample.hpp"
 
-namespace tact {
+namespace tact::scene_density_reference_test {
 namespace {
 
 using namespace chain;
@@ -118,4 +118,4 @@ TEST(DensityReference, the_force_is_that_of_the_gaussians_of_the_map) {
 }
 
 }  // namespace
-}  // namespace tact
+}  // namespace tact::scene_density_reference_test

@@ -9,7 +9,7 @@
 #include "ipc/scene/density/density_kernels.hpp"
 #include "ipc/scene/density/density_map.hpp"
 
-namespace tact {
+namespace tact::scene_density_sum_test {
 namespace {
 
 struct Points {
@@ -199,4 +199,4 @@ INSTANTIATE_TEST_SUITE_P(Kernels, DensitySum, testing::Range(std::size_t{0}, kDe
                          [](const auto& tested) { return std::string(kDensityKernels[tested.param].name); });
 
 }  // namespace
-}  // namespace tact
+}  // namespace tact::scene_density_sum_test

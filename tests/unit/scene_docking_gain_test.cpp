@@ -7,7 +7,7 @@
 
 #include "ipc/base/error.hpp"
 
-namespace tact {
+namespace tact::scene_docking_gain_test {
 namespace {
 
 constexpr double kA = 1e-10;
@@ -99,4 +99,4 @@ TEST(DockingGain, an_empty_map_is_refused) {
 }
 
 }  // namespace
-}  // namespace tact
+}  // namespace tact::scene_docking_gain_test

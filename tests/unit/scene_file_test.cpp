@@ -7,7 +7,7 @@
 
 #include "tests/unit/scene_samples.hpp"
 
-namespace tact {
+namespace tact::scene_file_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -144,4 +144,4 @@ TEST(SceneFile, sections_out_of_order_or_twice_are_refused) {
 }
 
 }  // namespace
-}  // namespace tact
+}  // namespace tact::scene_file_test

@@ -8,7 +8,7 @@
 
 #include "ipc/base/error.hpp"
 
-namespace tact {
+namespace tact::scene_fit_metrics_test {
 namespace {
 
 constexpr double kA = 1e-10;
@@ -220,4 +220,4 @@ TEST(FitMetrics, an_unknown_resolution_is_refused) {
 }
 
 }  // namespace
-}  // namespace tact
+}  // namespace tact::scene_fit_metrics_test

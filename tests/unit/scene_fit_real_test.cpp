@@ -14,7 +14,7 @@
 #include "prep/structure/import_structure.hpp"
 #include "tests/unit/prep_samples.hpp"
 
-namespace tact {
+namespace tact::scene_fit_real_test {
 namespace {
 
 struct Pair {
@@ -222,4 +222,4 @@ TEST(RealFit, refinement_recovers_from_two_angstrom_and_ten_degrees) {
 }
 
 }  // namespace
-}  // namespace tact
+}  // namespace tact::scene_fit_real_test

@@ -8,7 +8,7 @@
 #include "ipc/base/error.hpp"
 #include "tests/unit/prep_mesh_fixtures.hpp"
 
-namespace tact::test {
+namespace tact::test::scene_isosurface_test {
 namespace {
 
 void expect_manifold(const TriangleMesh& mesh) {
@@ -115,4 +115,4 @@ TEST(Isosurface, handles_non_finite_values_and_refuses_invalid_grids) {
 }
 
 }  // namespace
-}  // namespace tact::test
+}  // namespace tact::test::scene_isosurface_test

@@ -8,7 +8,7 @@
 
 #include "tests/unit/scene_samples.hpp"
 
-namespace tact {
+namespace tact::scene_kinds_test {
 namespace {
 
 TEST(SceneKinds, every_row_has_unique_names_and_raw_files) {
@@ -51,4 +51,4 @@ TEST(SceneKinds, a_scene_without_a_section_of_its_kind_is_refused) {
 }
 
 }  // namespace
-}  // namespace tact
+}  // namespace tact::scene_kinds_test

@@ -9,7 +9,7 @@
 #include "ipc/base/error.hpp"
 #include "ipc/scene/density/simulated_map.hpp"
 
-namespace tact {
+namespace tact::scene_laplacian_map_test {
 namespace {
 
 constexpr double kA = 1e-10;
@@ -112,4 +112,4 @@ TEST(LaplacianMap, refuses_an_invalid_resolution) {
 }
 
 }  // namespace
-}  // namespace tact
+}  // namespace tact::scene_laplacian_map_test

@@ -12,7 +12,7 @@
 #include "ipc/scene/mesh/mesh_kernels.hpp"
 #include "ipc/scene/mesh/vertex_cache.hpp"
 
-namespace tact::test {
+namespace tact::test::scene_mesh_parts_test {
 namespace {
 
 TEST(MeshKernels, all_instruction_sets_give_the_same) {
@@ -112,4 +112,4 @@ TEST(CacheOrder, holds_every_triangle_once) {
 }
 
 }  // namespace
-}  // namespace tact::test
+}  // namespace tact::test::scene_mesh_parts_test

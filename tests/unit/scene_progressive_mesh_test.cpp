@@ -13,7 +13,7 @@
 #include "prep/mesh/progressive.hpp"
 #include "tests/unit/prep_mesh_fixtures.hpp"
 
-namespace tact::test {
+namespace tact::test::scene_progressive_mesh_test {
 namespace {
 
 ProgressiveMeshData small_data() { return make_progressive(isosurface(sampled(13, torus), -0.25)); }
@@ -130,4 +130,4 @@ TEST(ProgressiveMesh, chains_with_quadratic_cost_are_refused) {
 }
 
 }  // namespace
-}  // namespace tact::test
+}  // namespace tact::test::scene_progressive_mesh_test

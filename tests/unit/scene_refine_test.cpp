@@ -10,7 +10,7 @@
 #include "ipc/base/random.hpp"
 #include "ipc/scene/density/simulated_map.hpp"
 
-namespace tact {
+namespace tact::scene_refine_test {
 namespace {
 
 constexpr double kA = kAngstromM;
@@ -224,4 +224,4 @@ TEST(Refine, invalid_input_is_refused) {
 }
 
 }  // namespace
-}  // namespace tact
+}  // namespace tact::scene_refine_test

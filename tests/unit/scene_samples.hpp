@@ -6,11 +6,11 @@
 #include <string>
 #include <vector>
 
-#include "ipc/base/error.hpp"
 #include "ipc/scene/density/density_map.hpp"
 #include "ipc/scene/density/structure.hpp"
 #include "ipc/scene/file/scene_file.hpp"
 #include "ipc/scene/file/scene_meta.hpp"
+#include "tests/support/error_of.hpp"
 
 namespace tact::sample {
 
@@ -82,17 +82,6 @@ inline SceneWriter scene(const SceneMeta& m = meta(), const Structure& s = struc
     write_structure(out, 0, s);
     write_codebook(out, 0, c);
     return out;
-}
-
-// Returns the text of a call's StartupError, or "" without one.
-template <class Call>
-std::string error_of(Call&& call) {
-    try {
-        call();
-    } catch (const StartupError& error) {
-        return error.what();
-    }
-    return {};
 }
 
 }  // namespace tact::sample

@@ -8,7 +8,7 @@
 
 #include "ipc/base/error.hpp"
 
-namespace tact {
+namespace tact::scene_simulated_map_test {
 namespace {
 
 constexpr double kA = 1e-10;
@@ -130,4 +130,4 @@ TEST(SimulatedMap, an_impossible_resolution_is_refused) {
 }
 
 }  // namespace
-}  // namespace tact
+}  // namespace tact::scene_simulated_map_test

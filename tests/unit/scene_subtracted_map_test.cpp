@@ -9,7 +9,7 @@
 #include "ipc/base/error.hpp"
 #include "ipc/base/random.hpp"
 
-namespace tact {
+namespace tact::scene_subtracted_map_test {
 namespace {
 
 constexpr double kA = 1e-10, kResolutionM = 10.0 * kA;
@@ -117,4 +117,4 @@ TEST(SubtractedMap, without_overlap_the_map_is_unchanged) {
 }
 
 }  // namespace
-}  // namespace tact
+}  // namespace tact::scene_subtracted_map_test

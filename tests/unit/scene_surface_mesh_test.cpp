@@ -11,7 +11,7 @@
 #include "ipc/base/random.hpp"
 #include "prep/surface/build_surface.hpp"
 
-namespace tact {
+namespace tact::scene_surface_mesh_test {
 namespace {
 
 // A scene in memory and its surface.
@@ -212,4 +212,4 @@ TEST(SurfaceMesh, an_invalid_mesh_is_refused) {
 }
 
 }  // namespace
-}  // namespace tact
+}  // namespace tact::scene_surface_mesh_test

@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-namespace tact {
+namespace tact::servo_armed_metrics_test {
 namespace {
 
 using std::chrono::milliseconds;
@@ -64,4 +64,4 @@ TEST(LevelHistory, a_level_has_settled_once_it_stays_within_five_percent_of_its_
 }
 
 }  // namespace
-}  // namespace tact
+}  // namespace tact::servo_armed_metrics_test

@@ -8,7 +8,7 @@
 #include "rt/servo/stage_shape.hpp"
 #include "tests/support/cycle_fixture.hpp"
 
-namespace tact {
+namespace tact::servo_force_stages_test {
 namespace {
 
 using std::chrono::microseconds;
@@ -321,4 +321,4 @@ TEST(StageActuate, the_device_gets_the_wrench_after_the_chain) {
 }
 
 }  // namespace
-}  // namespace tact
+}  // namespace tact::servo_force_stages_test

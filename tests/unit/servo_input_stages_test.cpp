@@ -11,7 +11,7 @@
 #include "rt/servo/stage_wake.hpp"
 #include "tests/support/cycle_fixture.hpp"
 
-namespace tact {
+namespace tact::servo_input_stages_test {
 namespace {
 
 using std::chrono::microseconds;
@@ -272,4 +272,4 @@ TEST(StagePose, a_sample_is_turned_into_the_world_and_an_unusable_one_leaves_the
 }
 
 }  // namespace
-}  // namespace tact
+}  // namespace tact::servo_input_stages_test

@@ -7,7 +7,7 @@
 #include <limits>
 #include <thread>
 
-namespace tact {
+namespace tact::servo_orders_test {
 namespace {
 
 ServoOrder order(CommandKind kind, std::uint64_t sequence) {
@@ -100,4 +100,4 @@ TEST(ServoOrders, between_two_threads_the_last_arm_and_disarm_arrive) {
 }
 
 }  // namespace
-}  // namespace tact
+}  // namespace tact::servo_orders_test

@@ -14,7 +14,7 @@
 #include "rt/servo/stage_publish.hpp"
 #include "tests/support/cycle_fixture.hpp"
 
-namespace tact {
+namespace tact::servo_output_stages_test {
 namespace {
 
 using std::chrono::microseconds;
@@ -239,4 +239,4 @@ TEST(RateKeeping, a_free_running_loop_behind_its_goal_reuses_part_of_its_sums) {
 }
 
 }  // namespace
-}  // namespace tact
+}  // namespace tact::servo_output_stages_test

@@ -9,7 +9,7 @@
 
 #include "ipc/base/error.hpp"
 
-namespace tact {
+namespace tact::start_bodies_test {
 namespace {
 
 const std::vector<std::string> kNames{"1AKE.pdb", "2REC.pdb"};
@@ -104,4 +104,4 @@ TEST(StartBodies, copies_are_placed_outside_the_map_and_apart) {
 }
 
 }  // namespace
-}  // namespace tact
+}  // namespace tact::start_bodies_test

@@ -5,7 +5,7 @@
 
 #include "rt/start/start_drill.hpp"
 
-namespace tact {
+namespace tact::start_drill_test {
 namespace {
 
 TEST(StartDrill, the_configuration_defines_the_tools) {
@@ -80,4 +80,4 @@ TEST(StartDrill, a_tool_thinner_than_a_voxel_is_thickened_to_a_voxel) {
 }
 
 }  // namespace
-}  // namespace tact
+}  // namespace tact::start_drill_test

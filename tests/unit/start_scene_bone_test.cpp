@@ -13,7 +13,7 @@
 #include "ipc/scene/bone/bone_volume.hpp"
 #include "rt/start/scene_bone.hpp"
 
-namespace tact {
+namespace tact::start_scene_bone_test {
 namespace {
 
 TEST(SceneBone, removed_bone_appears_in_the_region) {
@@ -94,4 +94,4 @@ TEST(SceneBone, a_scene_without_bone_is_refused) {
 }
 
 }  // namespace
-}  // namespace tact
+}  // namespace tact::start_scene_bone_test

@@ -7,7 +7,7 @@
 #include "ipc/base/error.hpp"
 #include "rt/start/systems.hpp"
 
-namespace tact {
+namespace tact::start_systems_test {
 namespace {
 
 TEST(Systems, each_kind_has_one_row_with_a_model_and_a_visual_path) {
@@ -36,4 +36,4 @@ TEST(Systems, only_driven_tools_have_a_switch) {
 }
 
 }  // namespace
-}  // namespace tact
+}  // namespace tact::start_systems_test

@@ -6,7 +6,7 @@
 #include <limits>
 #include <memory>
 
-namespace tact {
+namespace tact::threads_command_feed_test {
 namespace {
 
 class CommandFeedTest : public testing::Test {
@@ -135,4 +135,4 @@ TEST_F(CommandFeedTest, what_was_commanded_before_is_not_for_this_controller) {
 }
 
 }  // namespace
-}  // namespace tact
+}  // namespace tact::threads_command_feed_test

@@ -8,7 +8,7 @@
 #include "ipc/base/error.hpp"
 #include "ipc/topics/text.hpp"
 
-namespace tact {
+namespace tact::threads_head_feed_test {
 namespace {
 
 using std::chrono::milliseconds;
@@ -145,4 +145,4 @@ TEST(HeadTopicText, names_the_states_and_links_of_the_tracker) {
 }
 
 }  // namespace
-}  // namespace tact
+}  // namespace tact::threads_head_feed_test

@@ -8,7 +8,7 @@
 #include <limits>
 #include <random>
 
-namespace tact {
+namespace tact::threads_housekeeping_test {
 namespace {
 
 const std::vector<std::string> kPaths{"gui.mesh", "docking.force"};
@@ -179,4 +179,4 @@ TEST(Housekeeping, a_load_must_be_possible) {
 }
 
 }  // namespace
-}  // namespace tact
+}  // namespace tact::threads_housekeeping_test

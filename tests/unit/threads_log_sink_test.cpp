@@ -9,7 +9,7 @@
 
 #include "rt/threads/log_sink.hpp"
 
-namespace tact {
+namespace tact::threads_log_sink_test {
 namespace {
 
 struct Ends {
@@ -109,4 +109,4 @@ TEST(LogSinks, accept_a_line_longer_than_a_pipe) {
 }
 
 }  // namespace
-}  // namespace tact
+}  // namespace tact::threads_log_sink_test

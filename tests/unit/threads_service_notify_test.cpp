@@ -16,7 +16,7 @@
 
 #include "rt/threads/journal_format.hpp"
 
-namespace tact {
+namespace tact::threads_service_notify_test {
 namespace {
 
 using namespace std::chrono_literals;
@@ -181,4 +181,4 @@ TEST(JournalFormat, is_used_only_for_the_stream_of_the_journal) {
 }
 
 }  // namespace
-}  // namespace tact
+}  // namespace tact::threads_service_notify_test

@@ -6,7 +6,7 @@
 
 #include "ipc/base/clock.hpp"
 
-namespace tact {
+namespace tact::threads_supervisor_test {
 namespace {
 
 constexpr Duration kMs = std::chrono::milliseconds(1);
@@ -84,4 +84,4 @@ TEST(Supervisor, its_thread_drops_once_when_the_servo_stops_and_again_after_a_re
 }
 
 }  // namespace
-}  // namespace tact
+}  // namespace tact::threads_supervisor_test
