@@ -42,6 +42,7 @@ tact_tests(cycle_scenario_tests SOURCES
         scenario/servo_scenario_test.cpp scenario/drill_scenario_test.cpp scenario/stiffness_scenario_test.cpp
         scenario/record_scenario_test.cpp
     USES base topics hal force servo threads config start safety recorder)
+tact_test(scenario/docking_arm_scenario_test.cpp USES base topics scene hal force servo threads config start reference)
 tact_test(scenario/supervisor_scenario_test.cpp USES base topics hal io force servo threads config start LABELS tsan)
 tact_tests(system_scenario_tests SOURCES
         scenario/servo_faults_scenario_test.cpp scenario/lines_scenario_test.cpp scenario/bodies_scenario_test.cpp
