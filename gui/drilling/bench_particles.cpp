@@ -46,8 +46,7 @@ private:
             const Vec3 at(128.0 + far * std::cos(angle), 42.0 + layers_ * random_.uniform(),
                           64.0 + 0.6 * far * std::sin(angle));
             const auto matter = static_cast<Matter>(random_.below(3));
-            const bool made =
-                particles_.emit(matter, bricks_.to_model(at), 0.3 * random_.uniform() * random_.direction());
+            const bool made = particles_.emit(matter, bricks_.to_model(at), random_.within(0.3));
             made ? --left : ++misses;
         }
     }

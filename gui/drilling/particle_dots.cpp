@@ -10,8 +10,10 @@ bool wet(const Particle& p) { return p.matter != Matter::dust; }
 
 // Hash of its cell: a resting particle does not flicker when others before it are removed.
 std::uint8_t shade_of(const std::array<float, 3>& at) {
-    auto bits = static_cast<std::uint32_t>(at[0]) * 73856093U ^
-                static_cast<std::uint32_t>(at[1]) * 19349663U ^ static_cast<std::uint32_t>(at[2]) * 83492791U;
+    const auto cell = [&](std::size_t axis) {  // through a signed number: places beside the bone are negative
+        return static_cast<std::uint32_t>(static_cast<std::int32_t>(at[axis]));
+    };
+    auto bits = cell(0) * 73856093U ^ cell(1) * 19349663U ^ cell(2) * 83492791U;
     bits ^= bits >> 15U;
     bits *= 2246822519U;
     return static_cast<std::uint8_t>(bits >> 24U);

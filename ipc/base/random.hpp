@@ -36,6 +36,12 @@ public:
         const double r = std::sqrt(std::max(0.0, 1.0 - z * z));
         return {r * std::cos(angle), r * std::sin(angle), z};
     }
+    // In a random direction, with a length uniform in [0, length_max). One call, because C++ leaves the order of two calls
+    // in an expression open.
+    Vec3 within(double length_max) noexcept {
+        const Vec3 way = direction();
+        return length_max * uniform() * way;
+    }
     // Uniform over all rotations (Shoemake 1992).
     Quat rotation() noexcept {
         const double u = uniform(), a = 2.0 * std::numbers::pi * uniform(),

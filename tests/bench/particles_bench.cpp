@@ -31,8 +31,7 @@ void step_of_a_budget(benchmark::State& state) {
             const Vec3 at(128.0 + far * std::cos(angle), 42.0 + 6.0 * random.uniform(),
                           64.0 + 0.6 * far * std::sin(angle));
             const auto matter = static_cast<Matter>(random.below(3));
-            const bool made =
-                particles.emit(matter, bricks.to_model(at), 0.3 * random.uniform() * random.direction());
+            const bool made = particles.emit(matter, bricks.to_model(at), random.within(0.3));
             made ? --count : ++misses;
         }
     };

@@ -80,8 +80,7 @@ private:
         Vec3 way_m = Vec3::Zero(), turn_rad = Vec3::Zero(), aside_m = Vec3::Zero();
     };
     [[nodiscard]] Leg random_leg() {
-        return {kNearM * random_.uniform() * random_.direction(),
-                kNearRad * random_.uniform() * random_.direction(), 0.2 * kNearM * random_.direction()};
+        return {random_.within(kNearM), random_.within(kNearRad), 0.2 * kNearM * random_.direction()};
     }
     [[nodiscard]] Pose path(double s) const {
         Pose at = model_.home();
@@ -92,8 +91,8 @@ private:
     [[nodiscard]] Pose random_pose() {
         Pose at = model_.home();
         if (random_.uniform() < 0.5) {
-            at.p_m += kNearM * random_.uniform() * random_.direction();
-            at.q = quat_from_rotation_vector(kNearRad * random_.uniform() * random_.direction()) * at.q;
+            at.p_m += random_.within(kNearM);
+            at.q = quat_from_rotation_vector(random_.within(kNearRad)) * at.q;
         } else {
             for (int a = 0; a < 3; ++a)
                 at.p_m[a] = grid_.origin_m[a] + random_.uniform() * grid_.spacing_m[a] *

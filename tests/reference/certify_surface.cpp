@@ -110,7 +110,7 @@ public:
     [[nodiscard]] bool clear() const { return clear_; }  // begin() found a place free of triangles
     Vec3 next(const Vec3& proxy_m, double radius_m) {
         if ((to_ - goal_).norm() <= speed_m_) {
-            const Vec3 aside = 0.02 * random_.uniform() * random_.direction();
+            const Vec3 aside = random_.within(0.02);
             const double choice = random_.uniform();
             if (choice < 0.15)
                 pause_ = 40;

@@ -22,3 +22,4 @@ tact_tests(certify_tests SOURCES
     USES certify scene prep_surface prep_synthetic prep_mesh_file)
 tact_test(unit/force_refinement_test.cpp USES scene force prep_mesh prep_surface prep_synthetic LABELS tsan)
 tact_test(unit/force_field_test.cpp USES base scene force prep_field)
+set_tests_properties(force_docking_stiffness_test PROPERTIES LABELS long)

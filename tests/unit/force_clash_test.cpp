@@ -25,7 +25,7 @@ Structure blob(const Vec3& radii_m, std::uint64_t seed) {
     for (double x = -radii_m.x(); x <= radii_m.x(); x += step_m) {
         for (double y = -radii_m.y(); y <= radii_m.y(); y += step_m) {
             for (double z = -radii_m.z(); z <= radii_m.z(); z += step_m) {
-                const Vec3 p = Vec3(x, y, z) + 0.5 * kA * random.uniform() * random.direction();
+                const Vec3 p = Vec3(x, y, z) + random.within(0.5 * kA);
                 if (p.cwiseQuotient(radii_m).norm() > 1.0) continue;
                 s.x_m.push_back(static_cast<float>(p.x()));
                 s.y_m.push_back(static_cast<float>(p.y()));
@@ -202,7 +202,7 @@ TEST(Clash, field_is_the_fourth_power_of_the_depth) {
     EXPECT_LT(std::abs(one.map().sample(Vec3(9.0, 0.0, 0.0) * kA, gradient)), 1e-6);
     SeededRandom random(3);
     for (int i = 0; i < 3000; ++i) {
-        const Vec3 p = 30.0 * kA * random.uniform() * random.direction();
+        const Vec3 p = random.within(30.0 * kA);
         const double v = ball().map().sample(p, gradient);
         EXPECT_GE(v, -1e-4);
         if (p.norm() >= ball().radius_m()) {

@@ -55,7 +55,7 @@ TEST(DockingLevels, the_audit_measures_the_error_against_all_atoms_and_the_bound
     std::size_t done = model->audit().done();
     Pose hand = kGrip;
     for (int i = 0; i < 20000; ++i) {
-        if (i % 40 == 0) hand.p_m = kGrip.p_m + 0.03 * random.uniform() * random.direction();
+        if (i % 40 == 0) hand.p_m = kGrip.p_m + random.within(0.03);
         const double error_n = model->step(tool_at(hand), at(0.3F)).load.error;
         if (model->audit().done() == done) continue;
         done = model->audit().done();

@@ -228,7 +228,7 @@ TEST(DockingStiffness, the_gain_keeps_its_limits_at_the_answer_of_a_structure_aw
     SeededRandom random(8);
     for (int i = 0; i < 30; ++i) {
         reference::Place near = answer;
-        near.p_m += 5.0 * kA * random.uniform() * random.direction();
+        near.p_m += random.within(5.0 * kA);
         EXPECT_LE(wrench(sum(exact_map(), atoms, near), used).force_n.norm(), 2.0 * 1.1);
     }
 }
@@ -246,8 +246,8 @@ TEST(DockingLevels, a_level_is_nearer_to_all_atoms_than_its_vectors_in_the_map_o
         double smoothed = 0.0, sharp = 0.0;
         for (int i = 0; i < 60; ++i) {
             Pose at = scene().chain.home();
-            at.p_m += 6.0 * kA * random.uniform() * random.direction();
-            at.q = quat_from_rotation_vector(0.3 * random.uniform() * random.direction()) * at.q;
+            at.p_m += random.within(6.0 * kA);
+            at.q = quat_from_rotation_vector(random.within(0.3)) * at.q;
             const Vec3 all_n =
                 reference::wrench(sum(exact_map(), atoms_of(scene().chain), place_of(at)), gain()).force_n;
             smoothed += (model->evaluate(at, budget).wrench_world.force_n - all_n).squaredNorm();

@@ -30,7 +30,7 @@ public:
     [[nodiscard]] const Vec3& goal() const { return goal_; }
     const Vec3& next(const Vec3& proxy_m) {
         if ((to_ - goal_).norm() <= speed_m_ || step_ % 300 == 0) {
-            to_ = anywhere() + 2e-3 * random_.uniform() * random_.direction();
+            to_ = anywhere() + random_.within(2e-3);
             speed_m_ = 5e-4 * std::pow(10.0, -2.0 * random_.uniform());
         }
         if (step_++ % 50 >= 4)

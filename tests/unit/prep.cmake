@@ -18,7 +18,7 @@ add_dependencies(prep_files_tests tact-prep)
 # Two of the ten pairs; all of them take a minute and are run by hand.
 add_test(NAME save_pairs_test COMMAND tests/e2e/save_pairs_test.py $<TARGET_FILE_DIR:tact-prep> 1gte 2dqj
     WORKING_DIRECTORY ${CMAKE_SOURCE_DIR})
-set_tests_properties(save_pairs_test PROPERTIES LABELS e2e TIMEOUT 300 SKIP_RETURN_CODE 77)
+set_tests_properties(save_pairs_test PROPERTIES LABELS "e2e;long" TIMEOUT 300 SKIP_RETURN_CODE 77)
 tact_tests(prep_scan_tests SOURCES
         unit/prep_volume_test.cpp unit/prep_scan_test.cpp
     USES prep_drilling prep_volume prep_synthetic scene image base SYSTEM ZLIB::ZLIB)

@@ -75,7 +75,7 @@ TEST(Clashes, match_the_sum_over_all_pairs) {
     for (int k = 0; k < 20; ++k) {
         std::vector<PlacedStructure> placed;
         for (const Structure& one : s) {
-            placed.push_back({&one, {25.0 * kA * random.uniform() * random.direction(), random.rotation()}});
+            placed.push_back({&one, {random.within(25.0 * kA), random.rotation()}});
         }
         const ClashCounts fast = count_clashes(placed), slow = by_all_pairs(placed);
         EXPECT_EQ(fast.pairs, slow.pairs);

@@ -15,8 +15,8 @@ constexpr double kResolutionM = 10.0 * kA, kSigmaM = 0.225 * kResolutionM;
 PointsView points_of(const Structure& s) { return {s.x_m, s.y_m, s.z_m, s.mass_fraction}; }
 
 Pose near(const Pose& home, double within_m, double within_rad, SeededRandom& random) {
-    return {home.p_m + within_m * random.uniform() * random.direction(),
-            quat_from_rotation_vector(within_rad * random.uniform() * random.direction()) * home.q};
+    return {home.p_m + random.within(within_m),
+            quat_from_rotation_vector(random.within(within_rad)) * home.q};
 }
 
 DensityMap::Options once() {

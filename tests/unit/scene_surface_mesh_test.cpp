@@ -38,7 +38,7 @@ TriangleMesh soup(std::uint32_t count, std::uint64_t seed) {
     for (std::uint32_t t = 0; t < count; ++t) {
         const Vec3 centre = random.direction() * random.uniform();
         for (std::uint32_t k = 0; k < 3; ++k) {
-            const Vec3 p = t % 7 == 3 ? centre : Vec3(centre + 0.2 * random.uniform() * random.direction());
+            const Vec3 p = t % 7 == 3 ? centre : Vec3(centre + random.within(0.2));
             for (const double x : {p.x(), p.y(), p.z()}) mesh.position_m.push_back(static_cast<float>(x));
             mesh.triangle.push_back(t % 11 == 5 && k == 2 ? 3 * t : 3 * t + k);
         }
@@ -60,7 +60,7 @@ RC_GTEST_PROP(SurfaceMesh, the_nearest_point_matches_brute_force, ()) {
     RC_ASSERT(h.mesh.triangles() == count);
     SeededRandom random(seed + 1U);
     for (int i = 0; i < 20; ++i) {
-        const Vec3 p = 1.5 * random.uniform() * random.direction();
+        const Vec3 p = random.within(1.5);
         double least = 1e9;
         for (std::uint32_t t = 0; t < count; ++t) least = std::min(least, h.mesh.point_of(t, p).distance_m);
         const auto hint = static_cast<std::uint32_t>(random.below(count));
@@ -78,7 +78,7 @@ RC_GTEST_PROP(SurfaceMesh, the_nearby_leaves_contain_every_triangle_in_the_ball,
     SeededRandom random(seed + 1U);
     std::vector<std::uint32_t> leaves(count);
     for (int i = 0; i < 10; ++i) {
-        const Vec3 p = 1.2 * random.uniform() * random.direction();
+        const Vec3 p = random.within(1.2);
         const double radius = 0.5 * random.uniform();
         std::size_t found = 0;
         RC_ASSERT(h.mesh.leaves_near(p, radius, leaves, found));
@@ -105,7 +105,7 @@ RC_GTEST_PROP(SurfaceMesh, batch_queries_agree_with_single_queries, ()) {
     SeededRandom random(*rc::gen::arbitrary<std::uint32_t>());
     std::array<std::uint32_t, kLooks> triangle;
     for (std::uint32_t& t : triangle) t = static_cast<std::uint32_t>(random.uniform() * (kLooks - 0.01));
-    const Vec3 p = 1.2 * random.uniform() * random.direction();
+    const Vec3 p = random.within(1.2);
     QueryJob job = h.mesh.query_job(p);
     job.triangle = triangle.data();
     job.limit = 0.3F;

@@ -47,8 +47,8 @@ Vec3 dense_point(const DensityMap& map, SeededRandom& random) {
 }
 
 Pose near(const Pose& pose, double within_m, double within_rad, SeededRandom& random) {
-    const Vec3 shift = within_m * random.uniform() * random.direction();
-    const Quat turn = quat_from_rotation_vector(within_rad * random.uniform() * random.direction());
+    const Vec3 shift = random.within(within_m);
+    const Quat turn = quat_from_rotation_vector(random.within(within_rad));
     return {pose.p_m + shift, (turn * pose.q).normalized()};
 }
 

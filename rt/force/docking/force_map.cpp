@@ -69,10 +69,13 @@ void calibrate(Felt felt, const Pose& home, double newtons_per_gradient) {
     std::vector<LevelMetrics>& metrics = felt.metrics;
     SeededRandom random(20261120);
     std::vector<Pose> starts{home};
+    const auto near_home = [&] {
+        const std::uint64_t seed = random.next();
+        const double turn_rad = 0.5236 * random.uniform(), offset_m = 15e-10 * random.uniform();
+        return start_pose(home, offset_m, turn_rad, seed);
+    };
     for (int k = 0; k < kCalibrationPoses; ++k) {
-        const Pose pose = k % 4 == 0 ? dense_pose(felt.maps.front(), random)
-                                     : start_pose(home, 15e-10 * random.uniform(), 0.5236 * random.uniform(),
-                                                  random.next());
+        const Pose pose = k % 4 == 0 ? dense_pose(felt.maps.front(), random) : near_home();
         if (starts.size() < kClimbs) starts.push_back(pose);
         const Vec3 exact = felt.maps.front().sum(levels.back().view(), pose).gradient;
         for (std::size_t l = 0; l + 1 < levels.size(); ++l) {

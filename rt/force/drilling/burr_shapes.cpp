@@ -44,8 +44,9 @@ void weigh(DrillTool& tool) {
     for (std::uint32_t i = 0; i < tool.count; ++i) {
         SeededRandom random(i + 1);
         for (int k = 0; k < kPoints; ++k) {
-            const Vec3 point = tool.ball[i].centre_tool_m +
-                               tool.ball[i].radius_m * std::cbrt(random.uniform()) * random.direction();
+            const Vec3 way = random.direction();
+            const Vec3 point =
+                tool.ball[i].centre_tool_m + tool.ball[i].radius_m * std::cbrt(random.uniform()) * way;
             int in = 1;
             for (std::uint32_t other = 0; other < tool.count; ++other) {
                 const ToolBall& b = tool.ball[other];
