@@ -22,4 +22,6 @@ tact_tests(certify_tests SOURCES
     USES certify scene prep_surface prep_synthetic prep_mesh_file)
 tact_test(unit/force_refinement_test.cpp USES scene force prep_mesh prep_surface prep_synthetic LABELS tsan)
 tact_test(unit/force_field_test.cpp USES base scene force prep_field)
-set_tests_properties(force_docking_stiffness_test PROPERTIES LABELS long)
+# Not under sanitizers, where they take minutes: campaigns of numbers over code that the other tests run too.
+set_tests_properties(force_docking_stiffness_test force_surface_energy_test force_surface_settled_test
+    certify_drilling_test PROPERTIES LABELS long)
