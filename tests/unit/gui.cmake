@@ -2,9 +2,10 @@
 if(TACT_GUI)
     find_package(CLI11 REQUIRED)
     tact_tests(gui_dashboard_tests SOURCES
-            unit/gui_plot_series_test.cpp unit/gui_dashboard_test.cpp unit/gui_field_card_test.cpp
+            unit/gui_plot_series_test.cpp unit/gui_dashboard_test.cpp
             unit/gui_traces_test.cpp unit/gui_traces_panel_test.cpp unit/gui_trace_export_test.cpp
-        USES gui_dashboard gui_window gui_docking topics base gui_field)
+        USES gui_dashboard gui_window gui_docking topics base)
+    tact_test(unit/gui_field_card_test.cpp USES gui_window gui_field gui_docking gui_dashboard topics base)
     tact_test(unit/gui_hours_test.cpp USES gui_window gui_docking gui_dashboard topics shm base TIMEOUT 300)
     tact_tests(gui_drilling_tests SOURCES
             unit/gui_particles_test.cpp unit/gui_site_test.cpp unit/gui_drilling_test.cpp unit/gui_bone_test.cpp
