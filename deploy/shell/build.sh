@@ -46,7 +46,7 @@ tact_build_estimate() {
     last=$(awk -v preset="$1" '$1 == preset {seconds = $2} END {print seconds}' build/times.txt 2>/dev/null)
     case $1 in
         release) processor_s=600 ;;
-        test) processor_s=1500 ;;
+        test) processor_s=700 ;;
         asan) processor_s=1200 ;;
         *) processor_s=600 ;;
     esac

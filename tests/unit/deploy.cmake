@@ -76,3 +76,5 @@ add_test(NAME deploy_station_e2e_test COMMAND Python3::Interpreter ${CMAKE_CURRE
     ${CMAKE_SOURCE_DIR} $<TARGET_FILE_DIR:tact> $<TARGET_FILE:write_small_scene>)
 set_tests_properties(deploy_station_e2e_test PROPERTIES TIMEOUT 600 RUN_SERIAL TRUE)
 set_tests_properties(deploy_eval_test PROPERTIES LABELS long)  # not under sanitizers
+add_test(NAME test_files_test COMMAND Python3::Interpreter ${CMAKE_CURRENT_SOURCE_DIR}/unit/test_files_test.py
+    ${CMAKE_BINARY_DIR}/tests ${CMAKE_SOURCE_DIR})
