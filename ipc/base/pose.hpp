@@ -13,6 +13,7 @@
 namespace tact {
 
 using Vec3 = Eigen::Vector3d;
+using Vec6 = Eigen::Matrix<double, 6, 1>;
 using Quat = Eigen::Quaterniond;
 
 struct Pose {

@@ -101,31 +101,48 @@ Spline::Spline(const Grid& grid) : spacing_m_(grid.spacing_m) {
     }
 }
 
+double Spline::node(int x, int y, int z) const {
+    const bool inside = x >= 0 && y >= 0 && z >= 0 && x < size_[0] && y < size_[1] && z < size_[2];
+    return inside ? coefficient_[static_cast<std::size_t>((z * size_[1] + y) * size_[0] + x)] : 0.0;
+}
+
 Local Spline::at(const Vector3d& point_m) const {
-    Local local;
     const Vector3d t = (point_m - origin_m_).cwiseQuotient(spacing_m_);
-    for (int z = static_cast<int>(std::floor(t.z())) - 1; z <= std::floor(t.z()) + 2; ++z) {
-        for (int y = static_cast<int>(std::floor(t.y())) - 1; y <= std::floor(t.y()) + 2; ++y) {
-            for (int x = static_cast<int>(std::floor(t.x())) - 1; x <= std::floor(t.x()) + 2; ++x) {
-                if (x < 0 || y < 0 || z < 0 || x >= size_[0] || y >= size_[1] || z >= size_[2]) continue;
-                const double c = coefficient_[static_cast<std::size_t>((z * size_[1] + y) * size_[0] + x)];
-                const Vector3d d = t - Vector3d(x, y, z), v(value(d.x()), value(d.y()), value(d.z()));
-                const Vector3d s =
-                    Vector3d(slope(d.x()), slope(d.y()), slope(d.z())).cwiseQuotient(spacing_m_);
-                const Vector3d b = Vector3d(bend(d.x()), bend(d.y()), bend(d.z()))
-                                       .cwiseQuotient(spacing_m_.cwiseProduct(spacing_m_));
-                local.density += c * v.x() * v.y() * v.z();
-                local.gradient +=
-                    c * Vector3d(s.x() * v.y() * v.z(), v.x() * s.y() * v.z(), v.x() * v.y() * s.z());
-                const double xy = c * s.x() * s.y() * v.z(), xz = c * s.x() * v.y() * s.z(),
-                             yz = c * v.x() * s.y() * s.z();
-                Matrix3d m;
-                m << c * b.x() * v.y() * v.z(), xy, xz, xy, c * v.x() * b.y() * v.z(), yz, xz, yz,
-                    c * v.x() * v.y() * b.z();
-                local.bend += m;
-            }
+    // Per axis: the first of four nodes, and the weights of value, slope and bend.
+    std::array<int, 3> first{};
+    double w[3][3][4];
+    for (int a = 0; a < 3; ++a) {
+        first[a] = static_cast<int>(std::floor(t[a])) - 1;
+        for (int k = 0; k < 4; ++k) {
+            const double d = t[a] - (first[a] + k), h = spacing_m_[a];
+            w[a][0][k] = value(d);
+            w[a][1][k] = slope(d) / h;
+            w[a][2][k] = bend(d) / (h * h);
         }
     }
+    // sum[i][j][l]: i times differentiated by x, j by y, l by z.
+    double sum[3][3][3] = {};
+    for (int z = 0; z < 4; ++z) {
+        double of_xy[3][3] = {};
+        for (int y = 0; y < 4; ++y) {
+            double of_x[3] = {};
+            for (int x = 0; x < 4; ++x) {
+                const double c = node(first[0] + x, first[1] + y, first[2] + z);
+                for (int i = 0; i < 3; ++i) of_x[i] += c * w[0][i][x];
+            }
+            for (int i = 0; i < 3; ++i)
+                for (int j = 0; j < 3 - i; ++j) of_xy[i][j] += of_x[i] * w[1][j][y];
+        }
+        for (int i = 0; i < 3; ++i)
+            for (int j = 0; j < 3 - i; ++j)
+                for (int l = 0; l < 3 - i - j; ++l) sum[i][j][l] += of_xy[i][j] * w[2][l][z];
+    }
+    Local local;
+    local.density = sum[0][0][0];
+    local.gradient = {sum[1][0][0], sum[0][1][0], sum[0][0][1]};
+    local.bend << sum[2][0][0], sum[1][1][0], sum[1][0][1],  //
+        sum[1][1][0], sum[0][2][0], sum[0][1][1],            //
+        sum[1][0][1], sum[0][1][1], sum[0][0][2];
     return local;
 }
 

@@ -12,6 +12,7 @@ tact_test(unit/force_surface_slide_test.cpp USES force prep_surface prep_synthet
 tact_test(unit/force_tool_test.cpp USES force prep_surface prep_synthetic)
 tact_tests(force_tool_tests SOURCES
         unit/force_touch_tool_test.cpp unit/force_tool_modes_test.cpp unit/force_tool_dense_test.cpp
+        unit/force_tool_energy_test.cpp
     USES force prep_surface prep_synthetic)
 tact_tests(force_drilling_tests SOURCES
         unit/force_bone_test.cpp unit/force_drill_levels_test.cpp
@@ -24,4 +25,4 @@ tact_test(unit/force_refinement_test.cpp USES scene force prep_mesh prep_surface
 tact_test(unit/force_field_test.cpp USES base scene force prep_field)
 # Not under sanitizers, where they take minutes: campaigns of numbers over code that the other tests run too.
 set_tests_properties(force_docking_stiffness_test force_surface_energy_test force_surface_settled_test
-    certify_drilling_test PROPERTIES LABELS long)
+    force_tool_energy_test certify_drilling_test PROPERTIES LABELS long)

@@ -3,6 +3,7 @@ tact_tests(prep_docking_tests SOURCES
         unit/prep_map_test.cpp unit/prep_structure_test.cpp unit/prep_real_files_test.cpp unit/prep_neural_gas_test.cpp
         unit/prep_synthetic_test.cpp unit/prep_bake_test.cpp
     USES prep_map prep_structure prep_codebook prep_synthetic prep_docking SYSTEM ZLIB::ZLIB)
+tact_test(unit/prep_search_test.cpp USES prep_search prep_map prep_synthetic scene)
 tact_tests(prep_mesh_tests SOURCES
         unit/prep_contraction_test.cpp unit/prep_mesh_file_test.cpp unit/prep_clean_mesh_test.cpp
         unit/prep_forest_test.cpp unit/prep_simplify_test.cpp unit/prep_simplify_to_keep_test.cpp

@@ -62,6 +62,7 @@ void add_dock(CLI::App& app, int& exit_code) {
 void add_docking_commands(CLI::App& app, int& exit_code) {
     add_dock(app, exit_code);
     add_eval(app, exit_code);
+    add_search(app);
 }
 
 void add_docking_demo(CLI::App& demo, int& exit_code) {

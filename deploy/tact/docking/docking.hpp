@@ -1,4 +1,4 @@
-// Docking's row of deploy/tact/systems: tact dock, tact eval, tact demo dock, and the report of a docking run.
+// Docking's row of deploy/tact/systems: tact dock, tact eval, tact search, tact refine, tact demo dock, and the report of a docking run.
 #pragma once
 
 #include <CLI/CLI.hpp>
@@ -16,6 +16,7 @@ namespace tact::launch {
 void add_docking_commands(CLI::App& app, int& exit_code);
 void add_dock(CLI::App& app, int& exit_code);
 void add_eval(CLI::App& app, int& exit_code);
+void add_search(CLI::App& app);
 void add_docking_demo(CLI::App& demo, int& exit_code);
 std::span<const PassedOption> docking_controller_options();
 

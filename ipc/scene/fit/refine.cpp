@@ -24,7 +24,6 @@
 namespace tact {
 namespace {
 
-using Vec6 = Eigen::Matrix<double, 6, 1>;
 using Mat6 = Eigen::Matrix<double, 6, 6>;
 
 constexpr double kRise = 1e-4;      // fraction of the linear prediction
@@ -39,13 +38,8 @@ struct Slope {
     Vec3 force = Vec3::Zero(), torque = Vec3::Zero();
 };
 
-// Points of a body with their simulated density.
-struct Cloud {
-    std::vector<Vec3> at;
-    std::vector<double> u;
-};
-
-Cloud simulated_points(const Structure& s, double resolution_m) {
+// With their simulated density.
+CorrelationPoints simulated_points(const Structure& s, double resolution_m) {
     DensityGrid grid;
     Vec3 low = Vec3::Constant(HUGE_VAL), high = Vec3::Constant(-HUGE_VAL);
     for (std::size_t i = 0; i < s.size(); ++i) {
@@ -66,25 +60,26 @@ Cloud simulated_points(const Structure& s, double resolution_m) {
     const PlacedStructure placed{&s, Pose{}};
     const std::vector<float> map = simulated_map(grid, {&placed, 1}, resolution_m);
     const auto least = static_cast<float>(kShareShown) * *std::max_element(map.begin(), map.end());
-    Cloud cloud;
+    CorrelationPoints points;
     std::size_t i = 0;
     for (std::uint32_t z = 0; z < grid.size[2]; ++z) {
         for (std::uint32_t y = 0; y < grid.size[1]; ++y) {
             for (std::uint32_t x = 0; x < grid.size[0]; ++x, ++i) {
                 if (!(map[i] > least)) continue;
-                cloud.at.emplace_back(grid.origin_m + step_m * Vec3(x, y, z));
-                cloud.u.push_back(static_cast<double>(map[i]));
+                points.at_m.emplace_back(grid.origin_m + step_m * Vec3(x, y, z));
+                points.value.push_back(static_cast<double>(map[i]));
             }
         }
     }
-    return cloud;
+    return points;
 }
 
 class Score {
 public:
     Score(const DensityMap& map, const Structure& s, const RefineSettings& settings)
         : map_(map), structure_(s), settings_(settings) {
-        if (settings.goal != RefineGoal::mean_density) cloud_ = simulated_points(s, settings.resolution_m);
+        if (settings.goal == RefineGoal::mean_density || settings.points != nullptr) return;
+        simulated_ = simulated_points(s, settings.resolution_m);
     }
 
     [[nodiscard]] Slope at(const Pose& pose) const {
@@ -99,15 +94,16 @@ private:
     // likewise. dC = sum (u' / (|u'| |v'|) - C v' / |v'|^2) dv; for deviations from the mean, the factor
     // sums to zero, so that the mean of dv cancels.
     [[nodiscard]] Slope correlation(const Pose& pose) const {
-        const std::size_t n = cloud_.at.size();
+        const CorrelationPoints& points = settings_.points != nullptr ? *settings_.points : simulated_;
+        const std::size_t n = points.at_m.size();
         std::vector<double> v(n);
         std::vector<Vec3> gradient(n), arm(n);
         const Eigen::Matrix3d turn = pose.q.toRotationMatrix();
         double mean_u = 0.0, mean_v = 0.0;
         for (std::size_t i = 0; i < n; ++i) {
-            arm[i] = turn * cloud_.at[i];
+            arm[i] = turn * points.at_m[i];
             v[i] = map_.sample(pose.p_m + arm[i], gradient[i]) + settings_.background_sigma;
-            mean_u += cloud_.u[i];
+            mean_u += points.value[i];
             mean_v += v[i];
         }
         const bool about_mean = settings_.goal == RefineGoal::correlation_mean;
@@ -115,7 +111,7 @@ private:
         mean_v = about_mean ? mean_v / static_cast<double>(n) : 0.0;
         double uu = 0.0, vv = 0.0, uv = 0.0;
         for (std::size_t i = 0; i < n; ++i) {
-            const double a = cloud_.u[i] - mean_u, b = v[i] - mean_v;
+            const double a = points.value[i] - mean_u, b = v[i] - mean_v;
             uu += a * a, vv += b * b, uv += a * b;
         }
         Slope slope;
@@ -123,7 +119,7 @@ private:
         const double both = std::sqrt(uu * vv);
         slope.score = uv / both;
         for (std::size_t i = 0; i < n; ++i) {
-            const double share = (cloud_.u[i] - mean_u) / both - slope.score * (v[i] - mean_v) / vv;
+            const double share = (points.value[i] - mean_u) / both - slope.score * (v[i] - mean_v) / vv;
             slope.force += share * gradient[i];
             slope.torque += share * arm[i].cross(gradient[i]);
         }
@@ -133,7 +129,7 @@ private:
     const DensityMap& map_;
     const Structure& structure_;
     const RefineSettings& settings_;
-    Cloud cloud_;
+    CorrelationPoints simulated_;
 };
 
 // Inverse of the square root of the inertia tensor per mass, model axes. Directions in which a rotation
@@ -253,7 +249,7 @@ RefineResult refine(const DensityMap& map, const Structure& structure, const Pos
     RefineSettings settings = wanted;
     if (!start.finite() || !(std::abs(start.q.norm() - 1.0) < 1e-3) || structure.size() == 0)
         throw StartupError(attempt, "its present pose is invalid", "place the structure first");
-    if (settings.goal != RefineGoal::mean_density &&
+    if (settings.goal != RefineGoal::mean_density && settings.points == nullptr &&
         (!(settings.resolution_m > 0.0) || !std::isfinite(settings.resolution_m)))
         throw StartupError(attempt, "the resolution of the map is unknown", "set it with --resolution-a");
     if (!(settings.step_m_max > 0.0)) settings.step_m_max = 0.5 * map.spacing_m().minCoeff();

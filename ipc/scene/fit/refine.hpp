@@ -12,6 +12,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <vector>
 
 #include "ipc/base/units.hpp"
 #include "ipc/scene/density/density_map.hpp"
@@ -25,9 +26,16 @@ enum class RefineGoal : std::uint8_t {
     correlation_mean,
 };
 
+// Points of a structure with the values that the map should have there, up to a factor and an offset.
+struct CorrelationPoints {
+    std::vector<Vec3> at_m;  // body frame
+    std::vector<double> value;
+};
+
 struct RefineSettings {
     RefineGoal goal = RefineGoal::mean_density;
-    double resolution_m = 0.0;      // for the correlations, > 0
+    double resolution_m = 0.0;                  // for the correlations, > 0
+    const CorrelationPoints* points = nullptr;  // for the correlations; null: the simulated map
     double background_sigma = 0.0;  // for correlation_zero: map value of density 0, in sigma of the map
     double step_m_max = 0.0;        // 0: half of the smallest voxel edge
     double stop_m = 0.01 * kAngstromM;

@@ -17,6 +17,9 @@ namespace {
 
 constexpr int kCalibrationPoses = 128;
 constexpr int kPosesPerBend = 3;  // of these, one has its stiffness measured
+constexpr double kNearHomeM = 15e-10, kNearHomeRad = 0.5236;
+constexpr int kPosesAtMaximum = 8;
+constexpr double kAtMaximumM = 3e-10, kAtMaximumRad = 0.1;
 constexpr int kClimbs = 6, kClimbSums = 150, kClimbSumsAtoms = 60;
 constexpr std::size_t kClimbVectors = 800;
 
@@ -63,29 +66,38 @@ struct Felt {
 };
 
 // Errors: three quarters of the poses lie within 15 A and 30 degrees of home, one quarter in dense parts of the map
-// with random rotations. Cost: median of nine timed sums at home.
+// with random rotations; then some around each maximum, where the slopes of fine maps are largest. Cost: median of nine timed
+// sums at home.
 void calibrate(Felt felt, const Pose& home, double newtons_per_gradient) {
     const std::vector<PointSet>& levels = felt.levels;
     std::vector<LevelMetrics>& metrics = felt.metrics;
     SeededRandom random(20261120);
     std::vector<Pose> starts{home};
-    const auto near_home = [&] {
+    const auto near = [&](const Pose& pose, double offset_max_m, double turn_max_rad) {
         const std::uint64_t seed = random.next();
-        const double turn_rad = 0.5236 * random.uniform(), offset_m = 15e-10 * random.uniform();
-        return start_pose(home, offset_m, turn_rad, seed);
+        const double turn_rad = turn_max_rad * random.uniform(), offset_m = offset_max_m * random.uniform();
+        return start_pose(pose, offset_m, turn_rad, seed);
     };
-    for (int k = 0; k < kCalibrationPoses; ++k) {
-        const Pose pose = k % 4 == 0 ? dense_pose(felt.maps.front(), random) : near_home();
-        if (starts.size() < kClimbs) starts.push_back(pose);
+    const auto add_errors = [&](const Pose& pose) {
         const Vec3 exact = felt.maps.front().sum(levels.back().view(), pose).gradient;
         for (std::size_t l = 0; l + 1 < levels.size(); ++l) {
             const Vec3 off = felt.map_of(l).sum(levels[l].view(), pose).gradient - exact;
             metrics[l].error_n =
                 std::max(metrics[l].error_n, kErrorMargin * newtons_per_gradient * off.norm());
         }
+    };
+    for (int k = 0; k < kCalibrationPoses; ++k) {
+        const Pose pose =
+            k % 4 == 0 ? dense_pose(felt.maps.front(), random) : near(home, kNearHomeM, kNearHomeRad);
+        if (starts.size() < kClimbs) starts.push_back(pose);
+        add_errors(pose);
         if (k % kPosesPerBend == 0) felt.add_bends(pose);
     }
-    for (const Pose& start : starts) felt.add_bends(felt.fit(start));
+    for (const Pose& start : starts) {
+        const Pose maximum = felt.fit(start);
+        felt.add_bends(maximum);
+        for (int k = 0; k < kPosesAtMaximum; ++k) add_errors(near(maximum, kAtMaximumM, kAtMaximumRad));
+    }
     // A smaller level may have a smaller error by chance; the knob requires errors that do not rise with the level.
     for (std::size_t l = levels.size() - 1; l-- > 0;)
         metrics[l].error_n = std::max(metrics[l].error_n, metrics[l + 1].error_n);

@@ -1,4 +1,4 @@
-// From the contact to the force: shading, friction cone, pace and energy of a point or a ball.
+// From the contact to the force: shading, friction cone, pace and energy of a point, a ball or a mesh tool.
 //
 // Push     the lift (sum of the active constraints, from the tool to the frictionless proxy) with each normal turned by
 //          shading (shading.hpp). It is the normal of the force.
@@ -14,6 +14,8 @@
 //          step. At most kOpenJ are ever given away. More than kKeptShares U are not kept: what friction took in
 //          one place is not given back in another.
 // Error    off_n(): size of the difference from the full, unpaced, shaded force.
+// Vec      a 3-D vector, or of a tool (displacement, radius of gyration times rotation) and (force, torque over that radius):
+//          their product is work too. A tool has friction at each of its contacts: its lift is the whole way to the proxy.
 // Unit     metres, newtons and joules of the world.  Thread  servo, TACT_RT
 #pragma once
 
@@ -30,7 +32,8 @@ struct ContactForceSettings {
     double lag_m = 0.0;  // displacement of the lag force
 };
 
-class ContactForce {
+template <class Vec>
+class ContactForceOf {
 public:
     static constexpr double kForceSteps = 2.5;
     static constexpr double kShadedFrom = 0.8, kShadedTo = 0.7;
@@ -38,33 +41,36 @@ public:
     static constexpr double kOpenJ = 5e-7;
 
     struct Input {
-        Vec3 lift_m = Vec3::Zero(), turn_m = Vec3::Zero(), rub_m = Vec3::Zero();
-        Vec3 moved_m = Vec3::Zero();  // by the tool since the last step
-        Vec3 velocity_m_s = Vec3::Zero();
+        Vec lift_m = Vec::Zero(), turn_m = Vec::Zero(), rub_m = Vec::Zero();
+        Vec moved_m = Vec::Zero();  // by the tool since the last step
+        Vec velocity_m_s = Vec::Zero();
         double gain = 1.0;  // of the fade
     };
 
-    explicit ContactForce(const ContactForceSettings& settings) : settings_(settings) {}
+    explicit ContactForceOf(const ContactForceSettings& settings) : settings_(settings) {}
 
     void reset() noexcept TACT_RT;
     // Newtons.
-    Vec3 step(const Input& in) noexcept TACT_RT;
+    Vec step(const Input& in) noexcept TACT_RT;
 
-    [[nodiscard]] const Vec3& push_m() const noexcept TACT_RT { return push_m_; }
+    [[nodiscard]] const Vec& push_m() const noexcept TACT_RT { return push_m_; }
     [[nodiscard]] double off_n() const noexcept TACT_RT { return off_n_; }
     [[nodiscard]] double account_j() const noexcept TACT_RT { return account_j_; }
 
 private:
-    [[nodiscard]] Vec3 in_cone_m(const Vec3& push_m, const Vec3& rub_m) const noexcept TACT_RT;
+    [[nodiscard]] Vec in_cone_m(const Vec& push_m, const Vec& rub_m) const noexcept TACT_RT;
     [[nodiscard]] double spring_j(double way_m) const noexcept TACT_RT;
-    void pace(const Vec3& push_m, const Vec3& way_m, double most_m) noexcept TACT_RT;
+    void pace(const Vec& push_m, const Vec& way_m, double most_m) noexcept TACT_RT;
 
     ContactForceSettings settings_;
-    Vec3 push_m_ = Vec3::Zero(),
-         way_m_ = Vec3::Zero();  // times the stiffness: normal part of the force, force
-    Vec3 shown_n_ = Vec3::Zero();
+    Vec push_m_ = Vec::Zero(),
+        way_m_ = Vec::Zero();  // times the stiffness: normal part of the force, force
+    Vec shown_n_ = Vec::Zero();
     double spring_m_ = 0.0;  // length of the unscaled force, paced
     double account_j_ = 0.0, gain_ = 0.0, off_n_ = 0.0;
 };
+
+using ContactForce = ContactForceOf<Vec3>;
+using ToolContactForce = ContactForceOf<Vec6>;
 
 }  // namespace tact

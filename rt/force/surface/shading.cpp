@@ -1,5 +1,7 @@
 #include "rt/force/surface/shading.hpp"
 
+#include <algorithm>
+
 namespace tact {
 namespace {
 

@@ -45,6 +45,12 @@ ToolModel::ToolModel(const SceneMeta& meta, const SurfaceMesh& mesh, const Touch
     : meta_(meta),
       settings_(settings),
       solver_(mesh, tool, tool_contact_settings(meta, tool, settings)),
+      force_({.stiffness_n_m = settings.stiffness_n_m,
+              .damping_n_s_m = settings.damping_n_s_m,
+              .damped_depth_m = kDampedDepthM,
+              .friction = 0.0,  // the proxy has it
+              .force_n_max = settings.force_n_max,
+              .lag_m = SurfaceModel::kLagN / settings.stiffness_n_m}),
       gyration_world_m_(solver_.points().gyration_m() * meta.world_per_model),
       torque_n_m_rad_(settings.stiffness_n_m * gyration_world_m_ * gyration_world_m_) {
     if (settings.mode == SurfaceMode::off_brute) regime_ = TouchRegime::brute;
@@ -109,7 +115,7 @@ void ToolModel::reset(const ToolState& tool) noexcept {
             settings_.force_n_max;
     if (valid && !keeps) {
         solver_.seat(goal(tool));
-        turn_.reset();
+        force_.reset();
     }
     seated_ = valid;
 }
@@ -166,18 +172,18 @@ Vec6 ToolModel::shaded_m() const noexcept {
     return sum;
 }
 
-Wrench ToolModel::felt(const ToolState& tool, const Vec6& way_m) const noexcept {
-    const Vec6 way_world_m = meta_.world_per_model * way_m;
-    const double depth_m = way_world_m.norm();
-    if (!(depth_m > 0.0)) return {};
-    const Vec6 along = way_world_m / depth_m;
-    const Twist& t = tool.twist_world;
-    Vec6 speed;
-    speed << t.linear_m_s, gyration_world_m_ * t.angular_rad_s;
-    const double into_m_s = speed.allFinite() ? -along.dot(speed) : 0.0;
-    const double damped = settings_.damping_n_s_m * into_m_s * std::min(1.0, depth_m / kDampedDepthM);
-    const double size_n = std::clamp(settings_.stiffness_n_m * depth_m + damped, 0.0, settings_.force_n_max);
-    return {size_n * along.head<3>(), gyration_world_m_ * size_n * along.tail<3>()};
+Wrench ToolModel::wrench(const ToolState& tool, const Vec6& way_m, const Vec6& moved_m) noexcept {
+    const double scale = meta_.world_per_model;
+    Vec6 velocity_m_s;
+    velocity_m_s << tool.twist_world.linear_m_s, gyration_world_m_ * tool.twist_world.angular_rad_s;
+    // Free, the proxy is at the hand but for rounding.
+    const bool is_free = touch_.places == 0 && touch_.state == ContactState::settled;
+    const Vec6 force_n = force_.step({.lift_m = is_free ? Vec6(Vec6::Zero()) : Vec6(scale * way_m),
+                                      .turn_m = scale * shaded_m(),
+                                      .moved_m = scale * moved_m,
+                                      .velocity_m_s = velocity_m_s,
+                                      .gain = fade_.gain()});
+    return {force_n.head<3>(), gyration_world_m_ * force_n.tail<3>()};
 }
 
 StepResult ToolModel::step(const ToolState& tool, const Budget& budget) noexcept {
@@ -196,7 +202,7 @@ StepResult ToolModel::step(const ToolState& tool, const Budget& budget) noexcept
         if (clutch && fade_.gain() <= 0.0) seated_ = false;
         if (!seated_ && !clutch) {
             solver_.seat(to);
-            turn_.reset();
+            force_.reset();
             seated_ = true;
             ++grips_;
         }
@@ -208,7 +214,7 @@ StepResult ToolModel::step(const ToolState& tool, const Budget& budget) noexcept
             else
                 fade_.rise();
             const bool hurried = budget.deadline.passed();
-            const double gone_m = solver_.way_m(solver_.goal(), to).norm();
+            const Vec6 moved_m = solver_.way_m(solver_.goal(), to);
             touch_ = solver_.follow(to,
                                     {.points = result.load.items,
                                      .moves = hurried ? 1 : kMovesMost,
@@ -228,13 +234,12 @@ StepResult ToolModel::step(const ToolState& tool, const Budget& budget) noexcept
             if (touch_.state != ContactState::settled || !on_time)
                 result.load.error =
                     std::max(result.load.error, 2.0 * std::min(pulled_n, settings_.force_n_max));
-            const Wrench w =
-                felt(tool, way_m + turn_.follow(shaded_m(), way_m, gone_m, solver_.settings().lag_m));
-            result.wrench_world = fade_.show({fade_.gain() * w.force_n, fade_.gain() * w.torque_n_m});
+            result.wrench_world = fade_.show(wrench(tool, way_m, moved_m));
+            result.load.error += force_.off_n();
             if (pulled_n > kLostLimits * settings_.force_n_max) {
                 fade_.follow(fade_);
                 solver_.seat(to);
-                turn_.reset();
+                force_.reset();
                 ++grips_;
                 ++released_;
             }

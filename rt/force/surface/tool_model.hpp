@@ -14,8 +14,8 @@
 //          (tool_points.hpp).
 // Error    of n points: k times their cover, the depth to which a surface with a slope below 45 degrees against the
 //          tool's can enter between them. While gliding or lagging, twice the force instead.
-// Shading  as in surface_model.hpp at each contact, with the torque of the corrected force there. Its rate limit applies
-//          to (force, torque / g).
+// Shading  as in surface_model.hpp at each contact, with the torque of the corrected force there. Pace and energy of
+//          (force, torque / g): contact_force.hpp.
 // Seat     After a reset or the clutch the proxy approaches the hand or the surface from outside within about 60 steps;
 //          then the force fades in. A reset keeps a proxy within the limit.
 // Else     bodies, clutch, frames, thread as in surface_model.hpp.
@@ -24,6 +24,7 @@
 #include <memory>
 
 #include "ipc/scene/mesh/touch_tool.hpp"
+#include "rt/force/surface/contact_force.hpp"
 #include "rt/force/surface/shading.hpp"
 #include "rt/force/surface/surface_model.hpp"
 #include "rt/force/surface/tool_contact.hpp"
@@ -79,7 +80,7 @@ private:
     [[nodiscard]] const NearSurface* choose_surface(float fidelity) noexcept TACT_RT;
     [[nodiscard]] Pose goal(const ToolState& tool) const noexcept TACT_RT;
     [[nodiscard]] Vec6 shaded_m() const noexcept TACT_RT;
-    [[nodiscard]] Wrench felt(const ToolState& tool, const Vec6& way_m) const noexcept TACT_RT;
+    Wrench wrench(const ToolState& tool, const Vec6& way_m, const Vec6& moved_m) noexcept TACT_RT;
 
     SceneMeta meta_;
     SurfaceSettings settings_;
@@ -87,7 +88,7 @@ private:
     std::unique_ptr<AdaptiveToolSurface> adaptive_;
     TouchRegime regime_ = TouchRegime::tree;
     ToolTouch touch_;
-    PacedTurn<Vec6> turn_;  // by shading
+    ToolContactForce force_;
     ForceFade fade_;
     double gyration_world_m_, torque_n_m_rad_;
     bool asked_ = false, seated_ = false;

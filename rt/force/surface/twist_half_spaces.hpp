@@ -26,8 +26,6 @@
 
 namespace tact {
 
-using Vec6 = Eigen::Matrix<double, 6, 1>;
-
 class TwistHalfSpaces {
 public:
     static constexpr std::size_t kMax = 4096;

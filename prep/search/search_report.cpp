@@ -1,0 +1,110 @@
+#include "prep/search/search_report.hpp"
+
+#include <cstdarg>
+#include <cstdio>
+
+#include "ipc/base/units.hpp"
+#include "prep/search/fit_input.hpp"
+
+namespace tact {
+namespace {
+
+std::string text(const char* format, ...) __attribute__((format(printf, 1, 2)));
+std::string text(const char* format, ...) {
+    char line[400];
+    va_list values;
+    va_start(values, format);
+    std::vsnprintf(line, sizeof line, format, values);
+    va_end(values);
+    return line;
+}
+
+std::string quoted(const std::string& field) {
+    if (field.find_first_of(",\"\n") == std::string::npos) return field;
+    std::string out = "\"";
+    for (const char c : field) out += c == '"' ? std::string("\"\"") : std::string(1, c);
+    return out + "\"";
+}
+
+}  // namespace
+
+std::string as_table(const SearchReport& r) {
+    std::string out;
+    for (const SearchedModel& m : r.models) {
+        out += m.model + ": " +
+               text("%zu atoms, %zu orientations, within %.1f degrees, searched at %.1f Å, %.1f s\n",
+                    m.structure.size(), m.found.rotations, m.found.cover_rad / kDegreeRad,
+                    m.found.search_resolution_m / kAngstromM, m.seconds);
+        if (m.turn > 0)
+            out += text("  placed as number %zu, %.4f ahead of its second best place\n", m.turn, m.ahead);
+        if (m.found.hits.empty())
+            out += "  no place found\n";
+        else
+            out += text("%5s %8s %7s %14s %8s   %s\n", "rank", "score", "z", "cc about mean", "clashes",
+                        "centre, Å");
+        for (std::size_t i = 0; i < m.found.hits.size(); ++i) {
+            const SearchHit& hit = m.found.hits[i];
+            const Vec3 at_a = hit.T_model_body.p_m / kAngstromM;
+            out += text("%5zu %8.4f %7.2f %14.4f %8llu   %.1f %.1f %.1f\n", i + 1, hit.score, hit.z,
+                        m.cc_about_mean[i], static_cast<unsigned long long>(m.clashes[i]), at_a.x(), at_a.y(),
+                        at_a.z());
+        }
+    }
+    return out;
+}
+
+nlohmann::ordered_json as_json(const SearchReport& r) {
+    nlohmann::ordered_json json{{"map", r.map},
+                                {"resolution_a", r.resolution_a},
+                                {"objective", r.objective},
+                                {"fixed", r.fixed},
+                                {"hits", nlohmann::ordered_json::array()},
+                                {"searches", nlohmann::ordered_json::array()}};
+    for (const SearchedModel& m : r.models) {
+        nlohmann::ordered_json searched{{"model", m.model},
+                                        {"atoms", m.structure.size()},
+                                        {"orientations", m.found.rotations},
+                                        {"orientations_within_deg", m.found.cover_rad / kDegreeRad},
+                                        {"search_resolution_a", m.found.search_resolution_m / kAngstromM},
+                                        {"random_score_mean", m.found.random_mean},
+                                        {"random_score_deviation", m.found.random_deviation},
+                                        {"seconds", m.seconds}};
+        if (m.turn > 0) {
+            searched["turn"] = m.turn;
+            searched["ahead_of_second"] = m.ahead;
+        }
+        json["searches"].push_back(searched);
+        for (std::size_t i = 0; i < m.found.hits.size(); ++i) {
+            const SearchHit& hit = m.found.hits[i];
+            json["hits"].push_back({{"model", m.model},
+                                    {"rank", i + 1},
+                                    {"score", hit.score},
+                                    {"z", hit.z},
+                                    {"cc_about_mean", m.cc_about_mean[i]},
+                                    {"clashes", m.clashes[i]},
+                                    {"matrix", matrix_of(m.structure, hit.T_model_body)}});
+        }
+    }
+    return json;
+}
+
+std::string as_csv(const SearchReport& r) {
+    std::string out = "map,model,resolution_a,objective,score,z,cc_about_mean,clashes,seconds";
+    for (int i = 0; i < 12; ++i) out += ",m" + std::to_string(i);
+    out += "\n";
+    for (const SearchedModel& m : r.models) {
+        out += quoted(r.map) + "," + quoted(m.model) + text(",%g,", r.resolution_a) + r.objective;
+        if (m.found.hits.empty()) {
+            out += text(",,,,,%.2f,,,,,,,,,,,,\n", m.seconds);
+            continue;
+        }
+        const SearchHit& hit = m.found.hits.front();
+        out += text(",%.6f,%.4f,%.6f,%llu,%.2f", hit.score, hit.z, m.cc_about_mean[0],
+                    static_cast<unsigned long long>(m.clashes[0]), m.seconds);
+        for (const double v : matrix_of(m.structure, hit.T_model_body)) out += text(",%.8g", v);
+        out += "\n";
+    }
+    return out;
+}
+
+}  // namespace tact

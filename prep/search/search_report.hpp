@@ -1,0 +1,39 @@
+// What a search found, as a table for a person, as JSON and as CSV.
+//
+// JSON    hits[]: model, rank, score, z, cc_about_mean, clashes (with the fixed structures) and matrix: 3 x 4, row-major, from
+//         the coordinates of the model's file to those of the map, angstrom. searches[]: one per model, how it was searched
+// CSV     one row per model: its best hit; matrix in twelve columns
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "prep/search/search.hpp"
+
+namespace tact {
+
+struct SearchedModel {
+    std::string model;  // as given
+    Structure structure;
+    SearchResult found;
+    std::vector<double> cc_about_mean;   // by hit; in the map as it is
+    std::vector<std::uint64_t> clashes;  // by hit
+    double seconds = 0.0;
+    // Of --together.
+    std::size_t turn = 0;  // of placing, 1: first; 0: searched alone
+    double ahead = 0.0;
+};
+
+struct SearchReport {
+    std::string map, objective;
+    double resolution_a = 0.0;
+    std::vector<std::string> fixed;
+    std::vector<SearchedModel> models;
+};
+
+[[nodiscard]] std::string as_table(const SearchReport& report);
+[[nodiscard]] nlohmann::ordered_json as_json(const SearchReport& report);
+[[nodiscard]] std::string as_csv(const SearchReport& report);
+
+}  // namespace tact
