@@ -26,6 +26,7 @@ namespace {
 constexpr std::size_t kHeaderBytes = 1024;
 constexpr std::int32_t kSizeMax = 16384;
 constexpr std::int32_t kExtendedMax = 1 << 28;
+constexpr std::int32_t kHalfMode = 12;  // 16-bit floats (IEEE 754 binary16)
 
 // Words count from 1, as in the format description.
 struct Header {
@@ -78,18 +79,16 @@ std::size_t bytes_of_mode(const Reader& reader, std::int32_t mode) {
         case 2:
             return 4;
         case 6:
+        case kHalfMode:
             return 2;
         case 3:
         case 4:
             reader.fail("word 4: mode " + std::to_string(mode) + " is a Fourier transform, not a density",
                         "convert the file to a density map of mode 2");
-        case 12:
-            reader.fail("word 4: mode 12 (16-bit floats) is not supported",
-                        "convert the map to mode 2, for example with e2proc3d.py or relion_image_handler");
         default:
             break;
     }
-    reader.fail("word 4: mode " + std::to_string(mode) + " is not supported; modes 0, 1, 2 and 6 are",
+    reader.fail("word 4: mode " + std::to_string(mode) + " is not supported; modes 0, 1, 2, 6 and 12 are",
                 "convert the map to mode 2");
 }
 
@@ -165,6 +164,19 @@ void swap_data(char* data, std::size_t bytes, std::size_t each) {
     for (std::size_t i = 0; i + each <= bytes; i += each) std::reverse(data + i, data + i + each);
 }
 
+// The values of a file of mode 12 as those of mode 2, which gemmi reads.
+void widen_halves(std::vector<char>& bytes) {
+    const std::size_t count = (bytes.size() - kHeaderBytes) / 2;
+    std::vector<char> wide(kHeaderBytes + 4 * count);
+    for (std::size_t i = 0; i < count; ++i) {
+        std::uint16_t half = 0;
+        std::memcpy(&half, bytes.data() + kHeaderBytes + 2 * i, 2);
+        const auto value = static_cast<float>(Eigen::numext::bit_cast<Eigen::half>(half));
+        std::memcpy(wide.data() + kHeaderBytes + 4 * i, &value, 4);
+    }
+    bytes = std::move(wide);
+}
+
 }  // namespace
 
 ImportedMap read_mrc(std::vector<char> bytes, const std::string& name) {
@@ -220,8 +232,10 @@ ImportedMap read_mrc(std::vector<char> bytes, const std::string& name) {
     bytes.erase(bytes.begin() + kHeaderBytes,
                 bytes.begin() + static_cast<std::ptrdiff_t>(kHeaderBytes) + h.i(24));
     if (swap) swap_data(bytes.data() + kHeaderBytes, bytes.size() - kHeaderBytes, each);
+    if (h.i(4) == kHalfMode) widen_halves(bytes);
     const Vec3 origin_words(h.f(50), h.f(51), h.f(52));
     Header plain = h;
+    if (h.i(4) == kHalfMode) plain.set(4, 2);
     plain.set(23, 1);
     plain.set(24, 0);
     std::memcpy(plain.word + 52, "MAP ", 4);

@@ -1,64 +1,161 @@
 #include "prep/search/place_together.hpp"
 
 #include <algorithm>
+#include <numeric>
 
 #include "ipc/scene/density/subtracted_map.hpp"
+#include "prep/map/low_pass.hpp"
+#include "prep/search/joint_fit.hpp"
 
 namespace tact {
 namespace {
 
-constexpr int kRounds = 3;
+constexpr std::size_t kChoices = 80;
+constexpr int kRefinements = 10, kSearchesAgain = 2;
 
-DensityGrid rest_of(const DensityGrid& map, const std::vector<PlacedStructure>& placed,
-                    const SearchSettings& settings) {
-    return placed.empty() ? map
-                          : subtract_placed(map, settings.background, placed, settings.resolution_m).grid;
-}
+class Together {
+public:
+    Together(const DensityGrid& map, const std::vector<Structure>& structures, const SearchSettings& settings)
+        : map_(map),
+          structures_(structures),
+          settings_(settings),
+          joint_(search_map(map, settings.background, settings.resolution_m, settings.resolution_m,
+                            settings.laplacian)) {
+        wanted_hits_ = settings.hits_max;
+        settings_.hits_max = std::max(settings.hits_max, kChoices);
+        result_.found.resize(structures.size());
+        for (const Structure& s : structures) placed_.push_back({&s, s.home()});
+    }
+
+    PlacedTogether place(const Progress& progress) {
+        const double searches = static_cast<double>(structures_.size()) * (1.0 + kSearchesAgain);
+        double done = 0.0;
+        const auto next = [&] {
+            const Progress one = part(progress, done / searches, (done + 1.0) / searches);
+            done += 1.0;
+            return one;
+        };
+        for (std::size_t i = 0; i < structures_.size(); ++i)
+            result_.found[i] = search(map_, structures_[i], settings_, next());
+        choose();
+        refine_in_turns();
+        for (int again = 0; again < kSearchesAgain; ++again) {
+            for (std::size_t i = 0; i < structures_.size(); ++i) search_again(i, next());
+            refine_in_turns();
+        }
+        result_.correlation = joint_.correlation(fields());
+        for (SearchResult& r : result_.found) r.hits.resize(std::min(r.hits.size(), wanted_hits_));
+        return std::move(result_);
+    }
+
+private:
+    // Large structures first: they decide where the small ones have room.
+    void choose() {
+        std::vector<std::size_t> order(structures_.size());
+        std::iota(order.begin(), order.end(), std::size_t{0});
+        std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+            return structures_[a].mass_u > structures_[b].mass_u;
+        });
+        std::vector<std::vector<PlacedField>> choices;
+        std::erase_if(order, [&](std::size_t i) { return result_.found[i].hits.empty(); });
+        for (const std::size_t i : order) {
+            choices.emplace_back();
+            for (const SearchHit& hit : result_.found[i].hits)
+                choices.back().push_back(joint_.field(structures_[i], hit.T_model_body));
+        }
+        const std::vector<std::size_t> chosen = joint_.best(choices);
+        for (std::size_t k = 0; k < order.size(); ++k) {
+            auto& hits = result_.found[order[k]].hits;
+            std::rotate(hits.begin(), hits.begin() + static_cast<std::ptrdiff_t>(chosen[k]),
+                        hits.begin() + static_cast<std::ptrdiff_t>(chosen[k]) + 1);
+            placed_[order[k]].T_model_body = hits.front().T_model_body;
+        }
+    }
+    [[nodiscard]] DensityGrid rest_of(std::size_t i) const {
+        std::vector<PlacedStructure> others = placed_;
+        others.erase(others.begin() + static_cast<std::ptrdiff_t>(i));
+        return others.empty()
+                   ? map_
+                   : subtract_placed(map_, settings_.background, others, settings_.resolution_m).grid;
+    }
+    // The sum of squares of map - scale * sum of simulated densities falls when a structure climbs the smoothed rest of the map,
+    // because the sum of squares of its own density does not depend on its pose.
+    void refine_in_turns() {
+        DensityGrid own = map_;
+        for (float& v : own.values) v -= static_cast<float>(settings_.background);
+        std::vector<std::vector<float>> simulated;
+        for (const PlacedStructure& p : placed_)
+            simulated.push_back(simulated_map(map_, {&p, 1}, settings_.resolution_m));
+        std::vector<float> sum(map_.count(), 0.0F);
+        for (const auto& one : simulated)
+            for (std::size_t v = 0; v < sum.size(); ++v) sum[v] += one[v];
+        DensityGrid rest = own;
+        for (int turn = 0; turn < kRefinements; ++turn)
+            for (std::size_t i = 0; i < structures_.size(); ++i) {
+                double with_map = 0.0, with_itself = 0.0;
+                for (std::size_t v = 0; v < sum.size(); ++v) {
+                    with_map += static_cast<double>(sum[v]) * static_cast<double>(own.values[v]);
+                    with_itself += static_cast<double>(sum[v]) * static_cast<double>(sum[v]);
+                }
+                if (!(with_map > 0.0 && with_itself > 0.0)) return;
+                const auto scale = static_cast<float>(with_map / with_itself);
+                for (std::size_t v = 0; v < sum.size(); ++v)
+                    rest.values[v] = own.values[v] - scale * (sum[v] - simulated[i][v]);
+                const DensityMap felt(low_pass(rest, 0.0, settings_.resolution_m), 0.0, 1.0);
+                placed_[i].T_model_body = refine(felt, structures_[i], placed_[i].T_model_body).T_model_body;
+                for (std::size_t v = 0; v < sum.size(); ++v) sum[v] -= simulated[i][v];
+                simulated[i] = simulated_map(map_, {&placed_[i], 1}, settings_.resolution_m);
+                for (std::size_t v = 0; v < sum.size(); ++v) sum[v] += simulated[i][v];
+            }
+        for (std::size_t i = 0; i < structures_.size(); ++i) {
+            if (result_.found[i].hits.empty()) continue;
+            SearchHit& hit = result_.found[i].hits.front();
+            hit.T_model_body = placed_[i].T_model_body;
+            hit.score = place_score(rest_of(i), structures_[i], settings_, hit.T_model_body);
+        }
+    }
+    [[nodiscard]] std::vector<PlacedField> fields() const {
+        std::vector<PlacedField> list;
+        for (const PlacedStructure& p : placed_) list.push_back(joint_.field(*p.structure, p.T_model_body));
+        return list;
+    }
+    void search_again(std::size_t i, const Progress& progress) {
+        SearchResult found = search(rest_of(i), structures_[i], settings_, progress);
+        if (found.hits.empty()) return;
+        std::vector<PlacedField> all = fields();
+        std::size_t best = found.hits.size();
+        double most = joint_.correlation(all);
+        for (std::size_t k = 0; k < found.hits.size(); ++k) {
+            all[i] = joint_.field(structures_[i], found.hits[k].T_model_body);
+            const double c = joint_.correlation(all);
+            if (c > most) most = c, best = k;
+        }
+        // The present place stays first where no hit is better.
+        if (best == found.hits.size()) {
+            if (!result_.found[i].hits.empty())
+                found.hits.insert(found.hits.begin(), result_.found[i].hits.front());
+        } else {
+            std::rotate(found.hits.begin(), found.hits.begin() + static_cast<std::ptrdiff_t>(best),
+                        found.hits.begin() + static_cast<std::ptrdiff_t>(best) + 1);
+        }
+        placed_[i].T_model_body = found.hits.front().T_model_body;
+        result_.found[i] = std::move(found);
+    }
+
+    const DensityGrid& map_;
+    const std::vector<Structure>& structures_;
+    SearchSettings settings_;
+    JointFit joint_;
+    std::vector<PlacedStructure> placed_;
+    PlacedTogether result_;
+    std::size_t wanted_hits_ = 0;
+};
 
 }  // namespace
 
 PlacedTogether place_together(const DensityGrid& map, const std::vector<Structure>& structures,
                               const SearchSettings& settings, const Progress& progress) {
-    const std::size_t n = structures.size();
-    const double searches = 0.5 * static_cast<double>(n) * static_cast<double>(n + 1);
-    PlacedTogether result;
-    result.found.resize(n);
-    result.ahead.resize(n);
-    std::vector<PlacedStructure> placed;
-    double done = 0.0;
-    for (std::size_t turn = 0; turn < n; ++turn) {
-        const DensityGrid rest = rest_of(map, placed, settings);
-        std::size_t next = n;
-        for (std::size_t i = 0; i < n; ++i) {
-            if (std::find(result.order.begin(), result.order.end(), i) != result.order.end()) continue;
-            SearchResult found =
-                search(rest, structures[i], settings,
-                       part(progress, 0.95 * done / searches, 0.95 * (done + 1.0) / searches));
-            done += 1.0;
-            if (found.hits.empty()) continue;
-            const double ahead = found.hits[0].score - (found.hits.size() > 1 ? found.hits[1].score : 0.0);
-            if (next != n && ahead <= result.ahead[next]) continue;
-            next = i;
-            result.ahead[i] = ahead;
-            result.found[i] = std::move(found);
-        }
-        if (next == n) break;
-        result.order.push_back(next);
-        placed.push_back({&structures[next], result.found[next].hits[0].T_model_body});
-    }
-    for (int round = 0; round < kRounds; ++round) {
-        for (std::size_t k = 0; k < placed.size(); ++k) {
-            report(progress, 0.95 + 0.05 * round / kRounds, "refining together");
-            std::vector<PlacedStructure> others = placed;
-            others.erase(others.begin() + static_cast<std::ptrdiff_t>(k));
-            SearchHit& hit = result.found[result.order[k]].hits[0];
-            const RefineResult r = refine_place(rest_of(map, others, settings), *placed[k].structure,
-                                                settings, hit.T_model_body);
-            hit.T_model_body = placed[k].T_model_body = r.T_model_body;
-            hit.score = r.score;
-        }
-    }
-    return result;
+    return Together(map, structures, settings).place(progress);
 }
 
 }  // namespace tact

@@ -1,9 +1,11 @@
-// Places several structures in one map without a start: each is searched in the map that the placed ones leave, and the
-// surest is placed next.
+// Places several structures in one map without a start.
 //
-// Surest    the one whose best place scores the most above its second best (places apart, search.hpp)
-// Then      each is refined in the map that all others leave, kRounds times
-// Thread    slow (seconds per search, one search per structure and turn)
+// Steps     1. each structure is searched in the whole map (search.hpp)
+//           2. of their hits, the combination that together explains the map best (joint_fit.hpp)
+//           3. each is refined in the map that all others leave, in turns
+//           4. each is searched again in what the others leave, and moves where that explains the map better; then 3.
+// Found     by structure, the hits of its last search, with the chosen place first
+// Thread    slow (seconds per search; three searches per structure)
 // Errors    as search()
 #pragma once
 
@@ -14,10 +16,8 @@
 namespace tact {
 
 struct PlacedTogether {
-    std::vector<std::size_t> order;  // of placing, indices of the structures
-    std::vector<SearchResult>
-        found;  // by structure, when it was placed; the first hit as refined in the last round
-    std::vector<double> ahead;  // of the second best place, when it was placed
+    std::vector<SearchResult> found;  // by structure
+    double correlation = 0.0;         // of all together (JointFit)
 };
 
 PlacedTogether place_together(const DensityGrid& map, const std::vector<Structure>& structures,

@@ -17,7 +17,8 @@ namespace {
 
 struct RefineRequest {
     FitInput input;
-    std::string objective = "density", json;
+    std::string objective = "laplacian", json;
+    double range_a = 10.0, range_deg = 20.0;
 };
 
 const char* ended(RefineEnd end) {
@@ -34,21 +35,35 @@ const char* ended(RefineEnd end) {
     return "";
 }
 
-RefineResult refined(const FitData& data, const Structure& structure, const std::string& objective,
-                     const RefineProgress& progress) {
-    if (objective == "laplacian")
-        return refine_place(
-            data.rest, structure,
-            {.resolution_m = data.metrics.resolution_m, .background = data.metrics.background},
-            structure.home(), progress);
+// The best place within the range, or the nearest optimum.
+RefineResult by_search(const FitData& data, const Structure& structure, const RefineRequest& request,
+                       const Progress& progress) {
+    SearchSettings settings{.resolution_m = data.metrics.resolution_m,
+                            .background = data.metrics.background,
+                            .laplacian = request.objective == "laplacian",
+                            .hits_max = 1};
+    if (!(request.range_a > 0.0)) return refine_place(data.rest, structure, settings, structure.home());
+    settings.near =
+        SearchNear{structure.home(), request.range_a * kAngstromM, request.range_deg * kDegreeRad};
+    RefineResult result;
+    result.score_start = place_score(data.rest, structure, settings, structure.home());
+    const SearchHit hit = search(data.rest, structure, settings, progress).hits.at(0);
+    result.T_model_body = hit.T_model_body;
+    result.score = hit.score;
+    result.end = RefineEnd::converged;
+    return result;
+}
+
+RefineResult refined(const FitData& data, const Structure& structure, const RefineRequest& request,
+                     const Progress& progress) {
+    if (request.objective == "laplacian" || request.objective == "correlation-mean")
+        return by_search(data, structure, request, progress);
     RefineSettings settings;
-    settings.goal = objective == "density"            ? RefineGoal::mean_density
-                    : objective == "correlation-zero" ? RefineGoal::correlation_zero
-                                                      : RefineGoal::correlation_mean;
+    settings.goal = request.objective == "density" ? RefineGoal::mean_density : RefineGoal::correlation_zero;
     settings.resolution_m = data.metrics.resolution_m;
     settings.background_sigma = data.metrics.background / data.metrics.sigma;
     return refine(DensityMap(data.rest, data.metrics.background, data.metrics.sigma), structure,
-                  structure.home(), settings, progress);
+                  structure.home(), settings);
 }
 
 void run_refine(const RefineRequest& request) {
@@ -66,10 +81,10 @@ void run_refine(const RefineRequest& request) {
     std::string table;
     for (std::size_t i = 0; i < data.models.size(); ++i) {
         const Structure& s = data.models[i];
-        const RefineResult r = refined(data, s, request.objective, [&](std::uint32_t, double) {
-            report(progress, static_cast<double>(i) / static_cast<double>(data.models.size()), "refining");
-            return true;
-        });
+        const auto count = static_cast<double>(data.models.size());
+        const RefineResult r =
+            refined(data, s, request,
+                    part(progress, static_cast<double>(i) / count, static_cast<double>(i + 1) / count));
         const double moved_a = (r.T_model_body.p_m - s.home_com_model_m).norm() / kAngstromM,
                      turned_deg = r.T_model_body.q.angularDistance(Quat::Identity()) / kDegreeRad;
         json["bodies"].push_back({{"model", request.input.models[i]},
@@ -77,7 +92,6 @@ void run_refine(const RefineRequest& request) {
                                   {"score_after", r.score},
                                   {"moved_a", moved_a},
                                   {"turned_deg", turned_deg},
-                                  {"iterations", r.iterations},
                                   {"end", ended(r.end)},
                                   {"matrix", matrix_of(s, r.T_model_body)}});
         char line[400];
@@ -97,15 +111,26 @@ void run_refine(const RefineRequest& request) {
 void add_refine(CLI::App& app) {
     const auto request = std::make_shared<RefineRequest>();
     CLI::App* const command = app.add_subcommand(
-        "refine",
-        "Move structures from the positions of their files to the nearest optimum of their fit to a map");
+        "refine", "Move structures from the positions of their files to the best place nearby in a map");
     request->input.add_to(*command);
     command
-        ->add_option("--objective", request->objective,
-                     "density: its mean at the atoms, as the docking force; correlation-zero, "
-                     "correlation-mean: of the "
-                     "simulated density, about zero or the mean; laplacian: of the Laplacians, as the search")
-        ->check(CLI::IsMember({"density", "correlation-zero", "correlation-mean", "laplacian"}))
+        ->add_option(
+            "--objective", request->objective,
+            "laplacian: correlation about the mean of the Laplacians of the densities; correlation-mean, "
+            "correlation-zero: of the densities, about the mean or zero; density: its mean at the atoms, as "
+            "the "
+            "docking force")
+        ->check(CLI::IsMember({"laplacian", "correlation-mean", "correlation-zero", "density"}))
+        ->capture_default_str();
+    command
+        ->add_option(
+            "--range-a", request->range_a,
+            "How far away better places are looked for (angstrom); 0: only uphill from the start. The "
+            "objectives density and correlation-zero always go uphill only")
+        ->check(CLI::Range(0.0, 100.0))
+        ->capture_default_str();
+    command->add_option("--range-deg", request->range_deg, "The same for the rotation (degrees)")
+        ->check(CLI::Range(0.0, 180.0))
         ->capture_default_str();
     command->add_option("--json", request->json, "Write the places as JSON; -: to standard output")
         ->type_name("FILE");

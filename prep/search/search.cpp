@@ -162,23 +162,31 @@ SearchResult search(const DensityGrid& map, const Structure& structure, const Se
                                         result.search_resolution_m, settings.laplacian);
     const Structure beads = coarse_structure(structure, coarse.resolution_m / kBeadsPerResolution);
     const MapWaves waves(coarse, beads);
-    const std::vector<Quat> turns = rotation_set(result.rotations);
+    std::vector<Quat> turns = rotation_set(result.rotations);
+    if (settings.near) {
+        // Half a cover more: the orientations that stand for the limit are beyond it.
+        const double within_rad = settings.near->within_rad + 0.5 * result.cover_rad;
+        std::erase_if(turns,
+                      [&](const Quat& q) { return q.angularDistance(settings.near->place.q) > within_rad; });
+    }
     std::vector<std::vector<SearchPeak>> peaks(turns.size());
     std::vector<Sums> random(turns.size());
     std::vector<std::unique_ptr<RotationScore>> scores(threads);
     for (auto& s : scores) s = std::make_unique<RotationScore>(waves);
-    for_all(turns.size(), threads, part(progress, 0.0, 0.7), "searching",
-            [&](std::size_t i, unsigned thread) {
-                RotationScore& score = *scores[thread];
-                if (!score.at(turns[i])) return;
-                peaks[i] = score.peaks(kPeaksPerRotation);
-                for (const auto& node : coarse.inside) {
-                    const auto s = static_cast<double>(score.score(node[0], node[1], node[2]));
-                    random[i].n += 1.0;
-                    random[i].sum += s;
-                    random[i].sum_2 += s * s;
-                }
-            });
+    for_all(
+        turns.size(), threads, part(progress, 0.0, 0.7), "searching", [&](std::size_t i, unsigned thread) {
+            RotationScore& score = *scores[thread];
+            if (!score.at(turns[i])) return;
+            peaks[i] = settings.near
+                           ? score.peaks(kPeaksPerRotation, settings.near->place.p_m, settings.near->within_m)
+                           : score.peaks(kPeaksPerRotation);
+            for (const auto& node : coarse.inside) {
+                const auto s = static_cast<double>(score.score(node[0], node[1], node[2]));
+                random[i].n += 1.0;
+                random[i].sum += s;
+                random[i].sum_2 += s * s;
+            }
+        });
     Sums all;
     std::vector<SearchHit> found;
     for (std::size_t i = 0; i < turns.size(); ++i) {
@@ -190,6 +198,7 @@ SearchResult search(const DensityGrid& map, const Structure& structure, const Se
     result.random_deviation =
         std::sqrt(std::max(all.sum_2 / std::max(all.n, 1.0) - result.random_mean * result.random_mean, 0.0));
     found = thinned(std::move(found), spread, kCoarseApart * coarse.resolution_m, kCoarseMost);
+    if (settings.near) found.push_back({settings.near->place, 0.0, 0.0});
 
     const auto refined = [&](double search_m, const Progress& part_of) {
         refine_all(found, Refinement(map, structure, settings, search_m), threads, part_of);
@@ -209,6 +218,13 @@ SearchResult search(const DensityGrid& map, const Structure& structure, const Se
 RefineResult refine_place(const DensityGrid& map, const Structure& structure, const SearchSettings& settings,
                           const Pose& start, const RefineProgress& progress) {
     return Refinement(map, structure, settings, settings.resolution_m).from(start, progress);
+}
+
+double place_score(const DensityGrid& map, const Structure& structure, const SearchSettings& settings,
+                   const Pose& place) {
+    return Refinement(map, structure, settings, settings.resolution_m)
+        .from(place, [](std::uint32_t, double) { return false; })
+        .score_start;
 }
 
 }  // namespace tact

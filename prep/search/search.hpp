@@ -6,6 +6,8 @@
 //          2. for each, the score at every position (translation_search.hpp); its highest maxima are candidates
 //          3. candidates that move the atoms by less than a part of the resolution are one; the best are refined, first at the
 //             resolution of the search, then at that of the map (ipc/scene/fit/refine.hpp)
+// Near     with `near`, only orientations and positions within its limits, and the given place itself, so the best hit is
+//          never worse than it
 // Score    correlation about the mean of the refined place, of the Laplacians of the densities: inside a large complex the
 //          densities alone correlate well in many wrong places (prep/search/README.md). z: how many standard deviations it
 //          is above the scores of unrefined places with the origin in the density, in all orientations of step 1
@@ -14,6 +16,7 @@
 // Errors   StartupError; Cancelled when `progress` returns false
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "ipc/base/progress.hpp"
@@ -23,6 +26,12 @@
 
 namespace tact {
 
+// Only places whose centre and orientation are near a given one.
+struct SearchNear {
+    Pose place;
+    double within_m = 0.0, within_rad = 0.0;
+};
+
 struct SearchSettings {
     double resolution_m = 0.0;  // of the map, > 0
     double background = 0.0;
@@ -30,6 +39,7 @@ struct SearchSettings {
     std::size_t rotations_max = 4000;
     std::size_t hits_max = 20;
     unsigned threads = 0;  // 0: one per processor
+    std::optional<SearchNear> near{};
 };
 
 struct SearchHit {
@@ -50,5 +60,9 @@ SearchResult search(const DensityGrid& map, const Structure& structure, const Se
 // Moves the structure from one place to the nearest optimum of the search's score, at the resolution of the map.
 RefineResult refine_place(const DensityGrid& map, const Structure& structure, const SearchSettings& settings,
                           const Pose& start, const RefineProgress& progress = {});
+
+// The search's score of a place, at the resolution of the map.
+double place_score(const DensityGrid& map, const Structure& structure, const SearchSettings& settings,
+                   const Pose& place);
 
 }  // namespace tact

@@ -63,13 +63,9 @@ SearchReport search_files(const SearchRequest& request, const Progress& progress
     }
     if (request.together) {
         const auto begin = std::chrono::steady_clock::now();
-        const PlacedTogether together = place_together(data.rest, data.models, settings, progress);
-        for (std::size_t turn = 0; turn < together.order.size(); ++turn) {
-            const std::size_t i = together.order[turn];
-            out.models[i].found = together.found[i];
-            out.models[i].turn = turn + 1;
-            out.models[i].ahead = together.ahead[i];
-        }
+        PlacedTogether together = place_together(data.rest, data.models, settings, progress);
+        for (std::size_t i = 0; i < models; ++i) out.models[i].found = std::move(together.found[i]);
+        out.together_correlation = together.correlation;
         for (SearchedModel& m : out.models) m.seconds = seconds_since(begin);
     }
     for (SearchedModel& m : out.models) measure(m, data);
@@ -107,7 +103,7 @@ void add_search(CLI::App& app) {
         ->check(CLI::IsMember({"laplacian", "density"}))
         ->capture_default_str();
     command->add_flag("--together", request->together,
-                      "Place all models in one map: the surest first, each in what the others leave");
+                      "Place all models in one map, so that together they explain it best");
     command->add_option("--hits", request->hits_max, "Number of places per model")
         ->check(CLI::Range(1, 1000))
         ->capture_default_str();

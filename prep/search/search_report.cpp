@@ -35,8 +35,6 @@ std::string as_table(const SearchReport& r) {
                text("%zu atoms, %zu orientations, within %.1f degrees, searched at %.1f Å, %.1f s\n",
                     m.structure.size(), m.found.rotations, m.found.cover_rad / kDegreeRad,
                     m.found.search_resolution_m / kAngstromM, m.seconds);
-        if (m.turn > 0)
-            out += text("  placed as number %zu, %.4f ahead of its second best place\n", m.turn, m.ahead);
         if (m.found.hits.empty())
             out += "  no place found\n";
         else
@@ -50,6 +48,9 @@ std::string as_table(const SearchReport& r) {
                         at_a.z());
         }
     }
+    if (r.together_correlation)
+        out +=
+            text("all together: correlation about zero %.4f, over the whole map\n", *r.together_correlation);
     return out;
 }
 
@@ -60,6 +61,7 @@ nlohmann::ordered_json as_json(const SearchReport& r) {
                                 {"fixed", r.fixed},
                                 {"hits", nlohmann::ordered_json::array()},
                                 {"searches", nlohmann::ordered_json::array()}};
+    if (r.together_correlation) json["together_correlation"] = *r.together_correlation;
     for (const SearchedModel& m : r.models) {
         nlohmann::ordered_json searched{{"model", m.model},
                                         {"atoms", m.structure.size()},
@@ -69,10 +71,6 @@ nlohmann::ordered_json as_json(const SearchReport& r) {
                                         {"random_score_mean", m.found.random_mean},
                                         {"random_score_deviation", m.found.random_deviation},
                                         {"seconds", m.seconds}};
-        if (m.turn > 0) {
-            searched["turn"] = m.turn;
-            searched["ahead_of_second"] = m.ahead;
-        }
         json["searches"].push_back(searched);
         for (std::size_t i = 0; i < m.found.hits.size(); ++i) {
             const SearchHit& hit = m.found.hits[i];

@@ -6,6 +6,7 @@
 #pragma once
 
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -20,9 +21,6 @@ struct SearchedModel {
     std::vector<double> cc_about_mean;   // by hit; in the map as it is
     std::vector<std::uint64_t> clashes;  // by hit
     double seconds = 0.0;
-    // Of --together.
-    std::size_t turn = 0;  // of placing, 1: first; 0: searched alone
-    double ahead = 0.0;
 };
 
 struct SearchReport {
@@ -30,6 +28,7 @@ struct SearchReport {
     double resolution_a = 0.0;
     std::vector<std::string> fixed;
     std::vector<SearchedModel> models;
+    std::optional<double> together_correlation{};  // of all models together (joint_fit.hpp)
 };
 
 [[nodiscard]] std::string as_table(const SearchReport& report);

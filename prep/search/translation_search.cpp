@@ -31,8 +31,16 @@ double value_at(const DensityGrid& grid, const Vec3& at_m) {
     return sum;
 }
 
-// Six times the value less its neighbours; 0 outside.
-std::vector<float> laplacian(const std::vector<float>& v, const std::array<std::uint32_t, 3>& n) {
+FftVolume::Size padded(const SearchMap& map, std::uint32_t reach) {
+    FftVolume::Size size{};
+    for (std::size_t a = 0; a < 3; ++a)
+        size[a] = FftVolume::quick_length(std::max(map.grid.size[a] + reach, 2 * reach + 1));
+    return size;
+}
+
+}  // namespace
+
+std::vector<float> laplacian_of(const std::vector<float>& v, const std::array<std::uint32_t, 3>& n) {
     std::vector<float> out(v.size());
     const std::array<std::size_t, 3> stride{1, n[0], std::size_t{n[0]} * n[1]};
     std::size_t i = 0;
@@ -49,15 +57,6 @@ std::vector<float> laplacian(const std::vector<float>& v, const std::array<std::
             }
     return out;
 }
-
-FftVolume::Size padded(const SearchMap& map, std::uint32_t reach) {
-    FftVolume::Size size{};
-    for (std::size_t a = 0; a < 3; ++a)
-        size[a] = FftVolume::quick_length(std::max(map.grid.size[a] + reach, 2 * reach + 1));
-    return size;
-}
-
-}  // namespace
 
 SearchMap search_map(const DensityGrid& map, double background, double resolution_m, double search_m,
                      bool with_laplacian, double voxels_per_resolution) {
@@ -95,7 +94,7 @@ SearchMap search_map(const DensityGrid& map, double background, double resolutio
             for (std::uint32_t x = 0; x < out.grid.size[0]; ++x)
                 if (static_cast<double>(out.grid.at(x, y, z)) > mean + deviation)
                     out.inside.push_back({x, y, z});
-    if (with_laplacian) out.grid.values = laplacian(out.grid.values, out.grid.size);
+    if (with_laplacian) out.grid.values = laplacian_of(out.grid.values, out.grid.size);
     return out;
 }
 
@@ -174,7 +173,7 @@ bool Frame::fill(const Structure& structure, const Quat& turn, const SearchMap& 
     add_simulated(grid, {&structure, {Vec3::Zero(), turn}}, map.resolution_m, 1.0F, whole_box(grid),
                   density_);
     least_ = kRegionShare * *std::max_element(density_.begin(), density_.end());
-    if (map.laplacian) filtered_ = laplacian(density_, grid.size);
+    if (map.laplacian) filtered_ = laplacian_of(density_, grid.size);
     return least_ > 0.0F;
 }
 
@@ -269,7 +268,7 @@ bool RotationScore::at(const Quat& turn) {
     return true;
 }
 
-std::vector<SearchPeak> RotationScore::peaks(std::size_t most) const {
+std::vector<SearchPeak> RotationScore::peaks(std::size_t most, const Vec3& middle_m, double within_m) const {
     std::vector<SearchPeak> found;
     const auto& n = map_.map_.grid.size;
     for (std::uint32_t z = 0; z < n[2]; ++z)
@@ -277,6 +276,8 @@ std::vector<SearchPeak> RotationScore::peaks(std::size_t most) const {
             for (std::uint32_t x = 0; x < n[0]; ++x) {
                 const float here = score(x, y, z);
                 if (found.size() == most && !(static_cast<double>(here) > found.back().score)) continue;
+                const Vec3 at_m = map_.map_.grid.origin_m + map_.map_.voxel_m * Vec3(x, y, z);
+                if (within_m > 0.0 && (at_m - middle_m).norm() > within_m + map_.map_.voxel_m) continue;
                 bool top = here > 0.0F;
                 for (int k = 0; k < 27 && top; ++k) {
                     const std::int64_t i = x + k % 3 - 1LL, j = y + k / 3 % 3 - 1LL, l = z + k / 9 - 1LL;

@@ -31,6 +31,10 @@ struct SearchMap {
                                    double search_m, bool laplacian,
                                    double voxels_per_resolution = kSearchVoxelsPerResolution);
 
+// Six times each value less its neighbours; 0 outside.
+[[nodiscard]] std::vector<float> laplacian_of(const std::vector<float>& values,
+                                              const std::array<std::uint32_t, 3>& size);
+
 // The values that such a map would have in the region of the structure, on a grid of the structure.
 [[nodiscard]] CorrelationPoints search_points(const Structure& structure, const SearchMap& map);
 
@@ -81,8 +85,9 @@ public:
     explicit RotationScore(const MapWaves& map);
     // Scores of all positions; false if the structure has no density there.
     bool at(const Quat& turn);
-    // Their highest local maxima, the best first. Between voxels, by parabolas.
-    [[nodiscard]] std::vector<SearchPeak> peaks(std::size_t most) const;
+    // Their highest local maxima, the best first. Between voxels, by parabolas. within_m of middle_m; 0: anywhere.
+    [[nodiscard]] std::vector<SearchPeak> peaks(std::size_t most, const Vec3& middle_m = Vec3::Zero(),
+                                                double within_m = 0.0) const;
     // At a voxel of the search map.
     [[nodiscard]] float score(std::uint32_t x, std::uint32_t y, std::uint32_t z) const {
         const auto& n = map_.fft_.size();

@@ -3,7 +3,10 @@ tact_tests(prep_docking_tests SOURCES
         unit/prep_map_test.cpp unit/prep_structure_test.cpp unit/prep_real_files_test.cpp unit/prep_neural_gas_test.cpp
         unit/prep_synthetic_test.cpp unit/prep_bake_test.cpp
     USES prep_map prep_structure prep_codebook prep_synthetic prep_docking SYSTEM ZLIB::ZLIB)
-tact_test(unit/prep_search_test.cpp USES prep_search prep_map prep_synthetic scene)
+tact_tests(prep_search_tests SOURCES
+        unit/prep_search_test.cpp unit/prep_search_places_test.cpp
+    USES prep_search prep_search_command prep_map prep_synthetic scene)
+set_tests_properties(prep_search_places_test PROPERTIES LABELS long)
 tact_tests(prep_mesh_tests SOURCES
         unit/prep_contraction_test.cpp unit/prep_mesh_file_test.cpp unit/prep_clean_mesh_test.cpp
         unit/prep_forest_test.cpp unit/prep_simplify_test.cpp unit/prep_simplify_to_keep_test.cpp
@@ -20,6 +23,9 @@ add_dependencies(prep_files_tests tact-prep)
 add_test(NAME save_pairs_test COMMAND tests/e2e/save_pairs_test.py $<TARGET_FILE_DIR:tact-prep> 1gte 2dqj
     WORKING_DIRECTORY ${CMAKE_SOURCE_DIR})
 set_tests_properties(save_pairs_test PROPERTIES LABELS "e2e;long" TIMEOUT 300 SKIP_RETURN_CODE 77)
+add_test(NAME search_pairs_test COMMAND tests/e2e/search_pairs_test.py $<TARGET_FILE_DIR:tact-prep> 1ake 1gte
+    WORKING_DIRECTORY ${CMAKE_SOURCE_DIR})
+set_tests_properties(search_pairs_test PROPERTIES LABELS "e2e;long" TIMEOUT 300 SKIP_RETURN_CODE 77)
 tact_tests(prep_scan_tests SOURCES
         unit/prep_volume_test.cpp unit/prep_scan_test.cpp
     USES prep_drilling prep_volume prep_synthetic scene image base SYSTEM ZLIB::ZLIB)

@@ -33,7 +33,7 @@ void expect_values(const ImportedMap& map, const Mrc& mrc) {
 
 TEST(MrcMap, every_mode_axis_order_and_byte_order_gives_the_same_voxels) {
     const std::array<int, 3> orders[] = {{1, 2, 3}, {1, 3, 2}, {2, 1, 3}, {2, 3, 1}, {3, 1, 2}, {3, 2, 1}};
-    for (const int mode : {0, 1, 2, 6}) {
+    for (const int mode : {0, 1, 2, 6, 12}) {
         for (const auto& axes : orders) {
             for (const bool big : {false, true}) {
                 SCOPED_TRACE(testing::Message() << "mode " << mode << " axes " << axes[0] << axes[1]
@@ -175,7 +175,7 @@ TEST(MrcMap, bad_headers_are_refused_with_place_and_reason) {
     expect_refused(std::vector<char>(1023, '\0'), ".mrc", "1023 bytes", "header");
     expect_refused(std::vector<char>(5000, '\0'), ".mrc", "invalid in both byte orders", "sizes 0, 0, 0");
     expect_refused(std::vector<char>(5000, 'x'), ".mrc", "invalid in both byte orders", "sizes");
-    expect_refused(with_word(4, 12), ".mrc", "word 4", "16-bit floats");
+    expect_refused(with_word(4, 12), ".mrc", "mode 12", "(oversized)");
     expect_refused(with_word(4, 3), ".mrc", "word 4", "Fourier transform");
     expect_refused(with_word(4, 4), ".mrc", "word 4", "Fourier transform");
     expect_refused(with_word(4, 5), ".mrc", "word 4", "mode 5");

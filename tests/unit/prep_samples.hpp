@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <cmath>
 #include <cstdint>
 #include <cstdio>
 #include <cstdlib>
@@ -22,6 +23,16 @@ inline std::filesystem::path em_folder() {
     const std::filesystem::path folder =
         std::filesystem::path(shared != nullptr ? shared : "../shared") / "data" / "em";
     return std::filesystem::is_directory(folder) ? folder : std::filesystem::path();
+}
+
+// IEEE 754 binary16 of a number that it holds exactly.
+inline std::uint16_t half_of(float value) {
+    if (value == 0.0F) return 0;
+    int exponent = 0;
+    const float part = std::frexp(std::abs(value), &exponent);  // 0.5 to 1
+    const auto sign = value < 0.0F ? 0x8000U : 0U;
+    return static_cast<std::uint16_t>(sign | static_cast<unsigned>(exponent + 14) << 10 |
+                                      static_cast<unsigned>((2.0F * part - 1.0F) * 1024.0F));
 }
 
 // An MRC file with voxel value value(x, y, z), indexed along the model axes.
@@ -82,6 +93,7 @@ struct Mrc {
                     if (mode == 1) add(static_cast<std::int16_t>(v * 100));
                     if (mode == 2) add(static_cast<float>(v) * 0.25F);
                     if (mode == 6) add(static_cast<std::uint16_t>(v + 40000));
+                    if (mode == 12) add(half_of(static_cast<float>(v) * 0.25F));
                 }
             }
         }
@@ -90,7 +102,7 @@ struct Mrc {
     [[nodiscard]] float stored(int x, int y, int z) const {
         const int v = value(x, y, z);
         if (mode == 1) return static_cast<float>(v * 100);
-        if (mode == 2) return static_cast<float>(v) * 0.25F;
+        if (mode == 2 || mode == 12) return static_cast<float>(v) * 0.25F;
         if (mode == 6) return static_cast<float>(v + 40000);
         return static_cast<float>(v);
     }

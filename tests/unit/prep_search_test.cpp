@@ -1,42 +1,20 @@
-// Search for places: rotations, correlation at every position, and the ring of six, whose subunit has six right places.
+// Parts of the search for places: orientations, the score at every position, a search nearby, and the report.
 #include <gtest/gtest.h>
 
 #include <cmath>
 
 #include "ipc/base/random.hpp"
 #include "ipc/base/units.hpp"
-#include "prep/map/map_statistics.hpp"
-#include "prep/search/place_together.hpp"
 #include "prep/search/rotation_set.hpp"
+#include "prep/search/search_report.hpp"
 #include "prep/search/translation_search.hpp"
-#include "prep/synthetic/ring.hpp"
 #include "tests/support/error_of.hpp"
+#include "tests/unit/prep_search_fixture.hpp"
 
 namespace tact::prep_search_test {
 namespace {
 
-const SyntheticRing& ring() {
-    static const SyntheticRing made = make_ring();
-    return made;
-}
-
-double rmsd_a(const Structure& s, const Pose& a, const Pose& b) {
-    double sum = 0.0;
-    for (std::size_t i = 0; i < s.size(); ++i) {
-        const Vec3 at(static_cast<double>(s.x_m[i]), static_cast<double>(s.y_m[i]),
-                      static_cast<double>(s.z_m[i]));
-        sum += ((a.p_m + a.q * at) - (b.p_m + b.q * at)).squaredNorm();
-    }
-    return std::sqrt(sum / static_cast<double>(s.size())) / kAngstromM;
-}
-
-SearchSettings settings() {
-    const MapStatistics statistics = map_statistics(ring().grid);
-    return {.resolution_m = ring().resolution_m,
-            .background = statistics.background,
-            .rotations_max = 1500,
-            .threads = 2};
-}
+using namespace search_test;
 
 TEST(RotationSet, every_rotation_is_within_the_cover_of_one_of_the_set) {
     for (const double cover_rad : {0.5, 0.25}) {
@@ -109,39 +87,6 @@ TEST(TranslationSearch,
     }
 }
 
-TEST(Search, the_six_places_of_a_subunit_are_the_first_six_hits) {
-    const Structure& s = ring().subunits.front();
-    const SearchResult found = search(ring().grid, s, settings());
-    ASSERT_GE(found.hits.size(), 7U);
-    std::vector<bool> seen(6, false);
-    for (std::size_t k = 0; k < 6; ++k) {
-        const Pose& at = found.hits[k].T_model_body;
-        for (std::size_t j = 0; j < 6; ++j) {
-            // The subunits are copies, turned about the axis of the ring.
-            const Quat turn(
-                Eigen::AngleAxisd(static_cast<double>(j) * std::numbers::pi / 3.0, Vec3::UnitZ()));
-            if (rmsd_a(s, at, {turn * s.home_com_model_m, turn}) < 1.0) seen[j] = true;
-        }
-    }
-    EXPECT_EQ(std::count(seen.begin(), seen.end(), true), 6);
-    EXPECT_GT(found.hits[5].score, found.hits[6].score + 0.05);
-    EXPECT_GT(found.hits[5].z, 4.0);
-}
-
-TEST(Search, the_hits_are_the_same_with_any_number_of_threads) {
-    SearchSettings one = settings(), three = settings();
-    one.rotations_max = three.rotations_max = 500;
-    one.threads = 1, three.threads = 3;
-    const Structure& s = ring().subunits.front();
-    const SearchResult a = search(ring().grid, s, one), b = search(ring().grid, s, three);
-    ASSERT_EQ(a.hits.size(), b.hits.size());
-    for (std::size_t i = 0; i < a.hits.size(); ++i) {
-        EXPECT_EQ(a.hits[i].score, b.hits[i].score);
-        EXPECT_EQ(a.hits[i].z, b.hits[i].z);
-        EXPECT_EQ(a.hits[i].T_model_body.p_m, b.hits[i].T_model_body.p_m);
-    }
-}
-
 TEST(Search, progress_can_cancel_and_an_unknown_resolution_is_refused) {
     const Structure& s = ring().subunits.front();
     EXPECT_THROW(
@@ -153,24 +98,59 @@ TEST(Search, progress_can_cancel_and_an_unknown_resolution_is_refused) {
               std::string::npos);
 }
 
-TEST(PlaceTogether, structures_take_right_places_of_the_ring_and_none_twice) {
-    std::vector<Structure> three(ring().subunits.begin(), ring().subunits.begin() + 3);
-    SearchSettings by = settings();
-    by.rotations_max = 500;
-    const PlacedTogether placed = place_together(ring().grid, three, by);
-    ASSERT_EQ(placed.order.size(), 3U);
-    for (std::size_t i = 0; i < 3; ++i) {
-        double nearest_a = 1e9;
-        const Pose& at = placed.found[i].hits.front().T_model_body;
-        for (std::size_t j = 0; j < 6; ++j) {
-            const Quat turn(
-                Eigen::AngleAxisd(static_cast<double>(j) * std::numbers::pi / 3.0, Vec3::UnitZ()));
-            nearest_a = std::min(nearest_a, rmsd_a(three[i], at, {turn * three[i].home_com_model_m, turn}));
-        }
-        EXPECT_LT(nearest_a, 1.0) << i;
-        for (std::size_t k = 0; k < i; ++k)
-            EXPECT_GT((at.p_m - placed.found[k].hits.front().T_model_body.p_m).norm(), 10.0 * kAngstromM);
+// From 8 A and 25 degrees away; the plain ascent from there ends elsewhere or lower.
+TEST(Search, near_a_place_the_best_place_within_the_limits_is_found_and_never_a_worse_one) {
+    const Structure& s = ring().subunits.front();
+    SeededRandom random(8);
+    for (int k = 0; k < 3; ++k) {
+        SearchSettings by = settings();
+        Pose start = s.home();
+        start.p_m += 8.0 * kAngstromM * random.direction();
+        start.q = quat_from_rotation_vector(25.0 * kDegreeRad * random.direction());
+        by.near = SearchNear{start, 10.0 * kAngstromM, 30.0 * kDegreeRad};
+        const SearchHit best = search(ring().grid, s, by).hits.at(0);
+        EXPECT_LT(rmsd_a(s, best.T_model_body, s.home()), 1.0) << k;
+        EXPECT_GE(best.score, place_score(ring().grid, s, by, start));
+        EXPECT_NEAR(best.score, place_score(ring().grid, s, by, best.T_model_body), 1e-6);
+        by.near = SearchNear{s.home(), 1.0 * kAngstromM, 1.0 * kDegreeRad};
+        EXPECT_LT(rmsd_a(s, search(ring().grid, s, by).hits.at(0).T_model_body, s.home()), 1.0);
     }
+}
+
+// A body frame has its origin at the centre of mass; files and matrices do not.
+TEST(SearchReport, the_matrix_leads_from_the_file_to_the_map_and_names_are_quoted) {
+    SearchReport report{"a,\"b\".mrc", "laplacian", 12.0, {}, {}, {}};
+    SearchedModel& m = report.models.emplace_back();
+    m.model = "x.pdb";
+    m.structure = ring().subunits[1];
+    SeededRandom random(5);
+    const Pose at{1e-9 * random.direction(), random.rotation()};
+    m.found.hits.push_back({at, 0.5, 4.0});
+    m.cc_about_mean = {0.25};
+    m.clashes = {3};
+    const nlohmann::ordered_json hit = as_json(report)["hits"][0];
+    EXPECT_EQ(hit["rank"], 1);
+    EXPECT_EQ(hit["clashes"], 3);
+    for (const std::size_t i : {std::size_t{0}, m.structure.size() / 2}) {
+        const Vec3 body(static_cast<double>(m.structure.x_m[i]), static_cast<double>(m.structure.y_m[i]),
+                        static_cast<double>(m.structure.z_m[i]));
+        const Vec3 file_a = (body + m.structure.home_com_model_m) / kAngstromM,
+                   right_a = (at.p_m + at.q * body) / kAngstromM;
+        for (int row = 0; row < 3; ++row) {
+            double sum_a = hit["matrix"][static_cast<std::size_t>(4 * row + 3)];
+            for (int k = 0; k < 3; ++k)
+                sum_a +=
+                    static_cast<double>(hit["matrix"][static_cast<std::size_t>(4 * row + k)]) * file_a[k];
+            EXPECT_NEAR(sum_a, right_a[row], 1e-6);
+        }
+    }
+    const std::string csv = as_csv(report);
+    EXPECT_NE(csv.find("\n\"a,\"\"b\"\".mrc\",x.pdb,12,laplacian,0.5"), std::string::npos) << csv;
+    const std::string header = csv.substr(0, csv.find('\n'));
+    EXPECT_EQ(std::count(header.begin(), header.end(), ','), 20);
+    m.found.hits.clear();
+    const std::string none = as_csv(report);
+    EXPECT_EQ(std::count(none.begin(), none.end(), ','), 20 + 21);  // a comma in the name of the map
 }
 
 }  // namespace
