@@ -75,5 +75,5 @@ _tact_complete() {
         _tact_offer "${_tact_options[$command]-}"
     fi
 }
-complete -F _tact_complete tact tact-bench tact-certify tact-gui tact-prep tact-record tact-replay tact-reproduce tact-rt
+complete -F _tact_complete tact tact-bench tact-certify tact-gui tact-prep tact-record tact-refine tact-replay tact-reproduce tact-rt tact-search
 

@@ -4,7 +4,7 @@
 set -euo pipefail
 here=$(cd "$(dirname "$0")" && pwd)
 bin=$1 out=$2
-programs=(tact tact-bench tact-certify tact-gui tact-prep tact-record tact-replay tact-reproduce tact-rt)
+programs=(tact tact-bench tact-certify tact-gui tact-prep tact-record tact-refine tact-replay tact-reproduce tact-rt tact-search)
 rm -rf "$out/man1" "$out/completions"
 mkdir -p "$out/man1" "$out/completions"
 cp "$here/completion.bash" "$out/completions/tact"

@@ -180,9 +180,9 @@ std::string typed(const Command& command) { return joined(command.words, " "); }
 std::string page_name(const Command& command) { return joined(command.words, "-"); }
 
 const std::vector<std::string>& programs() {
-    static const std::vector<std::string> all{"tact",        "tact-bench",     "tact-certify",
-                                              "tact-gui",    "tact-prep",      "tact-record",
-                                              "tact-replay", "tact-reproduce", "tact-rt"};
+    static const std::vector<std::string> all{"tact",           "tact-bench",  "tact-certify", "tact-gui",
+                                              "tact-prep",      "tact-record", "tact-refine",  "tact-replay",
+                                              "tact-reproduce", "tact-rt",     "tact-search"};
     return all;
 }
 

@@ -12,8 +12,6 @@
 #include "prep/cli/systems.hpp"
 #include "prep/console/scene_report.hpp"
 #include "prep/docking/dock_command.hpp"
-#include "prep/search/refine_command.hpp"
-#include "prep/search/search_command.hpp"
 
 namespace tact {
 namespace {
@@ -53,8 +51,6 @@ int run(int argc, char** argv) {
     const auto simplify_file = add_simplify(app, simplify_parsed);
     const auto bench = add_bench(app, bench_parsed);
     add_contour(app);
-    add_search(app);
-    add_refine(app);
     add_info(app);
     add_export(app);
     if (const auto answered = manual::answer(app, "tact-prep", argc, argv)) return *answered;

@@ -108,33 +108,28 @@ void run_refine(const RefineRequest& request) {
 
 }  // namespace
 
-void add_refine(CLI::App& app) {
+void set_up_refine(CLI::App& app) {
     const auto request = std::make_shared<RefineRequest>();
-    CLI::App* const command = app.add_subcommand(
-        "refine", "Move structures from the positions of their files to the best place nearby in a map");
-    request->input.add_to(*command);
-    command
-        ->add_option(
-            "--objective", request->objective,
-            "laplacian: correlation about the mean of the Laplacians of the densities; correlation-mean, "
-            "correlation-zero: of the densities, about the mean or zero; density: its mean at the atoms, as "
-            "the "
-            "docking force")
+    request->input.add_to(app);
+    app.add_option(
+           "--objective", request->objective,
+           "laplacian: correlation about the mean of the Laplacians of the densities; correlation-mean, "
+           "correlation-zero: of the densities, about the mean or zero; density: its mean at the atoms, as "
+           "the "
+           "docking force")
         ->check(CLI::IsMember({"laplacian", "correlation-mean", "correlation-zero", "density"}))
         ->capture_default_str();
-    command
-        ->add_option(
-            "--range-a", request->range_a,
-            "How far away better places are looked for (angstrom); 0: only uphill from the start. The "
-            "objectives density and correlation-zero always go uphill only")
+    app.add_option("--range-a", request->range_a,
+                   "How far away better places are looked for (angstrom); 0: only uphill from the start. The "
+                   "objectives density and correlation-zero always go uphill only")
         ->check(CLI::Range(0.0, 100.0))
         ->capture_default_str();
-    command->add_option("--range-deg", request->range_deg, "The same for the rotation (degrees)")
+    app.add_option("--range-deg", request->range_deg, "The same for the rotation (degrees)")
         ->check(CLI::Range(0.0, 180.0))
         ->capture_default_str();
-    command->add_option("--json", request->json, "Write the places as JSON; -: to standard output")
+    app.add_option("--json", request->json, "Write the places as JSON; -: to standard output")
         ->type_name("FILE");
-    command->callback([request] { run_refine(*request); });
+    app.callback([request] { run_refine(*request); });
 }
 
 }  // namespace tact

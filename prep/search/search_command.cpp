@@ -92,36 +92,31 @@ void run_search(const SearchRequest& request) {
 
 }  // namespace
 
-void add_search(CLI::App& app) {
+void set_up_search(CLI::App& app) {
     const auto request = std::make_shared<SearchRequest>();
-    CLI::App* const command = app.add_subcommand(
-        "search", "Find the places of structures in a density map, and list the best of each");
-    request->input.add_to(*command);
-    command
-        ->add_option("--objective", request->objective,
-                     "What is correlated about the mean: the Laplacian of the densities, or the densities")
+    request->input.add_to(app);
+    app.add_option("--objective", request->objective,
+                   "What is correlated about the mean: the Laplacian of the densities, or the densities")
         ->check(CLI::IsMember({"laplacian", "density"}))
         ->capture_default_str();
-    command->add_flag("--together", request->together,
-                      "Place all models in one map, so that together they explain it best");
-    command->add_option("--hits", request->hits_max, "Number of places per model")
+    app.add_flag("--together", request->together,
+                 "Place all models in one map, so that together they explain it best");
+    app.add_option("--hits", request->hits_max, "Number of places per model")
         ->check(CLI::Range(1, 1000))
         ->capture_default_str();
-    command
-        ->add_option(
-            "--orientations-max", request->rotations_max,
-            "Largest number of orientations; a model that needs more is searched at a coarser resolution")
+    app.add_option(
+           "--orientations-max", request->rotations_max,
+           "Largest number of orientations; a model that needs more is searched at a coarser resolution")
         ->check(CLI::Range(500, 100'000))
         ->capture_default_str();
-    command->add_option("--threads", request->threads, "Number of threads; 0: one per processor")
+    app.add_option("--threads", request->threads, "Number of threads; 0: one per processor")
         ->check(CLI::Range(0, 256))
         ->capture_default_str();
-    command->add_option("--json", request->json, "Write the hits as JSON; -: to standard output")
+    app.add_option("--json", request->json, "Write the hits as JSON; -: to standard output")
         ->type_name("FILE");
-    command
-        ->add_option("--csv", request->csv, "Write the best hit of each model as CSV; -: to standard output")
+    app.add_option("--csv", request->csv, "Write the best hit of each model as CSV; -: to standard output")
         ->type_name("FILE");
-    command->callback([request] { run_search(*request); });
+    app.callback([request] { run_search(*request); });
 }
 
 }  // namespace tact

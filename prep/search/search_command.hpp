@@ -1,10 +1,11 @@
-// tact-prep search MAP MODEL...: finds the places of structures in a map, without a scene.
+// tact-search MAP MODEL...: finds the places of structures in a map, without a scene.
 #pragma once
 
 #include <CLI/CLI.hpp>
 
 namespace tact {
 
-void add_search(CLI::App& app);
+// Adds the options to the program's parser, and what it does when they are parsed.
+void set_up_search(CLI::App& app);
 
 }  // namespace tact

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Search and refinement on real pairs of a map and a structure: the right place comes first, from any start.
 
-search_pairs_test.py BIN [PAIR...]     BIN holds tact-prep; exit code 77: the folder of real data is absent
+search_pairs_test.py BIN [PAIR...]     BIN holds tact-search and tact-refine; exit code 77: the folder of real data is absent
 
 The structures are moved by a random rotation and shift before the search, so that nothing can be had from the file's place.
 """
@@ -75,7 +75,7 @@ def run(program, *arguments):
 
 
 def main():
-    program = pathlib.Path(sys.argv[1]) / "tact-prep"
+    programs = pathlib.Path(sys.argv[1])
     if not DATA.is_dir():
         print("skipped: the folder of real data is absent (set TACT_SHARED)")
         return 77
@@ -88,14 +88,14 @@ def main():
             for model in models:
                 turn = rotation([random.gauss(0, 1) for _ in range(3)], random.uniform(0.5, math.pi))
                 start = moved_copy(DATA / model, folder, turn, [random.uniform(-40, 40) for _ in range(3)])
-                found = run(program, "search", DATA / map_name, start, "--resolution-a", resolution)
+                found = run(programs / "tact-search", DATA / map_name, start, "--resolution-a", resolution)
                 hits = found["hits"]
                 far = rmsd(hits[0]["matrix"], atoms(start), atoms(DATA / model))
                 print(f"search {model}: {far:.2f} A, score {hits[0]['score']:.3f}, second {hits[1]['score']:.3f}, "
                       f"z {hits[0]['z']:.1f}, {found['searches'][0]['seconds']:.0f} s")
                 wrong += far > RIGHT_A or [h["rank"] for h in hits] != list(range(1, len(hits) + 1))
                 near = moved_copy(DATA / model, folder, rotation([1, 2, 3], math.radians(20)), [6, -5, 6])
-                body = run(program, "refine", DATA / map_name, near, "--resolution-a", resolution)["bodies"][0]
+                body = run(programs / "tact-refine", DATA / map_name, near, "--resolution-a", resolution)["bodies"][0]
                 back = rmsd(body["matrix"], atoms(near), atoms(DATA / model))
                 print(f"refine {model}: {back:.2f} A, score {body['score_before']:.3f} to {body['score_after']:.3f}")
                 wrong += back > RIGHT_A or body["score_after"] < body["score_before"]

@@ -344,6 +344,28 @@ def draw_panels(folder, name):
     print(f"  {name[:-len('.panels.json')]}.png")
 
 
+def draw_fitting(folder):
+    """Share of the starts that ended at a right place, one line per structure and one mark per test."""
+    with open(os.path.join(folder, "fitting.json"), encoding="utf-8") as f:
+        rows = json.load(f)["rows"]
+    models = list(dict.fromkeys((r["pair"], r["model"]) for r in rows))
+    tests = list(dict.fromkeys(r["test"] for r in rows))
+    figure, (axes,) = start("Right places found from random starts", "%d starts each; a place of equal score counts" % rows[0]["starts"], 1,
+                            height=0.9 + 0.12 * (len(tests) + 2) * len(models))
+    step = 0.8 / len(tests)
+    for i, test in enumerate(tests):
+        of = {(r["pair"], r["model"]): r for r in rows if r["test"] == test}
+        y = [k + step * (i - 0.5 * (len(tests) - 1)) for k, m in enumerate(models) if m in of]
+        share = [100 * (of[m]["right"] + of[m]["equal"]) / of[m]["starts"] for m in models if m in of]
+        axes.barh(y, share, 0.9 * step, color=COLOURS[i % len(COLOURS)], label=test)
+    axes.set_yticks(range(len(models)), ["%s\n%s" % (m[1], m[0]) for m in models], fontsize=8)
+    axes.set_ylim(len(models) - 0.5, -0.5)
+    axes.set_xlim(0, 100)
+    axes.set_xlabel("starts that ended at a right place (%)")
+    legend(axes)
+    save(figure, folder, "fitting.png")
+
+
 def draw(folder):
     def have(*names):
         return all(os.path.exists(os.path.join(folder, n)) for n in names)
@@ -355,6 +377,8 @@ def draw(folder):
         draw_table(folder)
     if have("filters.csv"):
         draw_filters(folder)
+    if have("fitting.json"):
+        draw_fitting(folder)
     for name in sorted(os.listdir(folder)):
         if name.endswith(".panels.json"):
             draw_panels(folder, name)
@@ -386,12 +410,15 @@ def self_test():
         write(folder, "table1.csv", "triangles,tool,mode,hand,rate_hz,p999_us",
               [[n, tool, mode, "slow", 1e6 / n, n / 50] for n in (2000, 92450) for tool in ("point", "3 mm") for mode in ("off-tree", "chr")])
         write(folder, "filters.csv", "distance_mm,exact_um,bell_um,frustums_um", [[i, i, i, i] for i in range(9)])
+        with open(os.path.join(folder, "fitting.json"), "w", encoding="utf-8") as f:
+            json.dump({"rows": [{"pair": "map", "model": m, "test": t, "starts": 20, "right": 18, "equal": 1}
+                                for m in ("a", "b") for t in ("search alone", "together") if (m, t) != ("b", "together")]}, f)
         plt.imsave(os.path.join(folder, "a.png"), [[0.0, 1.0], [1.0, 0.0]])
         with open(os.path.join(folder, "fig3_border.panels.json"), "w", encoding="utf-8") as f:
             json.dump({"title": "t", "remark": "r", "panels": [{"file": "a.png", "title": "(a)", "remark": ""}] * 2}, f)
         draw(folder)
         wanted = ["fig5_rates", "fig7_load_without_law", "fig8_load_with_law", "fig2a_force", "fig2b_error", "fig3_time", "fig4_growth", "table1",
-                  "fig3_filters", "fig3_border"]
+                  "fig3_filters", "fig3_border", "fitting"]
         worst = worst_rows([r for r in Runs(folder).case["on"] if r["t_s"] > SETTLE_S])
         rates = {part: row["force_rate_100ms_hz"] for part, row in worst.items()}
         if rates != {"no_load": 700.0, "load": 450.0}:

@@ -9,6 +9,7 @@
 #include "ipc/version/version.hpp"
 #include "tests/reproduce/docking.hpp"
 #include "tests/reproduce/drilling.hpp"
+#include "tests/reproduce/fitting.hpp"
 #include "tests/reproduce/surface.hpp"
 
 namespace tact::launch {
@@ -67,6 +68,26 @@ void add_drilling(CLI::App& reproduce, int& exit_code) {
     command->callback([e, &exit_code] { exit_code = reproduce_drilling(*e); });
 }
 
+void add_fitting(CLI::App& reproduce, int& exit_code) {
+    auto* const command = reproduce.add_subcommand(
+        "fitting", "Count how often search and refinement find the right places in maps, from random starts");
+    const auto e = std::make_shared<FittingExperiment>();
+    command->add_option("--out", e->out, "Folder for PNG and JSON files")->required();
+    command
+        ->add_option("--pair", e->pairs,
+                     "MAP,RESOLUTION,MODEL[,MODEL...]: a map, its resolution (angstrom), and structures at "
+                     "their right "
+                     "places. Repeat for several; default: a synthetic ring")
+        ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
+        ->expected(1);
+    command->add_option("--starts", e->starts, "Number of random starts of each row")
+        ->check(CLI::Range(1, 1000))
+        ->capture_default_str();
+    command->add_option("--seed", e->seed, "Seed of the first start")->capture_default_str();
+    command->add_flag("--quick", e->quick, "One start of one structure, as a check");
+    command->callback([e, &exit_code] { exit_code = reproduce_fitting(*e); });
+}
+
 }  // namespace
 }  // namespace tact::launch
 
@@ -82,6 +103,7 @@ int main(int argc, char** argv) {
                 "Reproduce the force rates of the docking paper, with and without the governor, with and "
                 "without external load",
                 false);
+    add_fitting(app, exit_code);
     add_surface(app, exit_code);
     add_drilling(app, exit_code);
     if (const auto answered = tact::manual::answer(app, "tact-reproduce", argc, argv)) return *answered;

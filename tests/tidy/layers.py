@@ -18,8 +18,8 @@ import tempfile
 import tree_check
 
 # Parts of the launcher that its systems may use.
-LAUNCHER = ["deploy/tact/baked_run", "deploy/tact/child", "deploy/tact/files", "deploy/tact/observer", "deploy/tact/run",
-            "deploy/tact/scene_cache", "deploy/tact/signals", "deploy/tact/system_run"]
+LAUNCHER = ["deploy/tact/baked_run", "deploy/tact/child", "deploy/tact/exec", "deploy/tact/files", "deploy/tact/observer",
+            "deploy/tact/run", "deploy/tact/scene_cache", "deploy/tact/signals", "deploy/tact/system_run"]
 # Folder -> folders that it may include; the longest matching prefix decides. The folder itself is always allowed.
 BELOW = {
     "ipc/base": [],
@@ -73,7 +73,7 @@ BELOW = {
     "prep/console": ["ipc/base", "ipc/scene"],
     "prep/docking": ["ipc/base", "ipc/version", "ipc/scene", "prep/codebook", "prep/console", "prep/input", "prep/map", "prep/mesh",
                      "prep/structure", "prep/synthetic"],
-    "prep/search": ["ipc/base", "ipc/scene", "prep/console", "prep/map", "prep/structure"],
+    "prep/search": ["ipc/base", "ipc/manual", "ipc/version", "ipc/scene", "prep/console", "prep/map", "prep/structure"],
     "prep/surface": ["ipc/base", "ipc/version", "ipc/scene", "prep/console", "prep/mesh", "prep/mesh_file", "prep/synthetic"],
     "prep/field": ["ipc/base", "ipc/version", "ipc/scene", "prep/console", "prep/input", "prep/mesh", "prep/volume"],
     "prep/drilling": ["ipc/base", "ipc/version", "ipc/scene", "prep/console", "prep/input", "prep/synthetic", "prep/volume"],

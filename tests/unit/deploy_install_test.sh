@@ -9,7 +9,7 @@ trap 'rm -rf "$work"' EXIT
 fail() { echo "FAILED: $1"; failures=$((failures + 1)); }
 prefix="$work/opt tact"
 cmake --install "$build" --prefix "$prefix" >"$work/install.log" 2>&1 || { cat "$work/install.log"; exit 1; }
-programs="tact tact-bench tact-certify tact-reproduce tact-prep tact-rt tact-gui tact-record tact-replay"
+programs="tact tact-bench tact-certify tact-reproduce tact-prep tact-search tact-refine tact-rt tact-gui tact-record tact-replay"
 for file in etc/tact/tact.toml etc/security/limits.d/tact.conf lib/udev/rules.d/60-tact.rules lib/tact/can-up \
     lib/systemd/system/tact-can@.service share/applications/tact.desktop share/icons/hicolor/scalable/apps/tact.svg \
     share/mime/packages/tact.xml share/tact/monitoring/tact_rules.yml share/tact/reproduce/draw.py share/doc/tact/README.md; do

@@ -14,9 +14,10 @@ import tempfile
 import unittest
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
-PROGRAMS = ["tact", "tact-bench", "tact-certify", "tact-gui", "tact-prep", "tact-record", "tact-replay", "tact-reproduce", "tact-rt"]
+PROGRAMS = ["tact", "tact-bench", "tact-certify", "tact-gui", "tact-prep", "tact-record", "tact-refine", "tact-replay", "tact-reproduce",
+            "tact-rt", "tact-search"]
 # Programs started by a command of tact, which print their own --help.
-OWN_PROGRAMS = {"tact-bench", "tact-certify", "tact-record", "tact-reproduce"}
+OWN_PROGRAMS = {"tact-bench", "tact-certify", "tact-record", "tact-refine", "tact-reproduce", "tact-search"}
 BIN = pathlib.Path(".")
 HELPERS = pathlib.Path("/usr/share/bash-completion/bash_completion")
 

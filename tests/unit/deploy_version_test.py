@@ -12,7 +12,8 @@ import unittest
 
 ROOT, BIN, PROJECT = sys.argv[1:4]
 del sys.argv[1:]
-PROGRAMS = ["tact", "tact-bench", "tact-certify", "tact-prep", "tact-rt", "tact-gui", "tact-record", "tact-replay", "tact-reproduce", "tact-emu"]
+PROGRAMS = ["tact", "tact-bench", "tact-certify", "tact-prep", "tact-rt", "tact-gui", "tact-record", "tact-refine", "tact-replay", "tact-reproduce",
+            "tact-search", "tact-emu"]
 SCRIPT = os.path.join(ROOT, "ipc/version/version.cmake")
 
 

@@ -23,7 +23,7 @@ add_dependencies(prep_files_tests tact-prep)
 add_test(NAME save_pairs_test COMMAND tests/e2e/save_pairs_test.py $<TARGET_FILE_DIR:tact-prep> 1gte 2dqj
     WORKING_DIRECTORY ${CMAKE_SOURCE_DIR})
 set_tests_properties(save_pairs_test PROPERTIES LABELS "e2e;long" TIMEOUT 300 SKIP_RETURN_CODE 77)
-add_test(NAME search_pairs_test COMMAND tests/e2e/search_pairs_test.py $<TARGET_FILE_DIR:tact-prep> 1ake 1gte
+add_test(NAME search_pairs_test COMMAND tests/e2e/search_pairs_test.py $<TARGET_FILE_DIR:tact-search> 1ake 1gte
     WORKING_DIRECTORY ${CMAKE_SOURCE_DIR})
 set_tests_properties(search_pairs_test PROPERTIES LABELS "e2e;long" TIMEOUT 300 SKIP_RETURN_CODE 77)
 tact_tests(prep_scan_tests SOURCES
