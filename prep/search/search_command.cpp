@@ -96,7 +96,7 @@ void set_up_search(CLI::App& app) {
     const auto request = std::make_shared<SearchRequest>();
     request->input.add_to(app);
     app.add_option("--objective", request->objective,
-                   "What is correlated about the mean: the Laplacian of the densities, or the densities")
+                   "Correlation about the mean of the Laplacians of the densities, or of the densities")
         ->check(CLI::IsMember({"laplacian", "density"}))
         ->capture_default_str();
     app.add_flag("--together", request->together,

@@ -252,12 +252,16 @@ private:
         }
     }
     // Where the touched triangles leave a pull, the slide that it makes: nearly parallel triangles may leave the set of those that
-    // bear it to rounding, but not the slide.
+    // bear it to rounding, but not the slide. With friction, the model's parts of the way are judged: one in the cone, and one
+    // that the triangles bear.
     [[nodiscard]] double unborne_m(const ref::Judgement& j, const Vec3& proxy_m, const Vec3& goal_m) const {
         const double m = ball_.margin, step_m = std::max(0.05 * ball_.radius, 0.25 * m);
-        if (j.unborne <= 2.0 * m || ball_.friction > 0.0) return j.unborne;
+        if (j.unborne <= 2.0 * m) return j.unborne;
+        const Vec3 lift_m = meta_.world_per_model * model_.contact().lift_m,
+                   rub_m = proxy_m - goal_m - lift_m;
+        if (rub_m.norm() > ball_.friction * lift_m.norm() + 1e-3 * m) return j.unborne;
         const ref::Triangles around = cells_.near(proxy_m, ball_.radius + 40.0 * step_m);
-        const Vec3 end_m = ref::descend(around, ball_, proxy_m, goal_m, step_m, 0.01 * m);
+        const Vec3 end_m = ref::descend(around, ball_, proxy_m, proxy_m - lift_m, step_m, 0.01 * m);
         return std::min(j.unborne, (end_m - proxy_m).norm());
     }
     [[nodiscard]] bool plain() const {

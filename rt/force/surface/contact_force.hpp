@@ -38,7 +38,7 @@ public:
     static constexpr double kForceSteps = 2.5;
     static constexpr double kShadedFrom = 0.8, kShadedTo = 0.7;
     static constexpr double kKeptShares = 2.0;
-    static constexpr double kOpenJ = 5e-7;
+    static constexpr double kOpenJ = 2.5e-7;
 
     struct Input {
         Vec lift_m = Vec::Zero(), turn_m = Vec::Zero(), rub_m = Vec::Zero();
