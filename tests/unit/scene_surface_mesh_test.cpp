@@ -134,6 +134,31 @@ RC_GTEST_PROP(SurfaceMesh, batch_queries_agree_with_single_queries, ()) {
     }
 }
 
+// A ball beside an edge is not over the triangle, whatever rounding makes of its parts: a part of 4e-17 was taken for the inside.
+TEST(SurfaceMesh, beside_a_triangle_a_part_of_the_nearest_point_is_exactly_zero) {
+    const Held h = held(build_surface(octahedron()));
+    SeededRandom random(6);
+    int beside = 0;
+    for (int i = 0; i < 20'000; ++i) {
+        const auto t = static_cast<std::uint32_t>(random.below(8));
+        const auto c = h.mesh.corners(t);
+        const Vec3 place = 2.0 * random.direction();
+        const Vec3 normal = (h.mesh.position_m(c[1]) - h.mesh.position_m(c[0]))
+                                .cross(h.mesh.position_m(c[2]) - h.mesh.position_m(c[0]));
+        bool over = true;
+        for (std::size_t k = 0; k < 3; ++k) {
+            const Vec3 from = h.mesh.position_m(c[k]), to = h.mesh.position_m(c[(k + 1) % 3]);
+            over = over && normal.cross(to - from).dot(place - from) > -1e-9;
+        }
+        if (over) continue;
+        ++beside;
+        const SurfacePoint at = h.mesh.point_of(t, place);
+        EXPECT_EQ(at.part.minCoeff(), 0.0) << at.part.transpose();
+        EXPECT_NEAR(at.part.sum(), 1.0, 1e-12);
+    }
+    EXPECT_GT(beside, 10'000);
+}
+
 TEST(SurfaceMesh, a_triangle_mesh_keeps_its_triangles_and_its_orientation) {
     const Held h = held(build_surface(octahedron()));
     ASSERT_EQ(h.mesh.triangles(), 8U);

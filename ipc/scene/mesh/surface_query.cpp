@@ -84,10 +84,11 @@ SurfacePoint SurfaceMesh::point_of(std::uint32_t triangle, const Vec3& point_m) 
     const Vec3 ab = b - a, ac = c - a, ap = point_m - a, bp = point_m - b, cp = point_m - c;
     const double d1 = ab.dot(ap), d2 = ac.dot(ap), d3 = ab.dot(bp), d4 = ac.dot(bp), d5 = ab.dot(cp),
                  d6 = ac.dot(cp);
-    const auto at = [&](double on_b, double on_c) {
+    // On a border a part is exactly zero: 1 - (1 - s) - s may not be.
+    const auto at = [&](double on_a, double on_b, double on_c) {
         SurfacePoint found;
         found.triangle = triangle;
-        found.part = {1.0 - on_b - on_c, on_b, on_c};
+        found.part = {on_a, on_b, on_c};
         found.point_m = a + on_b * ab + on_c * ac;
         found.distance_m = (point_m - found.point_m).norm();
         return found;
@@ -95,18 +96,24 @@ SurfacePoint SurfaceMesh::point_of(std::uint32_t triangle, const Vec3& point_m) 
     const auto share = [](double part, double rest) {
         return part + rest > 0.0 ? part / (part + rest) : 0.0;
     };
-    if (d1 <= 0.0 && d2 <= 0.0) return at(0.0, 0.0);
-    if (d3 >= 0.0 && d4 <= d3) return at(1.0, 0.0);
-    if (d6 >= 0.0 && d5 <= d6) return at(0.0, 1.0);
+    if (d1 <= 0.0 && d2 <= 0.0) return at(1.0, 0.0, 0.0);
+    if (d3 >= 0.0 && d4 <= d3) return at(0.0, 1.0, 0.0);
+    if (d6 >= 0.0 && d5 <= d6) return at(0.0, 0.0, 1.0);
     const double vc = d1 * d4 - d3 * d2, vb = d5 * d2 - d1 * d6, va = d3 * d6 - d5 * d4;
-    if (vc <= 0.0 && d1 >= 0.0 && d3 <= 0.0) return at(share(d1, -d3), 0.0);
-    if (vb <= 0.0 && d2 >= 0.0 && d6 <= 0.0) return at(0.0, share(d2, -d6));
+    if (vc <= 0.0 && d1 >= 0.0 && d3 <= 0.0) {
+        const double s = share(d1, -d3);
+        return at(1.0 - s, s, 0.0);
+    }
+    if (vb <= 0.0 && d2 >= 0.0 && d6 <= 0.0) {
+        const double s = share(d2, -d6);
+        return at(1.0 - s, 0.0, s);
+    }
     if (va <= 0.0 && d4 >= d3 && d5 >= d6) {
         const double s = share(d4 - d3, d5 - d6);
-        return at(1.0 - s, s);
+        return at(0.0, 1.0 - s, s);
     }
     const double sum = va + vb + vc;
-    return at(vb / sum, vc / sum);
+    return at(1.0 - vb / sum - vc / sum, vb / sum, vc / sum);
 }
 
 SurfacePoint SurfaceMesh::nearest(const Vec3& point_m, double radius_m, std::uint32_t hint,
