@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstdio>
 #include <unordered_map>
+#include <utility>
 #include <vector>
 
 #include "ipc/base/error.hpp"
@@ -152,6 +153,14 @@ private:
 
         bool limited = false;
     };
+    // A thin cap falls between the points of a voxel unless there are more of them.
+    [[nodiscard]] ref::Moments moments(const Vec3& centre_m, double radius_m) const {
+        ref::Moments m = ref::moments_in_ball(volume_, centre_m, radius_m);
+        for (const auto& [depth, parts] : {std::pair{0.15, 16}, std::pair{0.02, 48}})
+            if (ref::penetration(m.m0_m3, radius_m) < depth)
+                m = ref::moments_in_ball(volume_, centre_m, radius_m, parts);
+        return m;
+    }
     [[nodiscard]] Sum wanted(const Pose& pose, double burr_rad_s) const {
         Sum sum;
         sum.lever_m = drill_.tool.radius_m;
@@ -166,7 +175,7 @@ private:
             const double depth = std::min(drill_.depth_at_1_n_m / ball.radius_m, 0.5);
             law.elastic_pa = 1.0 / (ball.radius_m * ball.radius_m * std::pow(depth, 1.5));
             const ref::BurrWrench w = ref::burr_wrench(
-                law, ball.radius_m, ref::moments_in_ball(volume_, pose.p_m + arm_m, ball.radius_m),
+                law, ball.radius_m, moments(pose.p_m + arm_m, ball.radius_m),
                 tool_.twist_world.linear_m_s + tool_.twist_world.angular_rad_s.cross(arm_m),
                 ball.cuts ? Vec3(burr_rad_s * (pose.q * Vec3::UnitZ())) : Vec3(Vec3::Zero()));
             sum.force_n += ball.weight * w.force_n;

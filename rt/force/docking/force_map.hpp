@@ -50,7 +50,7 @@ struct ForceMap {
 };
 
 // Factors on the largest error and stiffness over the sampled poses.
-inline constexpr double kErrorMargin = 1.6, kStiffnessMargin = 1.25;
+inline constexpr double kErrorMargin = 2.0, kStiffnessMargin = 1.25;
 inline constexpr std::uint32_t kForceMapOptions = kDockingSubtraction | kDockingLaplacian;
 // Finer maps use the contours of this resolution: their own are too narrow to find by hand (README.md).
 inline constexpr double kContourResolutionM = 20e-10;

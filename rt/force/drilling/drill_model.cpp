@@ -12,7 +12,9 @@
 namespace tact {
 namespace {
 
-constexpr double kNoHandM = 1e3;          // no hand is there
+constexpr double kNoHandM = 1e3;  // no hand is there
+constexpr double kBlockStiffness =
+    0.5 * kBlockMost;                     // of the radius: with larger blocks the slope is off by up to 40 %
 constexpr double kStiffnessReach = 0.05;  // half of the way over which it is measured, in radii of the head
 constexpr double kTypicalForceN = 3.0;    // of a surgeon's hand
 // In the pocket that it has cut, a burr touches over this times the area of flat bone at the same force.
@@ -194,8 +196,11 @@ DrillModel::BallForces DrillModel::ball_forces(const ToolState& tool, double blo
         const BallMoments m = ball_moments(bone_.octree, kernels_, now_voxels_[i], radius, used, depth);
         sum.work.add(m);
         depths_[i] = 0.0;
+        const double full_n = ball.weight * elastic_pa_[i] * ball.radius_m * ball.radius_m;
         if (!(m.m0 > 0.0)) {
             ways_out_[i].setZero();
+            // Beside bone, a cap thinner than a voxel may be missed.
+            if (m.bricks > 0) sum.voxel_error_n += voxel_error_n(full_n, 0.0, per_voxel_m_ / ball.radius_m);
             continue;
         }
         const Vec3 arm_m = q * ball.centre_tool_m;
@@ -221,7 +226,6 @@ DrillModel::BallForces DrillModel::ball_forces(const ToolState& tool, double blo
         const Vec3 force_n = ball.weight * f.wrench.force_n;
         sum.wrench.force_n += force_n;
         sum.wrench.torque_n_m += ball.weight * f.wrench.torque_n_m + arm_m.cross(force_n);
-        const double full_n = ball.weight * law.elastic_pa * ball.radius_m * ball.radius_m;
         sum.elastic_n += full_n * f.depth * std::sqrt(f.depth);
         sum.voxel_error_n += voxel_error_n(full_n, f.depth, per_voxel_m_ / ball.radius_m);
         if ((ball.cuts || i == 0) && f.depth > depth_) {
@@ -244,7 +248,7 @@ Wrench DrillModel::still_wrench(const Pose& T_world_tool) const noexcept {
         const Vec3 arm_m = q * ball.centre_tool_m;
         const Vec3 centre = bone_.octree.bricks().to_voxels(meta_.to_model(T_world_tool.p_m + arm_m));
         const BallMoments m =
-            ball_moments(bone_.octree, kernels_, centre, radius, kBlockCoarse * radius, depths_[i]);
+            ball_moments(bone_.octree, kernels_, centre, radius, kBlockStiffness * radius, depths_[i]);
         if (!(m.m0 > 0.0)) continue;
         law.elastic_pa = elastic_pa_[i];
         const BurrForce f =
