@@ -10,7 +10,7 @@ namespace {
 // ns, 2026-11-25, AVX-512 at 3.7 GHz: fit to the counts and times of README.md's table.
 constexpr double kDrillStepNs = 300.0, kBallNs = 150.0, kBlockNs = 12.0, kSumNs = 150.0, kCutNs = 600.0;
 constexpr double kErrorLeast = 0.012, kErrorPerBlock = 0.2, kErrorRough = 0.1;
-constexpr double kErrorPerVoxel2 = 0.8, kErrorPerVoxel4 = 2.2, kErrorThinCap = 0.08;
+constexpr double kErrorPerVoxel2 = 1.0, kErrorPerVoxel4 = 2.8, kErrorThinCap = 0.08;
 constexpr double kSurfacePerEdge2 = 1.5;  // cubes that a surface meets, on average of its directions
 
 // Cubes of an edge that a ball's surface in bone meets.

@@ -19,7 +19,7 @@ namespace tact {
 class DrillStiffness {
 public:
     static constexpr std::uint32_t kEvery = 2;  // steps between two axes
-    static constexpr double kMargin = 1.35;
+    static constexpr double kMargin = 1.45;
 
     void reset() noexcept TACT_RT {
         force_n_m_.setZero();
