@@ -9,7 +9,7 @@
 // Levels    the first map is that of all atoms; codebook levels have smoothed ones (ipc/scene/density/level_maps.hpp).
 // Stiffness of a level: the largest over some of these poses and over the maxima to which home and other poses climb, with a
 //           margin; a bound without proof too, raised while the loop runs (stiffness_audit.hpp).
-// Error     of a level: the largest |F_level - F_atoms| over seeded poses, with a margin. It estimates a bound
+// Error     of a level: the largest |F_level - F_atoms| over seeded poses and around maxima, with a margin. It estimates a bound
 //           without proof; error_audit.hpp continues to measure while the loop runs.
 // Thread    made off the servo thread, in up to seconds; then immutable.
 #pragma once
