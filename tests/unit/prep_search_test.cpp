@@ -117,6 +117,17 @@ TEST(Search, near_a_place_the_best_place_within_the_limits_is_found_and_never_a_
     }
 }
 
+// In any orientation, the five other places of the ring fit as well.
+TEST(Search, near_a_place_only_positions_within_the_limit_are_searched) {
+    const Structure& s = ring().subunits.front();
+    SearchSettings by = settings();
+    by.rotations_max = 500;
+    by.near = SearchNear{s.home(), 5.0 * kAngstromM, std::numbers::pi};
+    const double apart_m = (place_in_ring(s, 1).p_m - s.home().p_m).norm();
+    for (const SearchHit& hit : search(ring().grid, s, by).hits)
+        EXPECT_LT((hit.T_model_body.p_m - s.home().p_m).norm(), 0.6 * apart_m);
+}
+
 // A body frame has its origin at the centre of mass; files and matrices do not.
 TEST(SearchReport, the_matrix_leads_from_the_file_to_the_map_and_names_are_quoted) {
     SearchReport report{"a,\"b\".mrc", "laplacian", 12.0, {}, {}, {}};
