@@ -109,9 +109,11 @@ private:
             }
         for (std::size_t i = 0; i < structures_.size(); ++i) {
             if (result_.found[i].hits.empty()) continue;
-            SearchHit& hit = result_.found[i].hits.front();
+            SearchResult& found = result_.found[i];
+            SearchHit& hit = found.hits.front();
             hit.T_model_body = placed_[i].T_model_body;
             hit.score = place_score(rest_of(i), structures_[i], settings_, hit.T_model_body);
+            hit.z = found.z_of(hit.score);
         }
     }
     [[nodiscard]] std::vector<PlacedField> fields() const {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <chrono>
 #include <cmath>
 #include <exception>
 #include <memory>
@@ -198,20 +199,24 @@ SearchResult search(const DensityGrid& map, const Structure& structure, const Se
     result.random_deviation =
         std::sqrt(std::max(all.sum_2 / std::max(all.n, 1.0) - result.random_mean * result.random_mean, 0.0));
     found = thinned(std::move(found), spread, kCoarseApart * coarse.resolution_m, kCoarseMost);
-    if (settings.near) found.push_back({settings.near->place, 0.0, 0.0});
 
-    const auto refined = [&](double search_m, const Progress& part_of) {
-        refine_all(found, Refinement(map, structure, settings, search_m), threads, part_of);
-        found = thinned(std::move(found), spread, kFineApart * std::max(search_m, settings.resolution_m),
-                        kFineMost);
+    const auto refined = [&](const Refinement& refinement, double resolution_m, const Progress& part_of) {
+        refine_all(found, refinement, threads, part_of);
+        found = thinned(std::move(found), spread, kFineApart * resolution_m, kFineMost);
     };
-    refined(result.search_resolution_m, part(progress, 0.7, 0.85));
     if (result.search_resolution_m > 1.05 * settings.resolution_m)
-        refined(settings.resolution_m, part(progress, 0.85, 1.0));
+        refined(Refinement(map, structure, settings, result.search_resolution_m), result.search_resolution_m,
+                part(progress, 0.7, 0.85));
+    const Refinement fine(map, structure, settings, settings.resolution_m);
+    if (settings.near) {
+        // Uphill at the resolution of the map, so that nothing worse than the given place comes first.
+        const RefineResult r = fine.from(settings.near->place);
+        found.push_back({r.T_model_body, r.score, 0.0});
+    }
+    refined(fine, settings.resolution_m, part(progress, 0.85, 1.0));
     result.hits.assign(found.begin(), found.begin() + static_cast<std::ptrdiff_t>(
                                                           std::min(found.size(), settings.hits_max)));
-    for (SearchHit& hit : result.hits)
-        hit.z = (hit.score - result.random_mean) / std::max(result.random_deviation, 1e-12);
+    for (SearchHit& hit : result.hits) hit.z = result.z_of(hit.score);
     return result;
 }
 

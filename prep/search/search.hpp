@@ -6,7 +6,7 @@
 //          2. for each, the score at every position (translation_search.hpp); its highest maxima are candidates
 //          3. candidates that move the atoms by less than a part of the resolution are one; the best are refined, first at the
 //             resolution of the search, then at that of the map (ipc/scene/fit/refine.hpp)
-// Near     with `near`, only orientations and positions within its limits, and the given place itself, so the best hit is
+// Near     with `near`, only candidates within its limits, and the nearest optimum to the place itself, so the best hit is
 //          never worse than it
 // Score    correlation about the mean of the refined place, of the Laplacians of the densities: inside a large complex the
 //          densities alone correlate well in many wrong places (prep/search/README.md). z: how many standard deviations it
@@ -16,6 +16,7 @@
 // Errors   StartupError; Cancelled when `progress` returns false
 #pragma once
 
+#include <algorithm>
 #include <optional>
 #include <vector>
 
@@ -52,6 +53,9 @@ struct SearchResult {
     std::size_t rotations = 0, candidates = 0;
     double search_resolution_m = 0.0, cover_rad = 0.0;
     double random_mean = 0.0, random_deviation = 0.0;
+    [[nodiscard]] double z_of(double score) const {
+        return (score - random_mean) / std::max(random_deviation, 1e-12);
+    }
 };
 
 SearchResult search(const DensityGrid& map, const Structure& structure, const SearchSettings& settings,

@@ -117,6 +117,23 @@ TEST(Search, near_a_place_the_best_place_within_the_limits_is_found_and_never_a_
     }
 }
 
+// At a coarser resolution of the search, its optimum may be worse than a start that is already good.
+TEST(Search, a_search_nearby_at_a_coarser_resolution_gives_nothing_worse_than_the_start) {
+    const Structure& s = ring().subunits.front();
+    SeededRandom random(9);
+    SearchSettings by = settings();
+    by.resolution_m = 0.5 * ring().resolution_m;  // searched twice as coarsely
+    by.rotations_max = 500;
+    for (int k = 0; k < 8; ++k) {
+        Pose start = s.home();
+        start.p_m += 15.0 * kAngstromM * random.direction();
+        start.q = random.rotation();
+        by.near = SearchNear{start, 0.5 * kAngstromM, 0.5 * kDegreeRad};
+        EXPECT_GE(search(ring().grid, s, by).hits.at(0).score, place_score(ring().grid, s, by, start) - 1e-9)
+            << k;
+    }
+}
+
 // In any orientation, the five other places of the ring fit as well.
 TEST(Search, near_a_place_only_positions_within_the_limit_are_searched) {
     const Structure& s = ring().subunits.front();
