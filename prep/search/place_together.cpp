@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <numeric>
 
+#include "ipc/base/error.hpp"
 #include "ipc/scene/density/subtracted_map.hpp"
 #include "prep/map/low_pass.hpp"
 #include "prep/search/joint_fit.hpp"
@@ -35,8 +36,12 @@ public:
             done += 1.0;
             return one;
         };
-        for (std::size_t i = 0; i < structures_.size(); ++i)
+        for (std::size_t i = 0; i < structures_.size(); ++i) {
             result_.found[i] = search(map_, structures_[i], settings_, next());
+            if (result_.found[i].hits.empty())
+                throw StartupError("placing " + structures_[i].name, "no place in the map resembles it",
+                                   "check map, resolution and structure, or leave it out");
+        }
         choose();
         refine_in_turns();
         for (int again = 0; again < kSearchesAgain; ++again) {
@@ -57,7 +62,6 @@ private:
             return structures_[a].mass_u > structures_[b].mass_u;
         });
         std::vector<std::vector<PlacedField>> choices;
-        std::erase_if(order, [&](std::size_t i) { return result_.found[i].hits.empty(); });
         for (const std::size_t i : order) {
             choices.emplace_back();
             for (const SearchHit& hit : result_.found[i].hits)
@@ -108,7 +112,6 @@ private:
                 for (std::size_t v = 0; v < sum.size(); ++v) sum[v] += simulated[i][v];
             }
         for (std::size_t i = 0; i < structures_.size(); ++i) {
-            if (result_.found[i].hits.empty()) continue;
             SearchResult& found = result_.found[i];
             SearchHit& hit = found.hits.front();
             hit.T_model_body = placed_[i].T_model_body;
@@ -134,8 +137,7 @@ private:
         }
         // The present place stays first where no hit is better.
         if (best == found.hits.size()) {
-            if (!result_.found[i].hits.empty())
-                found.hits.insert(found.hits.begin(), result_.found[i].hits.front());
+            found.hits.insert(found.hits.begin(), result_.found[i].hits.front());
         } else {
             std::rotate(found.hits.begin(), found.hits.begin() + static_cast<std::ptrdiff_t>(best),
                         found.hits.begin() + static_cast<std::ptrdiff_t>(best) + 1);

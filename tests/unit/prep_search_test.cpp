@@ -5,6 +5,7 @@
 
 #include "ipc/base/random.hpp"
 #include "ipc/base/units.hpp"
+#include "prep/search/place_together.hpp"
 #include "prep/search/rotation_set.hpp"
 #include "prep/search/search_report.hpp"
 #include "prep/search/translation_search.hpp"
@@ -143,6 +144,17 @@ TEST(Search, near_a_place_only_positions_within_the_limit_are_searched) {
     const double apart_m = (place_in_ring(s, 1).p_m - s.home().p_m).norm();
     for (const SearchHit& hit : search(ring().grid, s, by).hits)
         EXPECT_LT((hit.T_model_body.p_m - s.home().p_m).norm(), 0.6 * apart_m);
+}
+
+TEST(PlaceTogether, a_structure_without_a_place_is_named) {
+    DensityGrid empty = ring().grid;
+    SearchSettings by = settings();
+    by.rotations_max = 500;
+    by.background = 0.0;
+    std::fill(empty.values.begin(), empty.values.end(), 0.0F);
+    const std::string error =
+        sample::error_of([&] { (void)place_together(empty, {ring().subunits.front()}, by); });
+    EXPECT_NE(error.find(ring().subunits.front().name), std::string::npos) << error;
 }
 
 // A body frame has its origin at the centre of mass; files and matrices do not.
