@@ -13,8 +13,8 @@ namespace tact {
 namespace {
 
 constexpr double kNoHandM = 1e3;  // no hand is there
-constexpr double kBlockStiffness =
-    0.5 * kBlockMost;                     // of the radius: with larger blocks the slope is off by up to 40 %
+// Of the radius; with larger blocks the slope is off by up to 40 %.
+constexpr double kBlockStiffness = 0.5 * kBlockMost;
 constexpr double kStiffnessReach = 0.05;  // half of the way over which it is measured, in radii of the head
 constexpr double kTypicalForceN = 3.0;    // of a surgeon's hand
 // In the pocket that it has cut, a burr touches over this times the area of flat bone at the same force.
