@@ -151,6 +151,8 @@ private:
         double elastic_n = 0.0;
         double lever_m = 0.0;  // farthest place of the touching parts from the tool's origin
 
+        // Scaling to the largest force: its own error acts on the torque of balls that push against each other.
+        double torque_share = 1.0;
         bool limited = false;
     };
     // A thin cap falls between the points of a voxel unless there are more of them.
@@ -164,6 +166,7 @@ private:
     [[nodiscard]] Sum wanted(const Pose& pose, double burr_rad_s) const {
         Sum sum;
         sum.lever_m = drill_.tool.radius_m;
+        double parts_n = 0.0;
         const DrillTool& tool = model_.tool();
         for (std::uint32_t i = 0; i < tool.count; ++i) {
             const ToolBall& ball = tool.ball[i];
@@ -179,6 +182,7 @@ private:
                 tool_.twist_world.linear_m_s + tool_.twist_world.angular_rad_s.cross(arm_m),
                 ball.cuts ? Vec3(burr_rad_s * (pose.q * Vec3::UnitZ())) : Vec3(Vec3::Zero()));
             sum.force_n += ball.weight * w.force_n;
+            parts_n += ball.weight * w.force_n.norm();
             sum.torque_n_m += ball.weight * (w.torque_n_m + arm_m.cross(w.force_n));
             sum.elastic_n += ball.weight * w.elastic_n;
             if (w.elastic_n > 0.0) sum.lever_m = std::max(sum.lever_m, arm_m.norm() + ball.radius_m);
@@ -186,6 +190,7 @@ private:
         const double size_n = sum.force_n.norm();
         sum.limited = size_n > drill_.force_n_max;
         if (sum.limited) {
+            sum.torque_share = 1.0 + parts_n / size_n;
             sum.force_n *= drill_.force_n_max / size_n;
             sum.torque_n_m *= drill_.force_n_max / size_n;
         }
@@ -203,7 +208,8 @@ private:
                          tool_.twist_world.linear_m_s.norm());
         } else {
             note(force_, (r.wrench_world.force_n - right.force_n).norm(), allowed_n);
-            note(torque_, (r.wrench_world.torque_n_m - right.torque_n_m).norm(), right.lever_m * allowed_n);
+            note(torque_, (r.wrench_world.torque_n_m - right.torque_n_m).norm(),
+                 right.torque_share * right.lever_m * allowed_n);
         }
         if (slope && !right.limited && (r.trace_flags & kTraceHeldIn) == 0) stiff(level);
     }

@@ -1,15 +1,20 @@
 // Parts of the search for places: orientations, the score at every position, a search nearby, and the report.
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <cmath>
+#include <filesystem>
+#include <fstream>
 
 #include "ipc/base/random.hpp"
 #include "ipc/base/units.hpp"
+#include "prep/search/fit_input.hpp"
 #include "prep/search/place_together.hpp"
 #include "prep/search/rotation_set.hpp"
 #include "prep/search/search_report.hpp"
 #include "prep/search/translation_search.hpp"
 #include "tests/support/error_of.hpp"
+#include "tests/unit/prep_samples.hpp"
 #include "tests/unit/prep_search_fixture.hpp"
 
 namespace tact::prep_search_test {
@@ -144,6 +149,20 @@ TEST(Search, near_a_place_only_positions_within_the_limit_are_searched) {
     const double apart_m = (place_in_ring(s, 1).p_m - s.home().p_m).norm();
     for (const SearchHit& hit : search(ring().grid, s, by).hits)
         EXPECT_LT((hit.T_model_body.p_m - s.home().p_m).norm(), 0.6 * apart_m);
+}
+
+TEST(FitInput, a_map_without_a_resolution_is_refused_with_a_range_from_its_voxels) {
+    const std::filesystem::path map =
+        std::filesystem::temp_directory_path() / ("tact-fit-" + std::to_string(::getpid()) + ".mrc");
+    const std::vector<char> bytes = sample::Mrc{}.bytes();  // voxels of 2, 3 and 4 angstrom
+    std::ofstream(map, std::ios::binary).write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+    const std::string error = sample::error_of([&] {
+        (void)read_fit_input({.map = map.string(), .models = {"none.pdb"}, .fixed = {}, .resolution_a = {}});
+    });
+    std::filesystem::remove(map);
+    EXPECT_NE(error.find("--resolution-a; with voxels of 4.00 Å it is probably between 8.0 and 20.0"),
+              std::string::npos)
+        << error;
 }
 
 TEST(PlaceTogether, a_structure_without_a_place_is_named) {
