@@ -35,14 +35,8 @@ void list(const Theme& theme, DashboardState& state, FittingState& fitting) {
     }
 }
 
-const BodyState* in_hand(const FittingState& f) {
-    for (const BodyState& b : f.bodies)
-        if (b.in_hand) return &b;
-    return nullptr;
-}
-
 void actions(const DashboardState& state, FittingState& f, std::vector<Request>& requests) {
-    const BodyState* const held = in_hand(f);
+    const BodyState* const held = held_body(f);
     const std::uint32_t id = held != nullptr ? held->id : 0;
     const float gap = ImGui::GetStyle().ItemSpacing.x;
     const float width = (ImGui::GetContentRegionAvail().x - 3.0F * gap) / 4.0F;
@@ -63,7 +57,9 @@ void actions(const DashboardState& state, FittingState& f, std::vector<Request>&
     if (button("Accept", f.can_undo, "accept the current poses; Revert returns to them (Enter)"))
         request(FitAction::accept);
     if (button("Revert", f.can_undo, "return to the accepted poses (Esc)")) request(FitAction::revert);
-    if (button("Refine", held != nullptr && !f.refining, "refine the held body from its current pose (R)"))
+    if (button("Refine", held != nullptr && !f.search.running,
+               "best place of the held body nearby, within 10 Å and 20° (R); the Search tab says by which "
+               "objective"))
         request(FitAction::refine);
     if (button("Copy", held != nullptr && f.bodies.size() < kBodiesMax, "copy the held body"))
         request(FitAction::copy);
@@ -104,12 +100,18 @@ void options(const Theme& theme, DashboardState& state, const FittingState& f) {
 
 }  // namespace
 
+const BodyState* held_body(const FittingState& f) {
+    for (const BodyState& b : f.bodies)
+        if (b.in_hand) return &b;
+    return nullptr;
+}
+
 void draw_bodies_tab(const Theme& theme, DashboardState& state, FittingState& f) {
     list(theme, state, f);
     ImGui::Spacing();
     options(theme, state, f);
     actions(state, f, state.requests);
-    if (f.refining) text_small(theme, colour::kDim, "refining ...");
+    if (f.search.running) draw_search_progress(theme, f);
     if (f.saving) text_small(theme, colour::kDim, "saving ...");
     if (!f.message.empty()) text_small(theme, grade_colour(f.message_grade), f.message);
 }

@@ -60,13 +60,15 @@ void toggles(const Theme& theme, SceneToggles& t) {
 }  // namespace
 
 void DockingPanels::draw_in_scene_card(const Theme& theme, DashboardState& state) {
-    static constexpr const char* kTabs[] = {"Bodies", "Contours", "View"};
+    static constexpr const char* kTabs[] = {"Bodies", "Search", "Contours", "View"};
     ImGui::PushStyleVar(ImGuiStyleVar_FramePadding, ImVec2(theme.px(2.0F), theme.px(1.0F)));
     ImGui::SameLine(0.0F, theme.px(14.0F));
     choose(theme, kTabs, state.tab);
     if (state.tab == 0) {
         draw_bodies_tab(theme, state, fitting);
     } else if (state.tab == 1) {
+        draw_search_tab(theme, state, fitting);
+    } else if (state.tab == 2) {
         draw_contours_tab(theme, contours);
     } else {
         scene_rows(theme, state, scene);

@@ -18,11 +18,26 @@
 namespace tact {
 
 // User actions on bodies that take more than one command.
-enum class FitAction : std::uint8_t { undo, redo, revert, accept, copy, refine, snapshot, restore, save };
+enum class FitAction : std::uint8_t {
+    undo,
+    redo,
+    revert,
+    accept,
+    copy,
+    refine,
+    search,
+    cancel,      // a search or a refinement
+    take_place,  // moves the body that was looked for to a place found
+    keep_place,  // as a snapshot
+    snapshot,
+    restore,
+    save
+};
 struct FitRequest {
     FitAction action = FitAction::undo;
-    std::uint32_t body = 0;  // id: copy, refine, revert
+    std::uint32_t body = 0;  // id: copy, refine, search, revert
     std::string text;        // name of a snapshot
+    std::size_t place = 0;   // index in SearchState::found
 };
 
 struct BodyState {
@@ -33,11 +48,35 @@ struct BodyState {
     ImU32 colour = colour::kText;
 };
 
+// Places found for a body.
+struct FoundRow {
+    double score = 0.0, z = 0.0, away_m = 0.0;  // away: from the centre of the body now
+    std::uint64_t clashes = 0;
+};
+struct SearchState {
+    // Chosen by the user.
+    int objective = 0;  // PlaceObjective
+    bool ghosts = true;
+    bool pull = false;  // towards the places found
+    // Progress and results.
+    bool running = false, nearby = false;
+    double progress = 0.0;
+    std::uint32_t running_body = 0, found_body = 0;  // ids; 0: none
+    std::size_t subtracted = 0;                      // bodies that would be, for the body in the hand
+    std::vector<FoundRow> found;                     // best first
+    std::string found_name;
+    bool can_pull = false;    // the places are those of the body in the hand
+    double pull_n = 0.0;      // now
+    std::uint32_t place = 0;  // towards this one, from 1; 0: none
+};
+
 struct FittingState {
     std::vector<BodyState> bodies;
     std::uint32_t options = 0;  // DockingOption, currently in effect
     bool building = false;      // the controller prepares another density
-    bool refining = false, saving = false;
+    bool saving = false;
+    SearchState search;
+    bool resolution_estimated = false;  // of the map
     bool can_undo = false, can_redo = false;
     std::size_t gestures = 0;  // undoable
     std::vector<std::string> snapshots;
@@ -108,6 +147,9 @@ public:
 
 // Tabs of the scene card.
 void draw_bodies_tab(const Theme& theme, DashboardState& state, FittingState& fitting);
+void draw_search_tab(const Theme& theme, const DashboardState& state, FittingState& fitting);
+void draw_search_progress(const Theme& theme, FittingState& fitting);   // only while running
+[[nodiscard]] const BodyState* held_body(const FittingState& fitting);  // null: the hand is empty
 void draw_contours_tab(const Theme& theme, ContourRowState& contours);
 
 }  // namespace tact

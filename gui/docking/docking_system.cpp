@@ -136,6 +136,8 @@ void DockingSystem::prepare(std::int64_t now_ns, bool sharp, ViewFrame& frame, c
     follow_bodies(now_ns, context);
     drawn_.clear();
     for (const ShownBody& b : list_.bodies()) drawn_.push_back({b.T_model_body, b.structure, b.id, b.hidden});
+    if (panels_.fitting.search.ghosts)
+        for (const DrawnBody& ghost : fit_controller_.finder().ghosts(list_)) drawn_.push_back(ghost);
     if (const auto active = list_.active()) frame.force_at_model_m = drawn_[*active].T_model_body.p_m;
     const SceneToggles& t = context.state.toggles;
     const Controller& c = context.controller;
@@ -158,6 +160,7 @@ bool DockingSystem::add_to_key(ContentKey& key) const {
         key.add(body.id);
         key.add(body.structure);
         key.add(body.hidden);
+        key.add(body.ghost);
         if (!body.hidden) key.add(body.T_model_body);
     }
     return true;

@@ -1,6 +1,7 @@
 #include "gui/docking/fit_controller.hpp"
 
 #include "gui/docking/docking_content.hpp"
+#include "gui/docking/poses_json.hpp"
 
 #include <spdlog/spdlog.h>
 
@@ -9,7 +10,6 @@
 #include <ctime>
 #include <filesystem>
 #include <fstream>
-#include <nlohmann/json.hpp>
 #include <thread>
 
 #include "ipc/base/error.hpp"
@@ -33,47 +33,28 @@ std::string folder_name() {
     return text;
 }
 
-// Format of tact-prep export and tact-rt --poses.
-nlohmann::ordered_json poses_json(const BodyList& list, const SceneContent& content) {
-    nlohmann::ordered_json bodies = nlohmann::ordered_json::array();
-    for (const ShownBody& b : list.bodies()) {
-        const Vec3 p = b.newest.p_m / kAngstromM;
-        const Eigen::Vector4d q = b.newest.q.coeffs();
-        bodies.push_back({{"id", b.id},
-                          {"structure", b.structure},
-                          {"name", docking_of(content).bodies[b.structure].name},
-                          {"pos_model_a", {p.x(), p.y(), p.z()}},
-                          {"quat_model_body_xyzw", {q.x(), q.y(), q.z(), q.w()}}});
-    }
-    return {{"bodies", bodies}};
-}
-
 Command placement(std::uint32_t id, const Pose& T_model_body) {
     return {CommandKind::place_body, 0.0, {}, id, T_model_body};
 }
 
-std::string end_text(const RefineOutcome& o) {
-    const RefineResult& r = o.result;
-    const double shift_a = (r.T_model_body.p_m - o.start.T_model_body.p_m).norm() / kAngstromM;
-    const double turn_deg = r.T_model_body.q.angularDistance(o.start.T_model_body.q) / kDegreeRad;
-    char text[160];
-    std::snprintf(text, sizeof text, "refined body %u: moved %.2f A, %.1f deg; density %.3f to %.3f sigma",
-                  o.start.id, shift_a, turn_deg, r.score_start, r.score);
-    return text;
+FitHistory::Places with(FitHistory::Places places, std::uint32_t id, const Pose& T_model_body) {
+    for (FitHistory::Move& m : places)
+        if (m.id == id) m.T_model_body = T_model_body;
+    return places;
 }
 
 }  // namespace
 
 void FitController::use(std::shared_ptr<const SceneContent> content) {
     fit_.reset();
-    refine_.reset();
+    finder_.use(nullptr);
     content_ = std::move(content);
     outcome_ = {};
     history_.clear();
     message_.clear();
     if (!content_ || content_->grid.values.empty() || docking_of(*content_).bodies.empty()) return;
     fit_ = std::make_unique<FitWorker>(content_);
-    refine_ = std::make_unique<RefineWorker>(content_);
+    finder_.use(content_);
 }
 
 void FitController::report(Grade grade, std::string text) {
@@ -83,6 +64,14 @@ void FitController::report(Grade grade, std::string text) {
         spdlog::info("{}", message_);
     else
         spdlog::warn("{}", message_);
+}
+
+void FitController::show(const std::optional<PlaceFinder::Message>& message) {
+    if (!message) return;
+    if (message->text.empty())
+        message_.clear();
+    else
+        report(message->grade, message->text);
 }
 
 void FitController::follow(const BodyList& list, const BodiesTopic* topic, std::vector<Command>& commands) {
@@ -98,20 +87,7 @@ void FitController::follow(const BodyList& list, const BodiesTopic* topic, std::
         fit_->request(bodies_);
         static_cast<void>(fit_->take(outcome_));
     }
-    if (refine_) {
-        if (const auto done = refine_->poll()) {
-            if (!done->error.empty())
-                report(Grade::bad, done->error);
-            else if (done->result.end == RefineEnd::no_density)
-                report(Grade::watch, "refine: the map is flat here; move the body closer");
-            else if (topic == nullptr)
-                report(Grade::watch, "refine: no controller to move the body");
-            else if (list.find(done->start.id) != nullptr) {
-                commands.push_back(placement(done->start.id, done->result.T_model_body));
-                report(Grade::good, end_text(*done));
-            }
-        }
-    }
+    show(finder_.follow(list, topic, commands));
     if (const auto saved = saving_.poll()) {
         if (saved->good())
             report(Grade::good, "saved in " + saving_to_);
@@ -148,22 +124,38 @@ void FitController::perform(const FitRequest& request, const BodyList& list, std
         case FitAction::accept:
             history_.accept();
             return report(Grade::good, "accepted; Revert returns to these poses");
-        case FitAction::snapshot:
-            if (!history_.snapshot(request.text))
-                report(Grade::watch, "snapshot not kept: too many, or name in use");
-            return;
-        case FitAction::restore:
-            return go(history_.restore(request.text));
         case FitAction::copy:
             if (body != nullptr) copy(*body, list, commands);
             return;
         case FitAction::refine:
-            if (body != nullptr && refine_ && !refine_->running())
-                refine_->start({body->id, body->structure, body->newest});
+        case FitAction::search:
+            if (body != nullptr) show(finder_.look(*body, request.action == FitAction::refine, list));
             return;
+        case FitAction::cancel:
+            return finder_.cancel();
+        case FitAction::take_place:
+            if (const auto found = finder_.found(request.body, request.place); found && body != nullptr)
+                commands.push_back(placement(body->id, *found));
+            return;
+        case FitAction::keep_place:
+            if (const auto found = finder_.found(request.body, request.place); found && body != nullptr)
+                keep("body " + std::to_string(body->id) + ", place " + std::to_string(request.place + 1),
+                     with(history_.places(), body->id, *found));
+            return;
+        case FitAction::snapshot:
+            return keep(request.text, history_.places());
+        case FitAction::restore:
+            return go(history_.restore(request.text));
         case FitAction::save:
             return save(list);
     }
+}
+
+void FitController::keep(const std::string& name, const FitHistory::Places& places) {
+    if (history_.snapshot(name, places))
+        report(Grade::good, "kept as snapshot \"" + name + '"');
+    else
+        report(Grade::watch, "snapshot not kept: too many, or name in use");
 }
 
 // Places it beside the last copy, where it is visible and does not overlap.
@@ -187,10 +179,10 @@ void FitController::save(const BodyList& list) {
                                "save again in a second");
         const std::string poses = saving_to_ + "/poses.json";
         std::ofstream out(poses);
-        out << poses_json(list, *content_)
-                   .dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace)
-            << '\n'
-            << std::flush;
+        std::vector<PosedBody> bodies;
+        for (const ShownBody& b : list.bodies())
+            bodies.push_back({{b.id, b.structure, b.newest}, (b.flags & kBodyFixed) != 0});
+        out << poses_json(bodies, *content_) << std::flush;
         if (!out)
             throw StartupError("writing " + poses, "the write failed", "check the free space of the disk");
         saving_.start("tact-prep", {"export", content_->path.string(), "--poses", poses, "-o", saving_to_});
@@ -200,7 +192,7 @@ void FitController::save(const BodyList& list) {
 }
 
 void FitController::describe(const BodyList& list, const BodiesTopic* topic, FittingState& state,
-                             FitState& fit) const {
+                             FitState& fit) {
     state.bodies.clear();
     const auto active = list.active();
     for (std::size_t i = 0; i < list.bodies().size() && content_; ++i) {
@@ -218,7 +210,8 @@ void FitController::describe(const BodyList& list, const BodiesTopic* topic, Fit
     }
     state.options = topic != nullptr ? topic->options : 0;
     state.building = topic != nullptr && topic->building != 0;
-    state.refining = refine_ && refine_->running();
+    finder_.describe(list, topic, state.search);
+    state.resolution_estimated = outcome_.resolution_assumed;
     state.saving = saving_.running();
     state.gestures = history_.undoable();
     state.can_undo = state.gestures > 0;

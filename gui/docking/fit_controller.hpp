@@ -1,7 +1,7 @@
 // Actions on bodies other than holding them: measure, undo, refine, copy, take snapshots, save.
 //
 // Reads    the bodies that the controller publishes; changes them only by the commands it returns
-// Does     the slow work in the background: metrics and refinement on threads, saving in tact-prep
+// Does     the slow work in the background: metrics on a thread; search, refinement and saving in programs of their own
 // Thread   frame thread
 #pragma once
 
@@ -14,7 +14,7 @@
 #include "gui/docking/docking_panels.hpp"
 #include "gui/docking/fit_history.hpp"
 #include "gui/docking/fit_worker.hpp"
-#include "gui/docking/refine_worker.hpp"
+#include "gui/docking/place_finder.hpp"
 #include "gui/link/command_sender.hpp"
 
 namespace tact {
@@ -28,18 +28,22 @@ public:
     void perform(const FitRequest& request, const BodyList& list, std::vector<Command>& commands);
     // At the end: waits for a save in progress, at most this long.
     void finish_saving(Duration patience);
-    // Fills the panels' state.
-    void describe(const BodyList& list, const BodiesTopic* topic, FittingState& state, FitState& fit) const;
+    // Fills the panels' state; takes the user's choice of an objective from it.
+    void describe(const BodyList& list, const BodiesTopic* topic, FittingState& state, FitState& fit);
+
+    [[nodiscard]] const PlaceFinder& finder() const { return finder_; }
 
 private:
     void report(Grade grade, std::string text);
+    void show(const std::optional<PlaceFinder::Message>& message);
+    void keep(const std::string& name, const FitHistory::Places& places);
     void copy(const ShownBody& body, const BodyList& list, std::vector<Command>& commands);
     void save(const BodyList& list);
     void place(std::span<const FitHistory::Move> moves, const BodyList& list, std::vector<Command>& commands);
 
     std::shared_ptr<const SceneContent> content_;
     std::unique_ptr<FitWorker> fit_;
-    std::unique_ptr<RefineWorker> refine_;
+    PlaceFinder finder_;
     FitOutcome outcome_;
     FitHistory history_;
     ChildJob saving_;

@@ -125,11 +125,11 @@ void FitHistory::accept() {
     undone_.clear();
 }
 
-bool FitHistory::snapshot(const std::string& name) {
+bool FitHistory::snapshot(const std::string& name, const Places& places) {
     const bool known =
         std::any_of(snapshots_.begin(), snapshots_.end(), [&](const Snapshot& s) { return s.name == name; });
-    if (known || snapshots_.size() >= kSnapshotsMax || now_.empty()) return false;
-    snapshots_.push_back({name, now_});
+    if (known || snapshots_.size() >= kSnapshotsMax || places.empty()) return false;
+    snapshots_.push_back({name, places});
     return true;
 }
 

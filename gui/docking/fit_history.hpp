@@ -46,8 +46,10 @@ public:
     Places revert();  // to the last accepted poses, at first the initial ones; can itself be undone
     void accept();    // undo and revert then go back no farther than this
 
-    // Returns false if there are too many, or the name exists.
-    bool snapshot(const std::string& name);
+    [[nodiscard]] const Places& places() const { return now_; }
+    // Of all bodies, as they are or will be. Returns false if there are too many, or the name exists.
+    bool snapshot(const std::string& name, const Places& places);
+    bool snapshot(const std::string& name) { return snapshot(name, now_); }
     Places restore(const std::string& name);
     [[nodiscard]] std::vector<std::string> snapshots() const;
 

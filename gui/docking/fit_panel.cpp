@@ -46,7 +46,7 @@ void DockingPanels::draw_card(const Theme& theme, const PixelRect& card) const {
         text_small(theme, colour::kDim,
                    format("Region: %s, %s voxels. Simulated at %.1f Å%s, Gaussians, weight Z.", kFitRegion,
                           grouped(m.region_voxels).c_str(), f.resolution_m / kAngstromM,
-                          f.resolution_assumed ? " (assumed: 3 voxels)" : ""));
+                          f.resolution_assumed ? " (estimated: 4 voxels)" : ""));
     }
     if (!f.status.empty()) text_small(theme, colour::kDim, f.status);
     end_card();

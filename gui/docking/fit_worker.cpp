@@ -75,8 +75,9 @@ FitOutcome FitWorker::compute(std::vector<FitBody> bodies) const {
     FitOutcome outcome;
     const Instant begun = Monotonic::now();
     outcome.resolution_m = content_->meta.resolution_m;
+    outcome.resolution_assumed = resolution_is_estimated(content_->note);
     if (!(outcome.resolution_m > 0.0)) {
-        outcome.resolution_m = 3.0 * content_->grid.spacing_m.maxCoeff();
+        outcome.resolution_m = 4.0 * content_->grid.spacing_m.maxCoeff();
         outcome.resolution_assumed = true;
     }
     std::vector<PlacedStructure> placed;

@@ -33,7 +33,7 @@ struct FitOutcome {
     std::vector<FitBody> body;   // the measured bodies and their poses
     std::vector<FitMetrics> of;  // one per body
     double resolution_m = 0.0;
-    bool resolution_assumed = false;  // three voxels, because the scene states none
+    bool resolution_assumed = false;  // four voxels, because nobody gave it
     double compute_s = 0.0;
     std::uint64_t number = 0;  // increases with every outcome
 };

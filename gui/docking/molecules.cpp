@@ -8,6 +8,11 @@
 #include "gui/render/tube.hpp"
 
 namespace tact {
+namespace {
+
+constexpr Rgb8 kGhost{150, 156, 168};
+
+}  // namespace
 
 Molecules::Molecules(std::shared_ptr<const SceneContent> content, Programs& programs)
     : content_(std::move(content)), programs_(programs), structures_(docking_of(*content_).bodies.size()) {}
@@ -68,9 +73,10 @@ void Molecules::draw(std::span<const DrawnBody> bodies, const Eigen::Matrix4f& e
     std::size_t room = shapes_max_;
     for (const DrawnBody& body : bodies) {
         if (body.hidden || body.structure >= structures_.size()) continue;
-        const MoleculeLook l = look(body.id);
+        const MoleculeLook l =
+            body.ghost ? MoleculeLook{MoleculeStyle::trace, Colouring::body} : look(body.id);
         const ImpostorView view{eye_from_scene * scene_from_body(body.T_model_body, content_->centre_model_m),
-                                projection, haze, l.colouring, chain_colour(body.id)};
+                                projection, haze, l.colouring, body.ghost ? kGhost : chain_colour(body.id)};
         if (l.style == MoleculeStyle::tube) {
             draw_tube(body.structure, view);
             continue;

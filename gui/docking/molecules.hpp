@@ -32,6 +32,7 @@ struct DrawnBody {
     std::uint32_t structure = 0;  // index in the scene
     std::uint32_t id = 0;         // identifies the body for the setters below
     bool hidden = false;
+    bool ghost = false;  // a place found: drawn as a thin, grey trace
 };
 
 class Molecules {

@@ -34,6 +34,7 @@ bool duration(std::int64_t ns) noexcept { return ns >= -1 && ns < 1'000'000'000'
 
 bool sensible(const BodiesTopic& b) noexcept {
     if (b.count > kBodiesMax || (b.active != kNoBody && b.count > 0 && b.active >= b.count)) return false;
+    if (!(b.pull_n >= 0.0F && b.pull_n < 1e3F)) return false;
     return std::all_of(b.body, b.body + b.count, [](const BodyPlace& place) {
         return near(place.pos_model_m) && unit_quaternion(place.quat_model_body_xyzw);
     });

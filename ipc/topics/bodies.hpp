@@ -24,6 +24,7 @@ enum DockingOption : std::uint32_t {
     kDockingClash = 1U << 0,        // repulsion between bodies
     kDockingSubtraction = 1U << 1,  // subtracts the density explained by the other bodies
     kDockingLaplacian = 1U << 2,    // uses the Laplacian-filtered map
+    kDockingPull = 1U << 3,         // pulls towards places that a search found
 };
 
 struct BodyPlace {
@@ -36,16 +37,19 @@ struct BodyPlace {
 static_assert(sizeof(BodyPlace) == 64);
 
 struct alignas(64) BodiesTopic {
-    static constexpr TopicInfo kInfo{.name = "bodies", .version = 2, .writer = Writer::rt};
+    static constexpr TopicInfo kInfo{.name = "bodies", .version = 3, .writer = Writer::rt};
     std::int64_t taken_at_ns;
     std::uint64_t cycle;
     std::uint32_t count;
-    std::uint32_t active;       // index of the body in the hand, or kNoBody
-    std::uint64_t grips;        // rises when the hand grips: start of a gesture
-    std::uint64_t placements;   // rises when a command places, adds or removes a body
-    std::uint32_t options;      // DockingOption in use
-    std::uint32_t building;     // 1: a new model is being built in the background
-    std::uint8_t reserved[16];  // zero
+    std::uint32_t active;      // index of the body in the hand, or kNoBody
+    std::uint64_t grips;       // rises when the hand grips: start of a gesture
+    std::uint64_t placements;  // rises when a command places, adds or removes a body
+    std::uint32_t options;     // DockingOption in use
+    std::uint32_t building;    // 1: a new model is being built in the background
+    std::uint32_t places;      // found for the body in the hand; the controller knows them
+    std::uint32_t place;       // the one that it leans to, from 0, in the order of the commands
+    float pull_n;              // size of the pull; 0: off
+    std::uint8_t reserved[4];  // zero
     BodyPlace body[kBodiesMax];
 };
 static_assert(std::is_trivially_copyable_v<BodiesTopic> && sizeof(BodiesTopic) == 1088);

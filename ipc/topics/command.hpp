@@ -31,11 +31,15 @@ enum class CommandKind : std::uint16_t {
     // away, both in radii of full detail (TouchTopic)
     set_detail_filter,
     mark,  // only its event: triggers a flight recording
+    // Places that a search found for a body, which pull it while set_pull is on.
+    add_found_place,  // body and pose; one of another body replaces all
+    clear_found_places,
+    set_pull,  // value: 1 on, 0 off
 };
-inline constexpr CommandKind kLastCommand = CommandKind::mark;
+inline constexpr CommandKind kLastCommand = CommandKind::set_pull;
 // True for commands that the force model executes or refuses; all others concern the loop.
 [[nodiscard]] constexpr bool is_for_model(CommandKind kind) {
-    return kind >= CommandKind::select_body && kind <= CommandKind::set_detail_filter;
+    return kind >= CommandKind::select_body && kind <= kLastCommand && kind != CommandKind::mark;
 }
 
 enum class CommandResult : std::uint16_t {
@@ -54,7 +58,7 @@ struct CommandTopic {
     std::uint16_t kind;  // CommandKind
     std::uint16_t reserved;
     std::uint32_t body;
-    double pos_model_m[3];  // place_body, add_body
+    double pos_model_m[3];  // place_body, add_body, add_found_place
     double quat_model_body_xyzw[4];
     char text[32];            // ends with 0
     std::uint8_t padding[8];  // zero

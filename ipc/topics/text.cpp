@@ -243,6 +243,12 @@ const char* command_kind_text(CommandKind kind) noexcept {
             return "Laplacian";
         case CommandKind::mark:
             return "mark";
+        case CommandKind::add_found_place:
+            return "add a place found";
+        case CommandKind::clear_found_places:
+            return "clear the places found";
+        case CommandKind::set_pull:
+            return "pull to places found";
     }
     return kUnknown;
 }

@@ -174,8 +174,8 @@ BakedDocking bake_docking(const DockingInput& input, SceneWriter& out, const Pro
         say(printed("resolution: %.4g Å, as given", meta.resolution_m / kAngstromM));
     } else {
         meta.resolution_m = kVoxelsPerResolution * grid.spacing_m.maxCoeff();
-        say(printed("resolution: %.4g Å, estimated as four voxels; --resolution-a sets it",
-                    meta.resolution_m / kAngstromM));
+        say(printed("resolution: %.4g Å, ", meta.resolution_m / kAngstromM) +
+            std::string(kResolutionEstimated) + "; --resolution-a sets it");
     }
     const Vec3 extent_m =
         grid.spacing_m.cwiseProduct(Vec3(grid.size[0] - 1.0, grid.size[1] - 1.0, grid.size[2] - 1.0));

@@ -64,6 +64,10 @@ std::vector<PlacedBody> read_poses(std::string_view text, const std::string& nam
         for (const double x : p)
             if (std::abs(x) > kFarthestA) fail("the position is more than 100000 ångström from the origin");
         body.T_model_body = {kAngstromM * Vec3(p[0], p[1], p[2]), Quat(q[3], q[0], q[1], q[2])};
+        if (const auto fixed = b.find("fixed"); fixed != b.end()) {
+            if (!fixed->is_boolean()) fail("fixed is neither true nor false");
+            body.fixed = fixed->get<bool>();
+        }
         if (!(std::abs(body.T_model_body.q.norm() - 1.0) < 1e-3))
             fail("quat_model_body_xyzw does not have length 1");
         body.T_model_body.q.normalize();

@@ -5,6 +5,10 @@
 #include "ipc/base/error.hpp"
 #include "ipc/base/units.hpp"
 #include "ipc/scene/density/subtracted_map.hpp"
+#include "ipc/scene/file/scene_meta.hpp"
+#include "ipc/scene/file/scene_peek.hpp"
+#include "prep/export/poses_file.hpp"
+#include "prep/input/read_file.hpp"
 #include "prep/map/import_map.hpp"
 #include "prep/map/map_statistics.hpp"
 #include "prep/structure/import_structure.hpp"
@@ -12,8 +16,12 @@
 namespace tact {
 namespace {
 
-double resolution_m(const FitInput& input, const DensityGrid& grid) {
+constexpr std::uint64_t kPosesBytesMax = 4 << 20;
+
+// known_m: as the file states it; 0: it does not.
+double resolution_m(const FitInput& input, const DensityGrid& grid, double known_m) {
     if (input.resolution_a) return *input.resolution_a * kAngstromM;
+    if (known_m > 0.0) return known_m;
     const double voxel_a = grid.spacing_m.maxCoeff() / kAngstromM;
     char fix[160];
     std::snprintf(fix, sizeof fix,
@@ -22,11 +30,73 @@ double resolution_m(const FitInput& input, const DensityGrid& grid) {
     throw StartupError("fitting into " + input.map, "the resolution of the map is unknown", fix);
 }
 
+FitData from_files(const FitInput& input) {
+    const auto refuse = [&](const char* why, const char* fix) {
+        throw StartupError("fitting into " + input.map, why, fix);
+    };
+    if (input.models.empty()) refuse("no structure is given", "name PDB or mmCIF files after the map");
+    if (!input.poses.empty() || input.body)
+        refuse("--poses and --body need a baked docking scene",
+               "bake one with tact-prep dock, or leave them out");
+    FitData data;
+    data.grid = import_map(input.map).grid;
+    const MapStatistics statistics = map_statistics(data.grid);
+    data.metrics = {resolution_m(input, data.grid, 0.0), choose_contour(data.grid, statistics).level,
+                    statistics.background, statistics.sigma};
+    const auto read = [](const std::vector<std::string>& paths, std::vector<StructureAt>& list) {
+        for (const std::string& path : paths) {
+            Structure s = import_structure(path).structure;
+            const Pose home = s.home();
+            list.push_back({path, std::move(s), home});
+        }
+    };
+    read(input.models, data.models);
+    read(input.fixed, data.fixed);
+    return data;
+}
+
+FitData from_scene(const FitInput& input) {
+    const auto refuse = [&](const std::string& why, const std::string& fix) {
+        throw StartupError("fitting in the scene " + input.map, why, fix);
+    };
+    if (!input.models.empty() || !input.fixed.empty())
+        refuse("a scene holds its structures; files beside it are not used",
+               "leave them out, or give the map itself in place of the scene");
+    const SceneFile scene = SceneFile::open(input.map);
+    const SceneMeta meta = read_meta(scene);
+    if (meta.body_count == 0)
+        refuse("it has no structures", "use a docking scene, baked with tact-prep dock");
+    FitData data;
+    data.grid = read_grid(scene);
+    data.metrics = {resolution_m(input, data.grid, meta.resolution_m), meta.contour, meta.map_background,
+                    meta.map_sigma};
+    data.resolution_estimated = !input.resolution_a && resolution_is_estimated(read_note(scene));
+    std::vector<PlacedBody> bodies;
+    if (input.poses.empty()) {
+        for (std::uint32_t i = 0; i < meta.body_count; ++i)
+            bodies.push_back({i + 1, i, read_structure(scene, i).home(), false});
+    } else {
+        const std::vector<char> json = read_whole_file(input.poses, kPosesBytesMax);
+        bodies = read_poses({json.data(), json.size()}, input.poses, meta.body_count);
+    }
+    for (const PlacedBody& body : bodies) {
+        const bool wanted = input.body ? body.id == *input.body : !body.fixed;
+        if (!wanted && !body.fixed) continue;
+        Structure s = read_structure(scene, body.structure);
+        const std::string name = s.name;
+        (wanted ? data.models : data.fixed).push_back({name, std::move(s), body.T_model_body});
+    }
+    if (data.models.empty())
+        refuse(input.body ? "it has no body " + std::to_string(*input.body) : "all its bodies are fixed",
+               "name a body of the scene with --body");
+    return data;
+}
+
 }  // namespace
 
 void FitInput::add_to(CLI::App& command) {
     command.add_option("map", map, "Density map: MRC, CCP4 or Situs, also .gz")->required();
-    command.add_option("models", models, "Structures: PDB or mmCIF, also .gz")->required();
+    command.add_option("models", models, "Structures: PDB or mmCIF, also .gz");
     command.add_option("--resolution-a", resolution_a, "Resolution of the map (angstrom)")
         ->check(CLI::PositiveNumber);
     command
@@ -37,29 +107,35 @@ void FitInput::add_to(CLI::App& command) {
         ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
 }
 
+void FitInput::add_scene_to(CLI::App& command) {
+    command.get_option("map")->description(
+        "Density map: MRC, CCP4 or Situs, also .gz; or a baked docking scene");
+    command
+        .add_option("--poses", poses,
+                    "With a scene: JSON file with the poses of its bodies; those with \"fixed\": true are "
+                    "subtracted from the map first")
+        ->type_name("FILE");
+    command.add_option("--body", body, "With a scene: id of the only body to look for")->type_name("ID");
+}
+
 std::vector<std::string> FitInput::paths() const {
     std::vector<std::string> all = models;
     all.push_back(map);
     all.insert(all.end(), fixed.begin(), fixed.end());
+    if (!poses.empty()) all.push_back(poses);
     return all;
 }
 
 std::vector<PlacedStructure> FitData::placed() const {
     std::vector<PlacedStructure> list;
-    for (const Structure& s : fixed) list.push_back({&s, s.home()});
+    for (const StructureAt& s : fixed) list.push_back({&s.structure, s.T_model_body});
     return list;
 }
 
 FitData read_fit_input(const FitInput& input) {
-    FitData data;
-    data.grid = import_map(input.map).grid;
-    const MapStatistics statistics = map_statistics(data.grid);
-    data.metrics = {resolution_m(input, data.grid), choose_contour(data.grid, statistics).level,
-                    statistics.background, statistics.sigma};
-    for (const std::string& path : input.models) data.models.push_back(import_structure(path).structure);
-    for (const std::string& path : input.fixed) data.fixed.push_back(import_structure(path).structure);
+    FitData data = is_scene(input.map) ? from_scene(input) : from_files(input);
     data.rest = data.fixed.empty() ? data.grid
-                                   : subtract_placed(data.grid, statistics.background, data.placed(),
+                                   : subtract_placed(data.grid, data.metrics.background, data.placed(),
                                                      data.metrics.resolution_m)
                                          .grid;
     return data;

@@ -1,7 +1,10 @@
-// What search and refine read: a map with its resolution, and structures that are already placed in it.
+// What search and refine read: a map with its resolution, and structures that are already placed in it. From files, or from a baked
+// docking scene, which is what a window shows.
 #pragma once
 
 #include <CLI/CLI.hpp>
+#include <array>
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>
@@ -12,18 +15,30 @@
 namespace tact {
 
 struct FitInput {
-    std::string map;
+    std::string map;  // a map, or a scene
     std::vector<std::string> models, fixed;
     std::optional<double> resolution_a;
+    // With a scene:
+    std::string poses;                  // of its bodies (prep/export/poses_file.hpp); none: as baked
+    std::optional<std::uint32_t> body;  // the only one to look for; none: each body
 
     void add_to(CLI::App& command);
+    void add_scene_to(CLI::App& command);
     [[nodiscard]] std::vector<std::string> paths() const;  // of all files
 };
 
+// A structure and where it is.
+struct StructureAt {
+    std::string name;  // as given
+    Structure structure;
+    Pose T_model_body;
+};
+
 struct FitData {
-    DensityGrid grid, rest;  // the map as it is, and without the fixed structures
-    FitSettings metrics;     // resolution, background, sigma and contour of the map
-    std::vector<Structure> models, fixed;
+    DensityGrid grid, rest;             // the map as it is, and without the fixed structures
+    FitSettings metrics;                // resolution, background, sigma and contour of the map
+    bool resolution_estimated = false;  // of a scene that was baked without one
+    std::vector<StructureAt> models, fixed;
     [[nodiscard]] std::vector<PlacedStructure> placed() const;  // the fixed ones
 };
 

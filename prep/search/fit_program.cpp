@@ -1,8 +1,12 @@
 #include "prep/search/fit_program.hpp"
 
+#include <signal.h>
+#include <sys/resource.h>
+
 #include <cstdio>
 #include <new>
 
+#include "ipc/base/parent_death.hpp"
 #include "ipc/base/progress.hpp"
 #include "ipc/manual/manual.hpp"
 #include "ipc/version/version.hpp"
@@ -30,6 +34,19 @@ int run_fit_program(const char* name, const std::string& about, void (*set_up)(C
         std::fprintf(stderr, "%s: %s\n", name, error.what());
     }
     return 1;
+}
+
+void ServedProgram::add_to(CLI::App& command) {
+    command
+        .add_option("--ends-with", ends_with,
+                    "Cancel when the process with this id ends (for programs that start this one)")
+        ->type_name("PID");
+    command.add_flag("--background", background, "Yield the processors to other programs");
+}
+
+void ServedProgram::apply() const {
+    if (background) (void)setpriority(PRIO_PROCESS, 0, 10);  // lowering it never fails; threads inherit it
+    if (ends_with != 0 && !end_with_parent(ends_with, SIGTERM)) throw Cancelled{};
 }
 
 }  // namespace tact

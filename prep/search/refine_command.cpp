@@ -10,6 +10,7 @@
 #include "prep/console/console.hpp"
 #include "prep/console/target.hpp"
 #include "prep/search/fit_input.hpp"
+#include "prep/search/fit_program.hpp"
 #include "prep/search/search.hpp"
 
 namespace tact {
@@ -17,6 +18,7 @@ namespace {
 
 struct RefineRequest {
     FitInput input;
+    ServedProgram served;
     std::string objective = "laplacian", json;
     double range_a = 10.0, range_deg = 20.0;
 };
@@ -36,17 +38,17 @@ const char* ended(RefineEnd end) {
 }
 
 // The best place within the range, or the nearest optimum.
-RefineResult by_search(const FitData& data, const Structure& structure, const RefineRequest& request,
+RefineResult by_search(const FitData& data, const StructureAt& model, const RefineRequest& request,
                        const Progress& progress) {
+    const auto& [name, structure, start] = model;
     SearchSettings settings{.resolution_m = data.metrics.resolution_m,
                             .background = data.metrics.background,
                             .laplacian = request.objective == "laplacian",
                             .hits_max = 1};
-    if (!(request.range_a > 0.0)) return refine_place(data.rest, structure, settings, structure.home());
-    settings.near =
-        SearchNear{structure.home(), request.range_a * kAngstromM, request.range_deg * kDegreeRad};
+    if (!(request.range_a > 0.0)) return refine_place(data.rest, structure, settings, start);
+    settings.near = SearchNear{start, request.range_a * kAngstromM, request.range_deg * kDegreeRad};
     RefineResult result;
-    result.score_start = place_score(data.rest, structure, settings, structure.home());
+    result.score_start = place_score(data.rest, structure, settings, start);
     const SearchHit hit = search(data.rest, structure, settings, progress).hits.at(0);
     result.T_model_body = hit.T_model_body;
     result.score = hit.score;
@@ -54,19 +56,20 @@ RefineResult by_search(const FitData& data, const Structure& structure, const Re
     return result;
 }
 
-RefineResult refined(const FitData& data, const Structure& structure, const RefineRequest& request,
+RefineResult refined(const FitData& data, const StructureAt& model, const RefineRequest& request,
                      const Progress& progress) {
     if (request.objective == "laplacian" || request.objective == "correlation-mean")
-        return by_search(data, structure, request, progress);
+        return by_search(data, model, request, progress);
     RefineSettings settings;
     settings.goal = request.objective == "density" ? RefineGoal::mean_density : RefineGoal::correlation_zero;
     settings.resolution_m = data.metrics.resolution_m;
     settings.background_sigma = data.metrics.background / data.metrics.sigma;
-    return refine(DensityMap(data.rest, data.metrics.background, data.metrics.sigma), structure,
-                  structure.home(), settings);
+    return refine(DensityMap(data.rest, data.metrics.background, data.metrics.sigma), model.structure,
+                  model.T_model_body, settings);
 }
 
 void run_refine(const RefineRequest& request) {
+    request.served.apply();
     if (!request.json.empty() && request.json != "-")
         check_target("write the places", request.json, request.input.paths());
     Console console;
@@ -75,29 +78,30 @@ void run_refine(const RefineRequest& request) {
     const FitData data = read_fit_input(request.input);
     nlohmann::ordered_json json{{"map", request.input.map},
                                 {"resolution_a", data.metrics.resolution_m / kAngstromM},
+                                {"resolution_estimated", data.resolution_estimated},
                                 {"objective", request.objective},
                                 {"fixed", request.input.fixed},
                                 {"bodies", nlohmann::ordered_json::array()}};
     std::string table;
     for (std::size_t i = 0; i < data.models.size(); ++i) {
-        const Structure& s = data.models[i];
+        const StructureAt& m = data.models[i];
         const auto count = static_cast<double>(data.models.size());
         const RefineResult r =
-            refined(data, s, request,
+            refined(data, m, request,
                     part(progress, static_cast<double>(i) / count, static_cast<double>(i + 1) / count));
-        const double moved_a = (r.T_model_body.p_m - s.home_com_model_m).norm() / kAngstromM,
-                     turned_deg = r.T_model_body.q.angularDistance(Quat::Identity()) / kDegreeRad;
-        json["bodies"].push_back({{"model", request.input.models[i]},
+        const double moved_a = (r.T_model_body.p_m - m.T_model_body.p_m).norm() / kAngstromM,
+                     turned_deg = r.T_model_body.q.angularDistance(m.T_model_body.q) / kDegreeRad;
+        json["bodies"].push_back({{"model", m.name},
                                   {"score_before", r.score_start},
                                   {"score_after", r.score},
                                   {"moved_a", moved_a},
                                   {"turned_deg", turned_deg},
                                   {"end", ended(r.end)},
-                                  {"matrix", matrix_of(s, r.T_model_body)}});
+                                  {"matrix", matrix_of(m.structure, r.T_model_body)}});
         char line[400];
         std::snprintf(line, sizeof line, "%s: %s %.4f to %.4f, moved %.2f Å, turned %.2f degrees, %s\n",
-                      request.input.models[i].c_str(), request.objective.c_str(), r.score_start, r.score,
-                      moved_a, turned_deg, ended(r.end));
+                      m.name.c_str(), request.objective.c_str(), r.score_start, r.score, moved_a, turned_deg,
+                      ended(r.end));
         table += line;
     }
     console.clear();
@@ -111,6 +115,8 @@ void run_refine(const RefineRequest& request) {
 void set_up_refine(CLI::App& app) {
     const auto request = std::make_shared<RefineRequest>();
     request->input.add_to(app);
+    request->input.add_scene_to(app);
+    request->served.add_to(app);
     app.add_option(
            "--objective", request->objective,
            "laplacian: correlation about the mean of the Laplacians of the densities; correlation-mean, "

@@ -9,6 +9,7 @@
 #include "prep/console/console.hpp"
 #include "prep/console/target.hpp"
 #include "prep/search/fit_input.hpp"
+#include "prep/search/fit_program.hpp"
 #include "prep/search/place_together.hpp"
 #include "prep/search/search_report.hpp"
 
@@ -17,6 +18,7 @@ namespace {
 
 struct SearchRequest {
     FitInput input;
+    ServedProgram served;
     std::string objective = "laplacian", json, csv;
     std::size_t rotations_max = 4000, hits_max = 20;
     unsigned threads = 0;
@@ -49,11 +51,12 @@ SearchReport search_files(const SearchRequest& request, const Progress& progress
                                   .threads = request.threads};
     SearchReport out{
         request.input.map, request.objective, settings.resolution_m / kAngstromM, request.input.fixed, {}};
+    out.resolution_estimated = data.resolution_estimated;
     const std::size_t models = data.models.size();
     for (std::size_t i = 0; i < models; ++i) {
         SearchedModel& m = out.models.emplace_back();
-        m.model = request.input.models[i];
-        m.structure = data.models[i];
+        m.model = data.models[i].name;
+        m.structure = data.models[i].structure;
         if (request.together) continue;
         const auto begin = std::chrono::steady_clock::now();
         const auto count = static_cast<double>(models);
@@ -63,7 +66,9 @@ SearchReport search_files(const SearchRequest& request, const Progress& progress
     }
     if (request.together) {
         const auto begin = std::chrono::steady_clock::now();
-        PlacedTogether together = place_together(data.rest, data.models, settings, progress);
+        std::vector<Structure> structures;
+        for (const SearchedModel& m : out.models) structures.push_back(m.structure);
+        PlacedTogether together = place_together(data.rest, structures, settings, progress);
         for (std::size_t i = 0; i < models; ++i) out.models[i].found = std::move(together.found[i]);
         out.together_correlation = together.correlation;
         for (SearchedModel& m : out.models) m.seconds = seconds_since(begin);
@@ -73,6 +78,7 @@ SearchReport search_files(const SearchRequest& request, const Progress& progress
 }
 
 void run_search(const SearchRequest& request) {
+    request.served.apply();
     const std::vector<std::string> inputs = request.input.paths();
     for (const std::string& path : {request.json, request.csv})
         if (!path.empty() && path != "-") check_target("write the hits", path, inputs);
@@ -95,6 +101,8 @@ void run_search(const SearchRequest& request) {
 void set_up_search(CLI::App& app) {
     const auto request = std::make_shared<SearchRequest>();
     request->input.add_to(app);
+    request->input.add_scene_to(app);
+    request->served.add_to(app);
     app.add_option("--objective", request->objective,
                    "Correlation about the mean of the Laplacians of the densities, or of the densities")
         ->check(CLI::IsMember({"laplacian", "density"}))

@@ -30,6 +30,9 @@ std::string quoted(const std::string& field) {
 
 std::string as_table(const SearchReport& r) {
     std::string out;
+    if (r.resolution_estimated)
+        out += text("the resolution of %.1f Å is an estimate, four voxels: give it with --resolution-a\n",
+                    r.resolution_a);
     for (const SearchedModel& m : r.models) {
         out += m.model + ": " +
                text("%zu atoms, %zu orientations, within %.1f degrees, searched at %.1f Å, %.1f s\n",
@@ -57,6 +60,7 @@ std::string as_table(const SearchReport& r) {
 nlohmann::ordered_json as_json(const SearchReport& r) {
     nlohmann::ordered_json json{{"map", r.map},
                                 {"resolution_a", r.resolution_a},
+                                {"resolution_estimated", r.resolution_estimated},
                                 {"objective", r.objective},
                                 {"fixed", r.fixed},
                                 {"hits", nlohmann::ordered_json::array()},

@@ -64,6 +64,9 @@ struct ModelBodies {
     std::uint64_t others = 0;         // increases when a body other than the active one changes
     std::uint32_t options = 0;        // options in use; the model defines the bits
     std::uint32_t options_asked = 0;  // options ordered; they differ from options during a rebuild
+    // Places found for the held body, the one that it leans to, and the size of the pull towards them.
+    std::uint32_t places = 0, place = 0;
+    double pull_n = 0.0;
 };
 
 // An order of the user.

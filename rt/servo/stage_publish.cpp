@@ -40,6 +40,9 @@ void publish_bodies(const CycleState& c, Latest<BodiesTopic>& topic) noexcept {
     b.grips = bodies.grips;
     b.placements = bodies.placements;
     b.options = bodies.options;
+    b.places = bodies.places;
+    b.place = bodies.place;
+    b.pull_n = static_cast<float>(bodies.pull_n);
     b.building = c.mailbox.building ? 1 : 0;
     for (std::uint32_t i = 0; i < b.count; ++i) {
         put(b.body[i].pos_model_m, bodies.T_model_body[i].p_m);

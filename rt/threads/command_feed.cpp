@@ -36,6 +36,7 @@ bool read_body_order(const CommandTopic& command, ServoOrder& order) {
         case CommandKind::fix_body:
             return id && yes_or_no;
         case CommandKind::place_body:
+        case CommandKind::add_found_place:
             return id && read_pose(command, order);
         case CommandKind::add_body:
             return command.body <= 0xFFFFU && read_pose(command, order);

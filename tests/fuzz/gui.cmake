@@ -11,3 +11,5 @@ tact_fuzz(stage_fuzz SOURCES fuzz/stage_fuzz.cpp ${CMAKE_SOURCE_DIR}/gui/stereo/
         ${CMAKE_SOURCE_DIR}/gui/stereo/stage_file_write.cpp ${CMAKE_SOURCE_DIR}/gui/base/toml_keys.cpp
         ${CMAKE_SOURCE_DIR}/gui/render/screen.cpp ${CMAKE_SOURCE_DIR}/gui/render/camera.cpp
     USES base SYSTEM tomlplusplus::tomlplusplus)
+tact_fuzz(found_places_fuzz SOURCES fuzz/found_places_fuzz.cpp ${CMAKE_SOURCE_DIR}/gui/docking/found_places.cpp
+    USES base SYSTEM nlohmann_json::nlohmann_json)

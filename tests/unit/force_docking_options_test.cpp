@@ -232,6 +232,99 @@ TEST(DockingOptions, an_order_between_adopt_and_step_does_not_interrupt_the_forc
     EXPECT_LT((after.wrench_world.force_n - before.wrench_world.force_n).norm(), 0.05);
 }
 
+bool add_place(ForceModel& model, std::uint32_t body, const Pose& place) {
+    ModelOrder order;
+    order.kind = ModelOrder::Kind::setting;
+    order.command = static_cast<std::uint8_t>(CommandKind::add_found_place);
+    order.body = body;
+    order.T_model_body = place;
+    return model.order(order);
+}
+
+Pose beside_home(double x_a) {
+    Pose place = scene().structures[0].home();
+    place.p_m.y() += x_a * kA;
+    return place;
+}
+
+TEST(DockingOptions, places_found_pull_their_own_body_gently_and_begin_smoothly) {
+    const auto model = make_model();
+    ToolState tool;
+    model->reset(tool);
+    Vec3 before = Vec3::Zero();
+    const auto steps = [&] {
+        double most = 0.0;
+        for (int i = 0; i < 2 * ForceFade::ramp_steps(1e-3); ++i) {
+            const Vec3 f = model->step(tool, Budget{}).wrench_world.force_n;
+            most = std::max(most, (f - before).norm());
+            before = f;
+        }
+        return most;
+    };
+    (void)steps();
+    const Pose here = model->bodies().T_model_body[0];
+    const Wrench without = force_at(*model, here);
+    const ModelStiffness stiffness = model->stiffness();
+    ASSERT_TRUE(set_option(*model, kDockingPull, true));
+    EXPECT_FALSE(model->stale());
+    EXPECT_EQ(model->bodies().options, kDockingPull);
+    EXPECT_EQ(force_at(*model, here).force_n, without.force_n);  // no place yet
+    ASSERT_TRUE(add_place(*model, 1, beside_home(-60.0)));
+    ASSERT_TRUE(add_place(*model, 1, beside_home(30.0)));
+    EXPECT_EQ(model->bodies().places, 2U);
+    EXPECT_LT(steps(), 0.06);  // as any change of the force, without a jump
+    const Vec3 pull = force_at(*model, here).force_n - without.force_n;
+    EXPECT_GT(pull.y(), 0.3);  // to the nearer one
+    EXPECT_LE(pull.norm(), BasinPull::kForce_n);
+    EXPECT_EQ(model->bodies().place, 1U);
+    EXPECT_NEAR(model->bodies().pull_n, pull.norm(), 1e-9);
+    EXPECT_LT((before - without.force_n - pull).norm(), 1e-6);
+    EXPECT_NEAR(model->stiffness().force_n_m - stiffness.force_n_m, BasinPull::kStiffness_n_m, 1e-6);
+    EXPECT_GT(model->stiffness().torque_n_m_rad, stiffness.torque_n_m_rad);
+
+    // It survives a rebuild and a failed rebuild.
+    ASSERT_TRUE(set_option(*model, kDockingLaplacian, true));
+    const auto next = rebuilt(*model);
+    EXPECT_EQ(next->bodies().options, kDockingPull | kDockingLaplacian);
+    EXPECT_EQ(next->bodies().places, 2U);
+    model->give_up();
+    EXPECT_EQ(model->bodies().options, kDockingPull);
+
+    // Another body is not pulled, until it has places of its own.
+    ModelOrder select;
+    select.body = 2;
+    ASSERT_TRUE(model->order(select));
+    EXPECT_EQ(model->bodies().places, 0U);
+    const Pose other = model->bodies().T_model_body[1];
+    const auto plain = make_model();
+    ASSERT_TRUE(plain->order(select));
+    EXPECT_EQ(force_at(*model, other).force_n, force_at(*plain, other).force_n);
+    ASSERT_TRUE(add_place(*model, 2, beside_home(30.0)));
+    EXPECT_EQ(model->bodies().places, 1U);
+    EXPECT_NE(force_at(*model, other).force_n, force_at(*plain, other).force_n);
+    ASSERT_TRUE(set_option(*model, kDockingPull, false));
+    EXPECT_EQ(force_at(*model, other).force_n, force_at(*plain, other).force_n);
+}
+
+TEST(DockingOptions, impossible_places_are_refused) {
+    const auto model = make_model();
+    EXPECT_FALSE(add_place(*model, 9, beside_home(0.0)));
+    Pose far = beside_home(0.0);
+    far.p_m.x() = 1.0;
+    EXPECT_FALSE(add_place(*model, 1, far));
+    far.p_m.x() = std::nan("");
+    EXPECT_FALSE(add_place(*model, 1, far));
+    EXPECT_EQ(model->bodies().places, 0U);
+    for (std::size_t i = 0; i < BasinPull::kMax; ++i) EXPECT_TRUE(add_place(*model, 1, beside_home(0.0)));
+    EXPECT_FALSE(add_place(*model, 1, beside_home(0.0)));
+    EXPECT_EQ(model->bodies().places, BasinPull::kMax);
+    ModelOrder clear;
+    clear.kind = ModelOrder::Kind::setting;
+    clear.command = static_cast<std::uint8_t>(CommandKind::clear_found_places);
+    EXPECT_TRUE(model->order(clear));
+    EXPECT_EQ(model->bodies().places, 0U);
+}
+
 TEST(DockingOptions, force_scale_scales_the_clash_too) {
     DockingSettings settings;
     settings.force_scale = 0.5;
@@ -249,7 +342,8 @@ TEST(DockingOptions, a_command_turns_its_option_on_and_off) {
     order.kind = ModelOrder::Kind::setting;
     for (const auto& [command, option] : {std::pair(CommandKind::set_clash, kDockingClash),
                                           std::pair(CommandKind::set_subtraction, kDockingSubtraction),
-                                          std::pair(CommandKind::set_laplacian, kDockingLaplacian)}) {
+                                          std::pair(CommandKind::set_laplacian, kDockingLaplacian),
+                                          std::pair(CommandKind::set_pull, kDockingPull)}) {
         order.command = static_cast<std::uint8_t>(command);
         order.on = true;
         ASSERT_TRUE(model->order(order));

@@ -20,7 +20,7 @@ if(TACT_GUI)
             topics shm gui_stereo SYSTEM nlohmann_json::nlohmann_json TIMEOUT 300)
     tact_tests(gui_docking_tests SOURCES
             unit/gui_view_test.cpp unit/gui_fit_test.cpp unit/gui_history_test.cpp unit/gui_shapes_test.cpp
-            unit/gui_contour_test.cpp unit/gui_link_test.cpp
+            unit/gui_contour_test.cpp unit/gui_link_test.cpp unit/gui_placement_test.cpp
         USES gui_docking gui_render prep_mesh topics shm scene base gui_surface prep_surface prep_synthetic gui_window
             gui_link gui_dashboard SYSTEM rapidcheck CLI11::CLI11 TIMEOUT 300)
     tact_tests(gui_stereo_tests SOURCES
@@ -42,6 +42,7 @@ if(TACT_GUI)
         USES gui_system gui_window_files gui_dashboard scene base gui_render gui_window TIMEOUT 300)
     target_compile_definitions(gui_state_tests PRIVATE TACT_FOLDER="$<TARGET_FILE_DIR:tact>")
     add_dependencies(gui_state_tests tact tact-prep)
-    target_compile_definitions(gui_docking_tests PRIVATE TACT_PREP="$<TARGET_FILE:tact-prep>")
-    add_dependencies(gui_docking_tests tact-prep)
+    target_compile_definitions(gui_docking_tests PRIVATE TACT_PREP="$<TARGET_FILE:tact-prep>"
+        TACT_SEARCH="$<TARGET_FILE:tact-search>" TACT_REFINE="$<TARGET_FILE:tact-refine>")
+    add_dependencies(gui_docking_tests tact-prep tact-search tact-refine)
 endif()

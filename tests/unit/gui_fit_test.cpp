@@ -89,7 +89,17 @@ TEST(FitWorker, reports_an_assumed_resolution) {
     worker.request(at_home(*c));
     const FitOutcome outcome = next(worker, {});
     EXPECT_TRUE(outcome.resolution_assumed);
-    EXPECT_NEAR(outcome.resolution_m, 3.0 * 40.0 / 23.0 * 1e-10, 1e-15);
+    EXPECT_NEAR(outcome.resolution_m, 4.0 * 40.0 / 23.0 * 1e-10, 1e-15);
+}
+
+TEST(FitWorker, reports_a_resolution_that_the_bake_estimated) {
+    const auto c = content();
+    c->note = "map: x\nresolution: 12 Å, " + std::string(kResolutionEstimated) + "; --resolution-a sets it\n";
+    FitWorker worker(c, Duration(0));
+    worker.request(at_home(*c));
+    const FitOutcome outcome = next(worker, {});
+    EXPECT_TRUE(outcome.resolution_assumed);
+    EXPECT_EQ(outcome.resolution_m, 12e-10);
 }
 
 TEST(FitWorker, ends_at_once_without_a_request) { const FitWorker worker(content()); }

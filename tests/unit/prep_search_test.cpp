@@ -8,6 +8,7 @@
 
 #include "ipc/base/random.hpp"
 #include "ipc/base/units.hpp"
+#include "prep/docking/bake_docking.hpp"
 #include "prep/search/fit_input.hpp"
 #include "prep/search/place_together.hpp"
 #include "prep/search/rotation_set.hpp"
@@ -157,7 +158,10 @@ TEST(FitInput, a_map_without_a_resolution_is_refused_with_a_range_from_its_voxel
     const std::vector<char> bytes = sample::Mrc{}.bytes();  // voxels of 2, 3 and 4 angstrom
     std::ofstream(map, std::ios::binary).write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
     const std::string error = sample::error_of([&] {
-        (void)read_fit_input({.map = map.string(), .models = {"none.pdb"}, .fixed = {}, .resolution_a = {}});
+        FitInput input;
+        input.map = map.string();
+        input.models = {"none.pdb"};
+        (void)read_fit_input(input);
     });
     std::filesystem::remove(map);
     EXPECT_NE(error.find("--resolution-a; with voxels of 4.00 Å it is probably between 8.0 and 20.0"),
@@ -210,6 +214,86 @@ TEST(SearchReport, the_matrix_leads_from_the_file_to_the_map_and_names_are_quote
     m.found.hits.clear();
     const std::string none = as_csv(report);
     EXPECT_EQ(std::count(none.begin(), none.end(), ','), 20 + 21);  // a comma in the name of the map
+}
+
+class FitInScene : public testing::Test {
+protected:
+    FitInScene() {
+        char name[] = "/tmp/tact-fit-scene-XXXXXX";
+        folder_ = mkdtemp(name);
+        std::filesystem::remove(scene());
+        DockingInput baked{.title = "two", .grid = ring().grid, .structures = ring().subunits};
+        baked.structures.resize(2);
+        baked.vertices_max = 2000;
+        SceneWriter out;
+        bake_docking(baked, out);
+        out.write(scene());
+    }
+    ~FitInScene() override { std::filesystem::remove_all(folder_); }
+    [[nodiscard]] std::string scene() const { return folder_ + "/two.tact"; }
+    [[nodiscard]] FitInput with_poses(const std::string& fixed) const {
+        const std::string path = folder_ + "/poses.json";
+        std::ofstream(path) << R"({"bodies": [
+            {"id": 1, "structure": 0, "pos_model_a": [1, 2, 3], "quat_model_body_xyzw": [0, 0, 0, 1], "fixed": )"
+                            << fixed << R"(},
+            {"id": 7, "structure": 1, "pos_model_a": [4, 5, 6], "quat_model_body_xyzw": [1, 0, 0, 0]}]})";
+        FitInput input;
+        input.map = scene();
+        input.poses = path;
+        return input;
+    }
+    std::string folder_;
+};
+
+TEST_F(FitInScene, a_scene_gives_its_bodies_and_subtracts_the_fixed_ones) {
+    FitInput input;
+    input.map = scene();
+    const FitData as_baked = read_fit_input(input);
+    ASSERT_EQ(as_baked.models.size(), 2U);
+    EXPECT_TRUE(as_baked.resolution_estimated);  // nobody gave one
+    EXPECT_EQ(as_baked.rest.values, as_baked.grid.values);
+    EXPECT_EQ(as_baked.models[1].T_model_body.p_m, ring().subunits[1].home_com_model_m);
+
+    input = with_poses("true");
+    input.resolution_a = 12.0;
+    const FitData posed = read_fit_input(input);
+    EXPECT_FALSE(posed.resolution_estimated);
+    ASSERT_EQ(posed.models.size(), 1U);
+    EXPECT_NEAR(posed.models[0].T_model_body.p_m.z(), 6e-10, 1e-20);
+    EXPECT_EQ(posed.models[0].T_model_body.q.x(), 1.0);
+    ASSERT_EQ(posed.fixed.size(), 1U);
+    EXPECT_NEAR(posed.placed()[0].T_model_body.p_m.y(), 2e-10, 1e-20);
+    EXPECT_NE(posed.rest.values, posed.grid.values);
+    EXPECT_NEAR(posed.metrics.resolution_m, 12e-10, 1e-20);
+}
+
+TEST_F(FitInScene, one_body_is_taken_by_its_id_even_if_it_is_fixed) {
+    FitInput input = with_poses("true");
+    input.body = 1;
+    const FitData data = read_fit_input(input);
+    ASSERT_EQ(data.models.size(), 1U);
+    EXPECT_NEAR(data.models[0].T_model_body.p_m.x(), 1e-10, 1e-20);
+    EXPECT_TRUE(data.fixed.empty());  // the other one is free
+}
+
+TEST_F(FitInScene, what_does_not_fit_is_refused_with_a_reason) {
+    const auto error = [](const FitInput& input) {
+        return sample::error_of([&] { (void)read_fit_input(input); });
+    };
+    FitInput input = with_poses("true");
+    input.body = 3;
+    EXPECT_NE(error(input).find("no body 3"), std::string::npos);
+    input = with_poses("3");
+    EXPECT_NE(error(input).find("neither true nor false"), std::string::npos);
+    input = with_poses("true");
+    input.models = {"a.pdb"};
+    EXPECT_NE(error(input).find("a scene holds its structures"), std::string::npos);
+    input = {};
+    input.map = "/dev/null";
+    EXPECT_NE(error(input).find("no structure is given"), std::string::npos);
+    input.models = {"a.pdb"};
+    input.poses = "x";
+    EXPECT_NE(error(input).find("need a baked docking scene"), std::string::npos);
 }
 
 }  // namespace

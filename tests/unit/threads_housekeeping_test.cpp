@@ -64,12 +64,15 @@ TEST(Housekeeping, passes_orders_to_bodies_with_valid_poses) {
     CommandTopic select = command(CommandKind::select_body);
     select.body = kNoBody;
     EXPECT_EQ(check_command(select, kPaths).result, CommandResult::none);
+    CommandTopic found = place;
+    found.kind = static_cast<std::uint16_t>(CommandKind::add_found_place);
+    EXPECT_EQ(check_command(found, kPaths).order.pos_model_m[1], 2e-9);
     CommandTopic add = place;
     add.kind = static_cast<std::uint16_t>(CommandKind::add_body);
     add.body = 0;
     EXPECT_EQ(check_command(add, kPaths).result, CommandResult::none);
-    for (const CommandKind kind :
-         {CommandKind::set_clash, CommandKind::set_subtraction, CommandKind::set_laplacian})
+    for (const CommandKind kind : {CommandKind::set_clash, CommandKind::set_subtraction,
+                                   CommandKind::set_laplacian, CommandKind::set_pull})
         EXPECT_EQ(check_command(command(kind, 1.0), kPaths).result, CommandResult::none);
     CommandTopic filter = command(CommandKind::set_detail_filter, 2.0);
     filter.body = 1;
@@ -93,7 +96,8 @@ TEST(Housekeeping, refuses_orders_to_impossible_bodies) {
         return check_command(c, kPaths).result;
     };
     EXPECT_EQ(judged(CommandKind::select_body, 0), CommandResult::refused_value);
-    for (const CommandKind kind : {CommandKind::fix_body, CommandKind::place_body, CommandKind::remove_body})
+    for (const CommandKind kind : {CommandKind::fix_body, CommandKind::place_body, CommandKind::remove_body,
+                                   CommandKind::add_found_place})
         for (const std::uint32_t id : {0U, kNoBody})
             EXPECT_EQ(judged(kind, id), CommandResult::refused_value);
     EXPECT_EQ(judged(CommandKind::fix_body, 1, 0.5), CommandResult::refused_value);
@@ -119,7 +123,7 @@ TEST(Housekeeping, random_bytes_are_refused_or_pass_with_values_in_range) {
         CommandTopic c{};
         auto* const bytes = reinterpret_cast<unsigned char*>(&c);
         for (std::size_t k = 0; k < sizeof c; ++k) bytes[k] = static_cast<unsigned char>(random());
-        c.kind = static_cast<std::uint16_t>(c.kind % 18);
+        c.kind = static_cast<std::uint16_t>(c.kind % (static_cast<unsigned>(kLastCommand) + 2));
         const CheckedCommand checked = check_command(c, kPaths);
         if (checked.result == CommandResult::none) {
             ASSERT_LT(checked.order.index, 2U);

@@ -47,6 +47,14 @@ void check_weights(const BytesIn& in, const std::vector<float>& weights, const s
 
 }  // namespace
 
+double radius_of_gyration_m(const Structure& s) {
+    double sum_m2 = 0.0;
+    for (std::size_t i = 0; i < s.size(); ++i)
+        sum_m2 += static_cast<double>(s.mass_fraction[i]) *
+                  Eigen::Vector3f(s.x_m[i], s.y_m[i], s.z_m[i]).cast<double>().squaredNorm();
+    return std::sqrt(sum_m2);
+}
+
 void write_structure(SceneWriter& out, std::uint32_t index, const Structure& structure) {
     BodyHeader header{};
     header.atoms = static_cast<std::uint32_t>(structure.size());

@@ -33,6 +33,9 @@ struct Structure {
     [[nodiscard]] Pose home() const { return {home_com_model_m, Quat::Identity()}; }
 };
 
+// Mass-weighted root mean square distance of the atoms from the centre of mass.
+[[nodiscard]] double radius_of_gyration_m(const Structure& structure);
+
 // Vector quantization of a structure: level l has points.size() vectors; sizes rise with l. The all-atom
 // set is not stored; it is the level above the last. Small structures have no levels.
 struct Codebook {

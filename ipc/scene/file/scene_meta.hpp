@@ -6,6 +6,7 @@
 #include <array>
 #include <cstdint>
 #include <string>
+#include <string_view>
 #include <type_traits>
 
 #include "ipc/base/pose.hpp"
@@ -44,5 +45,10 @@ void write_meta(SceneWriter& out, const SceneMeta& meta, const std::string& note
 SceneMeta read_meta(const SceneFile& file);
 // Provenance as lines "key: value": source files, the origin rule applied, sizes, times.
 std::string read_note(const SceneFile& file);
+// In the note's line on the resolution, if nobody gave one. Programs that judge places by it must say so.
+inline constexpr std::string_view kResolutionEstimated = "estimated as four voxels";
+[[nodiscard]] inline bool resolution_is_estimated(std::string_view note) {
+    return note.find(kResolutionEstimated) != std::string_view::npos;
+}
 
 }  // namespace tact

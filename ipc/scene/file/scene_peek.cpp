@@ -23,6 +23,13 @@ struct PeekedFile {
 
 }  // namespace
 
+bool is_scene(const std::filesystem::path& path) noexcept {
+    const PeekedFile file{::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK)};
+    char magic[sizeof scene_layout::kMagic];
+    return file.fd >= 0 && ::pread(file.fd, magic, sizeof magic, 0) == static_cast<ssize_t>(sizeof magic) &&
+           std::memcmp(magic, scene_layout::kMagic, sizeof magic) == 0;
+}
+
 SceneMeta peek_scene(const std::filesystem::path& path) {
     using namespace scene_layout;
     const auto fail = [&](const std::string& why) {

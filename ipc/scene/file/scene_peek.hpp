@@ -11,6 +11,8 @@
 
 namespace tact {
 
+// True if the file begins as a scene does; false also if it cannot be read.
+[[nodiscard]] bool is_scene(const std::filesystem::path& path) noexcept;
 [[nodiscard]] SceneMeta peek_scene(const std::filesystem::path& path);
 
 }  // namespace tact

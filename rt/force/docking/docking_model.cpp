@@ -7,31 +7,14 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <typeinfo>
 #include <utility>
 
 #include "rt/force/docking/reach.hpp"
-
-#include "ipc/topics/command.hpp"
 
 namespace tact {
 namespace {
 
 constexpr float kLevelJump = 0.011F;  // change of the knob in one step; its slew rate is below
-
-// 0: a command for another system.
-std::uint32_t option_of(std::uint8_t command) noexcept {
-    switch (static_cast<CommandKind>(command)) {
-        case CommandKind::set_clash:
-            return kDockingClash;
-        case CommandKind::set_subtraction:
-            return kDockingSubtraction;
-        case CommandKind::set_laplacian:
-            return kDockingLaplacian;
-        default:
-            return 0;
-    }
-}
 
 }  // namespace
 
@@ -49,6 +32,7 @@ DockingModel::DockingModel(const SceneMeta& meta, const DensityGrid& grid,
     clash_gains_.stiffness_n_m *= settings.force_scale;
     clash_gains_.stiffness_n_m_max *= settings.force_scale;
     clash_gains_.torque_n_m_rad_max *= settings.force_scale;
+    pull_scale_ = settings.force_scale;
     error_scale_.fill(1.0);
     bends_scale_.fill({1.0, 1.0});
 }
@@ -57,6 +41,7 @@ DockingModel::DockingModel(const DockingModel& like, const ModelBodies& bodies)
     : parts_(like.parts_),
       energy_j_per_sigma_(like.energy_j_per_sigma_),
       clash_gains_(like.clash_gains_),
+      pull_scale_(like.pull_scale_),
       bodies_({}, static_cast<std::uint32_t>(parts_->structures.size())) {
     const std::uint32_t asked = bodies.options_asked & kForceMapOptions;
     const std::uint32_t asked_whole = asked & ~kDockingSubtraction;
@@ -125,15 +110,37 @@ ModelStiffness DockingModel::stiffness() const noexcept {
     }
     const double scale_2 = parts_->meta.world_per_model * parts_->meta.world_per_model;
     const ModelStiffness clash = of_clash();
-    return {.force_n_m = energy_j_per_sigma_ / scale_2 * bends.by_shift + clash.force_n_m,
-            .torque_n_m_rad = energy_j_per_sigma_ * bends.by_turn + clash.torque_n_m_rad};
+    ModelStiffness pull;
+    if (is_pulled())
+        pull = BasinPull::stiffness(parts_->gyration_m[bodies_.structure()], parts_->meta.world_per_model);
+    return {.force_n_m = energy_j_per_sigma_ / scale_2 * bends.by_shift + clash.force_n_m +
+                         pull_scale_ * pull.force_n_m,
+            .torque_n_m_rad = energy_j_per_sigma_ * bends.by_turn + clash.torque_n_m_rad +
+                              pull_scale_ * pull.torque_n_m_rad};
 }
 
 StepResult DockingModel::evaluate(const Pose& T_model_body, const Budget& budget) const noexcept {
     if (T_model_body.finite() && !bodies_.in_hand()) return {};
     StepResult result = blend().evaluate(T_model_body, budget);
     static_cast<void>(add_clash(T_model_body, result));
+    static_cast<void>(add_pull(T_model_body, result));
     return result;
+}
+
+bool DockingModel::is_pulled() const noexcept {
+    return (bodies_.list().options_asked & kDockingPull) != 0 && basins_.count() > 0 && bodies_.in_hand() &&
+           basins_.body() == bodies_.active_id();
+}
+
+BasinPull::Pull DockingModel::add_pull(const Pose& T_model_body, StepResult& result) const noexcept {
+    if (!is_pulled() || !T_model_body.finite()) return {};
+    BasinPull::Pull pull =
+        basins_.at(T_model_body, parts_->gyration_m[bodies_.structure()], parts_->meta.world_per_model);
+    pull.wrench_world.force_n *= pull_scale_;
+    pull.wrench_world.torque_n_m *= pull_scale_;
+    result.wrench_world.force_n += pull.wrench_world.force_n;
+    result.wrench_world.torque_n_m += pull.wrench_world.torque_n_m;
+    return pull;
 }
 
 bool DockingModel::add_clash(const Pose& T_model_body, StepResult& result) const noexcept {
@@ -190,6 +197,7 @@ StepResult DockingModel::feel(const ToolState& tool, const Budget& budget) noexc
     if (!bodies_.in_hand()) {
         fade_.rest();
         clutched_ = true;
+        bodies_.list().pull_n = 0.0;
         return {};
     }
     const Pose& hand = tool.T_world_tool;
@@ -208,6 +216,9 @@ StepResult DockingModel::feel(const ToolState& tool, const Budget& budget) noexc
     }
     StepResult clash;  // computed first: only the density can be shortened when time runs out
     at_others_ = add_clash(body, clash);
+    const BasinPull::Pull pull = add_pull(body, clash);
+    bodies_.list().place = pull.nearest;
+    bodies_.list().pull_n = held ? 0.0 : pull.wrench_world.force_n.norm();
     StepResult result = blend().evaluate(body, budget, &kept_);
     audit(result, body);
     stiffness_audit_.step(blend(), budget.fidelity, body, step_s(), bends_scale_[bodies_.structure()]);
@@ -242,113 +253,6 @@ void DockingModel::audit(const StepResult& result, const Pose& T_model_body) noe
                      result.load.items))
         return;
     if (audit_.bound() > 0.0) scale = std::max(scale, kErrorMargin * audit_.off() / audit_.bound());
-}
-
-// Fades the present wrench out; the new force then fades in.
-void DockingModel::fade(const ForceFade& shown) noexcept {
-    fade_.follow(shown);
-    glide_.restart();
-    audit_.restart();
-    stiffness_audit_.restart();
-    stepped_ = false;
-}
-
-// Fades as above; the next good step takes a new grip.
-void DockingModel::let_go() noexcept {
-    fade(fade_);
-    clutched_ = true;
-}
-
-// Selects the map with the requested options, if it exists. A map made with another body in the hand has the present
-// body subtracted, so it must not be used. True: the map changed.
-bool DockingModel::choose_density() noexcept {
-    const ForceMap* const before = force_map_;
-    const std::uint32_t asked = bodies_.list().options_asked & kForceMapOptions;
-    const bool fits =
-        (built_->options & kDockingSubtraction) == 0 || built_->active_id == bodies_.active_id();
-    if (fits && built_->options == asked) {
-        force_map_ = built_.get();
-    } else if (!fits || whole_->options == asked) {
-        force_map_ = whole_.get();
-    }
-    show_options();
-    return force_map_ != before;
-}
-
-void DockingModel::show_options() noexcept {
-    bodies_.list().options = force_map_->options | (bodies_.list().options_asked & kDockingClash);
-}
-
-bool DockingModel::set_options(std::uint32_t options, bool on) noexcept {
-    if ((options & ~(kForceMapOptions | kDockingClash)) != 0 || options == 0) return false;
-    std::uint32_t& asked = bodies_.list().options_asked;
-    const std::uint32_t before = asked;
-    asked = on ? asked | options : asked & ~options;
-    const bool another = choose_density();
-    if (another || ((before ^ asked) & kDockingClash) != 0) fade(fade_);
-    return true;
-}
-
-bool DockingModel::order(const ModelOrder& order) noexcept {
-    if (order.kind == ModelOrder::Kind::setting) return set_options(option_of(order.command), order.on);
-    ModelOrder checked = order;
-    if (order.kind == ModelOrder::Kind::place || order.kind == ModelOrder::Kind::add) {
-        if (!is_placeable(parts_->meta, order.T_model_body)) return false;
-        checked.T_model_body.q.normalize();
-    }
-    switch (bodies_.order(checked)) {
-        case DockingBodies::Change::refused:
-            return false;
-        case DockingBodies::Change::moved:
-            let_go();
-            break;
-        case DockingBodies::Change::taken:
-            let_go();
-            static_cast<void>(choose_density());
-            break;
-        case DockingBodies::Change::others:
-            if ((bodies_.list().options & kDockingClash) != 0) fade(fade_);
-            break;
-        case DockingBodies::Change::none:
-            break;
-    }
-    return true;
-}
-
-bool DockingModel::stale() const noexcept {
-    if (!bodies_.in_hand()) return false;
-    const std::uint32_t asked = bodies_.list().options_asked & kForceMapOptions;
-    if (asked != force_map_->options) return true;
-    return (asked & kDockingSubtraction) != 0 && force_map_->others != bodies_.list().others;
-}
-
-std::unique_ptr<ForceModel> DockingModel::rebuild(const ModelBodies& bodies) const {
-    return std::unique_ptr<ForceModel>(new DockingModel(*this, bodies));
-}
-
-bool DockingModel::adopt(const ForceModel& old) noexcept {
-    if (typeid(old) != typeid(*this)) return false;
-    const auto& before = static_cast<const DockingModel&>(old);
-    if (before.parts_ != parts_) return false;
-    bodies_ = before.bodies_;
-    com_from_tool_world_m_ = before.com_from_tool_world_m_;
-    q_tool_body_ = before.q_tool_body_;
-    clutched_ = before.clutched_;  // keeps the state of the clutch
-    error_scale_ = before.error_scale_;
-    bends_scale_ = before.bends_scale_;
-    fade(before.fade_);
-    static_cast<void>(choose_density());
-    return true;
-}
-
-void DockingModel::give_up() noexcept {
-    // The present map stays, unless it was made for another body in the hand or for other bodies around it.
-    const bool stays =
-        (force_map_->options & kDockingSubtraction) == 0 ||
-        (force_map_->active_id == bodies_.active_id() && force_map_->others == bodies_.list().others);
-    const std::uint32_t felt = stays ? force_map_->options : whole_->options;
-    bodies_.list().options_asked = felt | (bodies_.list().options_asked & kDockingClash);
-    if (choose_density()) fade(fade_);
 }
 
 }  // namespace tact

@@ -9,6 +9,8 @@
 //           A fixed body in the hand stays too and gives no force.
 // Clash     with kDockingClash bodies repel each other (clash_force.hpp); a constant-time order, because its
 //           fields are made with the model. The knob does not affect it: a wall must not depend on the load.
+// Pull      with kDockingPull the body is drawn to places found for it (basin_pull.hpp). Like the clash force it does not depend on
+//           the load and is not part of the density's error.
 // Bodies    copies of a structure share its point sets. When the body in the hand changes, the old force fades
 //           to zero before the new one fades in.
 // Knob      "docking.force": codebook levels from the smallest to all atoms, blended in between.
@@ -30,6 +32,7 @@
 #include "ipc/scene/density/structure.hpp"
 #include "ipc/scene/file/scene_file.hpp"
 #include "ipc/scene/file/scene_meta.hpp"
+#include "rt/force/docking/basin_pull.hpp"
 #include "rt/force/docking/clash_force.hpp"
 #include "rt/force/docking/docking_bodies.hpp"
 #include "rt/force/docking/docking_parts.hpp"
@@ -53,8 +56,8 @@ public:
     [[nodiscard]] KnobSpec knob() const noexcept TACT_RT override;
     [[nodiscard]] std::uint32_t items(float fidelity) const noexcept TACT_RT override;
     [[nodiscard]] PathLoad predict(float fidelity) const noexcept TACT_RT override;
-    // Of the density at the level of the last step: measured at rest (stiffness_audit.hpp), bounded in motion; plus the bound of
-    // the clash force near other bodies. Before the first step, the largest of all levels.
+    // Of the density at the level of the last step: measured at rest (stiffness_audit.hpp), bounded in motion; plus the bounds of
+    // the pull, and of the clash force near other bodies. Before the first step, the largest of all levels.
     [[nodiscard]] ModelStiffness stiffness() const noexcept TACT_RT override;
     void reset(const ToolState& tool) noexcept TACT_RT override;
     StepResult step(const ToolState& tool, const Budget& budget) noexcept TACT_RT override;
@@ -65,7 +68,7 @@ public:
     bool adopt(const ForceModel& old) noexcept TACT_RT override;
     void give_up() noexcept TACT_RT override;
 
-    // Wrench on the active body at a pose, including the clash force; equals the wrench of step() after its ramp.
+    // Wrench on the active body at a pose, including clash force and pull; equals the wrench of step() after its ramp.
     [[nodiscard]] StepResult evaluate(const Pose& T_model_body, const Budget& budget) const noexcept TACT_RT;
     // Turns options (DockingOption) on or off; constant time, as order(). False: unknown options.
     bool set_options(std::uint32_t options, bool on) noexcept TACT_RT;
@@ -93,6 +96,10 @@ private:
     void glide(float fidelity, StepResult& result) noexcept;
     [[nodiscard]] StepResult feel(const ToolState& tool, const Budget& budget) noexcept;
     [[nodiscard]] ModelStiffness of_clash() const noexcept;
+    [[nodiscard]] bool is_pulled() const noexcept;
+    // Returns the pull, which is part of the result.
+    BasinPull::Pull add_pull(const Pose& T_model_body, StepResult& result) const noexcept;
+    bool order_pull(const ModelOrder& order) noexcept;
     void audit(const StepResult& result, const Pose& T_model_body) noexcept;
     void grip(const Pose& T_world_tool) noexcept;
     void fade(const ForceFade& shown) noexcept;
@@ -102,6 +109,7 @@ private:
     std::shared_ptr<const DockingParts> parts_;
     double energy_j_per_sigma_;
     ClashGains clash_gains_;
+    double pull_scale_ = 1.0;  // of the settings
     // Map without subtraction, and map with the options requested when this model was built (may be the same map).
     // force_map_ points to one of them, so a step can switch between them.
     std::shared_ptr<const ForceMap> whole_, built_;
@@ -118,6 +126,7 @@ private:
     bool fell_back_ = false;  // the last step used a smaller level than the budget's
     ErrorAudit audit_;
     StiffnessAudit stiffness_audit_;
+    BasinPull basins_;
     bool stepped_ = false;    // the last step had a force of the density
     bool at_others_ = false;  // the last step had points near other bodies
     // By structure, from audits; at least 1.

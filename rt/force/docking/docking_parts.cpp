@@ -62,6 +62,7 @@ std::shared_ptr<const DockingParts> make_docking_parts(const SceneMeta& meta, co
         }
         parts->levels.push_back(levels_of(structures[i], codebooks[i]));
         parts->clash.emplace_back(structures[i]);
+        parts->gyration_m.push_back(radius_of_gyration_m(structures[i]));
     }
     parts->clash_gains = choose_clash_gains(parts->clash, meta.world_per_model);
     return parts;

@@ -32,7 +32,9 @@ struct DockingParts {
     DensityGrid grid;  // map of the force without options
     std::vector<Structure> structures;
     std::vector<std::vector<PointSet>> levels;
-    std::vector<ClashField> clash;  // by structure
+    // By structure.
+    std::vector<ClashField> clash;
+    std::vector<double> gyration_m;  // radius
     ClashGains clash_gains;
     std::shared_ptr<LaplacianUnit> laplacian_unit = std::make_shared<LaplacianUnit>();
 };

@@ -1,0 +1,162 @@
+#include "gui/docking/place_finder.hpp"
+
+#include <spdlog/spdlog.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+
+#include "gui/docking/docking_content.hpp"
+#include "ipc/base/units.hpp"
+
+namespace tact {
+namespace {
+
+constexpr std::size_t kGhosts = 3;
+constexpr std::array<const char*, 3> kJudgedBy{"Laplacian", "density correlation", "mean density"};
+constexpr std::array<const char*, 3> kUnit{"", "", " σ"};
+
+std::string refined_text(const PlacementOutcome& o) {
+    const FoundPlace& place = o.found.front();
+    const double shift_a = (place.T_model_body.p_m - o.start.T_model_body.p_m).norm() / kAngstromM;
+    const double turn_deg = place.T_model_body.q.angularDistance(o.start.T_model_body.q) / kDegreeRad;
+    char text[200];
+    std::snprintf(text, sizeof text, "refined body %u: %.2f Å, %.1f°; %.3f to %.3f%s", o.start.id, shift_a,
+                  turn_deg, place.score_start, place.score, kUnit[static_cast<std::size_t>(o.objective)]);
+    return text;
+}
+
+}  // namespace
+
+void PlaceFinder::use(std::shared_ptr<const SceneContent> content) {
+    content_ = std::move(content);
+    job_ = content_ ? std::make_unique<PlacementJob>(content_, programs_) : nullptr;
+    found_ = {};
+    pull_ = pull_asked_ = places_sent_ = false;
+}
+
+std::optional<PlaceFinder::Message> PlaceFinder::follow(const BodyList& list, const BodiesTopic* topic,
+                                                        std::vector<Command>& commands) {
+    if (!job_) return std::nullopt;
+    options_ = topic != nullptr ? topic->options : 0;
+    std::optional<Message> message;
+    if (std::optional<PlacementOutcome> done = job_->poll())
+        message = take(std::move(*done), list, topic, commands);
+    send_pull(topic, commands);
+    return message;
+}
+
+PlaceFinder::Message PlaceFinder::take(PlacementOutcome done, const BodyList& list, const BodiesTopic* topic,
+                                       std::vector<Command>& commands) {
+    const std::uint32_t id = done.start.id;
+    if (done.cancelled) return {Grade::watch, done.nearby ? "refining cancelled" : "search cancelled"};
+    if (!done.error.empty()) return {Grade::bad, done.error};
+    if (!done.nearby) {
+        if (done.found.empty()) return {Grade::watch, "no place found"};
+        spdlog::info("{} places of body {} found; {} of the first {:.3f}", done.found.size(), id,
+                     kJudgedBy[static_cast<std::size_t>(done.objective)], done.found.front().score);
+        found_ = std::move(done);
+        found_radius_m_ = radius_of_gyration_m(docking_of(*content_).bodies[found_.start.structure]);
+        places_sent_ = false;
+        return {Grade::good, {}};  // the list tells it
+    }
+    if (topic == nullptr) return {Grade::watch, "refined, but there is no controller to move the body"};
+    if (list.find(id) == nullptr) return {Grade::watch, "refined, but the body was removed"};
+    commands.push_back({CommandKind::place_body, 0.0, {}, id, done.found.front().T_model_body});
+    return {Grade::good, refined_text(done)};
+}
+
+// With Subtract on, the hand feels the map without all other bodies; otherwise those that are fixed are known.
+std::vector<FitBody> PlaceFinder::subtracted(std::uint32_t body, const BodyList& list) const {
+    std::vector<FitBody> others;
+    for (const ShownBody& b : list.bodies())
+        if (b.id != body && ((b.flags & kBodyFixed) != 0 || (options_ & kDockingSubtraction) != 0))
+            others.push_back({b.id, b.structure, b.newest});
+    return others;
+}
+
+std::optional<PlaceFinder::Message> PlaceFinder::look(const ShownBody& body, bool nearby,
+                                                      const BodyList& list) {
+    if (!job_ || job_->running()) return std::nullopt;
+    try {
+        job_->start({{body.id, body.structure, body.newest}, subtracted(body.id, list), objective_, nearby});
+    } catch (const std::exception& e) {
+        return Message{Grade::bad, e.what()};
+    }
+    return Message{};
+}
+
+void PlaceFinder::cancel() {
+    if (job_) job_->cancel();
+}
+
+std::optional<Pose> PlaceFinder::found(std::uint32_t body, std::size_t place) const {
+    if (body != found_.start.id || place >= found_.found.size()) return std::nullopt;
+    return found_.found[place].T_model_body;
+}
+
+std::vector<DrawnBody> PlaceFinder::ghosts(const BodyList& list) const {
+    const ShownBody* const body = list.find(found_.start.id);
+    if (body == nullptr || body->structure != found_.start.structure) return {};
+    std::vector<const FoundPlace*> nearest;
+    for (const FoundPlace& f : found_.found) nearest.push_back(&f);
+    const Pose& here = body->T_model_body;
+    const auto away_m = [&](const FoundPlace* f) {  // of the atoms
+        return std::hypot((f->T_model_body.p_m - here.p_m).norm(),
+                          found_radius_m_ * f->T_model_body.q.angularDistance(here.q));
+    };
+    std::sort(nearest.begin(), nearest.end(),
+              [&](const FoundPlace* a, const FoundPlace* b) { return away_m(a) < away_m(b); });
+    nearest.resize(std::min(kGhosts, nearest.size()));
+    std::vector<DrawnBody> drawn;
+    for (const FoundPlace* f : nearest)
+        drawn.push_back({f->T_model_body, body->structure, body->id, false, true});
+    return drawn;
+}
+
+void PlaceFinder::send_pull(const BodiesTopic* topic, std::vector<Command>& commands) {
+    if (topic == nullptr) {  // the next controller knows nothing of it
+        pull_asked_ = places_sent_ = false;
+        return;
+    }
+    if (pull_ && !places_sent_ && !found_.found.empty()) {
+        commands.push_back({CommandKind::clear_found_places, 0.0, {}});
+        for (const FoundPlace& f : found_.found)
+            commands.push_back({CommandKind::add_found_place, 0.0, {}, found_.start.id, f.T_model_body});
+        places_sent_ = true;
+    }
+    if (pull_ != pull_asked_) commands.push_back({CommandKind::set_pull, pull_ ? 1.0 : 0.0, {}});
+    pull_asked_ = pull_;
+}
+
+void PlaceFinder::describe(const BodyList& list, const BodiesTopic* topic, SearchState& s) {
+    objective_ = static_cast<PlaceObjective>(std::clamp(s.objective, 0, 2));
+    s.running = job_ && job_->running();
+    if (s.running) {
+        s.nearby = job_->pending().nearby;
+        s.running_body = job_->pending().start.id;
+        s.progress = job_->progress();
+    }
+    const auto active = list.active();
+    const std::uint32_t held = active ? list.bodies()[*active].id : 0;
+    s.subtracted = active ? subtracted(held, list).size() : 0;
+    s.found.clear();
+    s.found_body = found_.start.id;
+    if (!found_.found.empty()) s.found_name = docking_of(*content_).bodies[found_.start.structure].name;
+    const ShownBody* const body = list.find(found_.start.id);
+    const Vec3 here_m = (body != nullptr ? body->T_model_body : found_.start.T_model_body).p_m;
+    for (const FoundPlace& f : found_.found)
+        s.found.push_back({f.score, f.z, (f.T_model_body.p_m - here_m).norm(), f.clashes});
+
+    s.can_pull = active && topic != nullptr && !found_.found.empty() && held == found_.start.id;
+    s.pull = s.pull && !found_.found.empty();
+    pull_ = s.pull;
+    // What the controller does now, not what was asked of it.
+    const bool pulls = s.can_pull && (topic->options & kDockingPull) != 0 && topic->place < s.found.size() &&
+                       topic->pull_n > 0.0F;
+    s.pull_n = pulls ? static_cast<double>(topic->pull_n) : 0.0;
+    s.place = pulls ? topic->place + 1 : 0;
+}
+
+}  // namespace tact

@@ -1,0 +1,27 @@
+#include "gui/docking/poses_json.hpp"
+
+#include <nlohmann/json.hpp>
+
+#include "gui/docking/docking_content.hpp"
+#include "ipc/base/units.hpp"
+
+namespace tact {
+
+std::string poses_json(std::span<const PosedBody> bodies, const SceneContent& content) {
+    nlohmann::ordered_json list = nlohmann::ordered_json::array();
+    for (const auto& [body, fixed] : bodies) {
+        const Vec3 p_a = body.T_model_body.p_m / kAngstromM;
+        const Eigen::Vector4d q = body.T_model_body.q.coeffs();
+        list.push_back({{"id", body.id},
+                        {"structure", body.structure},
+                        {"name", docking_of(content).bodies.at(body.structure).name},
+                        {"pos_model_a", {p_a.x(), p_a.y(), p_a.z()}},
+                        {"quat_model_body_xyzw", {q.x(), q.y(), q.z(), q.w()}},
+                        {"fixed", fixed}});
+    }
+    return nlohmann::ordered_json{{"bodies", list}}.dump(2, ' ', false,
+                                                         nlohmann::ordered_json::error_handler_t::replace) +
+           "\n";
+}
+
+}  // namespace tact
