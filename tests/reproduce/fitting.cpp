@@ -18,12 +18,14 @@
 #include "prep/structure/import_structure.hpp"
 #include "prep/synthetic/ring.hpp"
 #include "tests/reproduce/draw.hpp"
+#include "tests/reproduce/fitting_hand.hpp"
 #include "tests/reproduce/text.hpp"
 
 namespace tact::launch {
 namespace {
 
 namespace fs = std::filesystem;
+constexpr double kHandFarM = 30.0 * kAngstromM, kHandFarRad = 60.0 * kDegreeRad, kHandSeconds = 20.0;
 constexpr double kRightM = 3.0 * kAngstromM, kEqualScore = 0.01;
 
 struct Pair {
@@ -109,6 +111,7 @@ public:
         for (std::size_t i = 0; i < p.structures.size(); ++i) {
             search_alone(p, i);
             refine_near(p, i, p.grid, "");
+            led_by_hand(p, i);
             if (p.structures.size() < 2) continue;
             std::vector<PlacedStructure> others;
             for (std::size_t k = 0; k < p.structures.size(); ++k)
@@ -173,6 +176,26 @@ private:
                        near.near = SearchNear{start, shift_m, turn_rad};
                        const SearchHit hit = search(grid, s, near).hits.at(0);
                        return std::pair{hit.T_model_body, hit.score};
+                   });
+        }
+    }
+    // From where a hand finds a place only rarely: without and with the pull towards the places of one search.
+    void led_by_hand(const Pair& p, std::size_t i) {
+        const Structure& s = p.structures[i];
+        const HandInMap hand(p.grid, s, p.settings.resolution_m);
+        const std::vector<SearchHit> found = search(p.grid, s, p.settings).hits;
+        for (const bool pull : {false, true}) {
+            repeat(p, s, p.grid,
+                   text("hand from %.0f A, %.0f deg", kHandFarM / kAngstromM, kHandFarRad / kDegreeRad) +
+                       (pull ? ", pull" : ""),
+                   [&](SeededRandom& random) {
+                       Pose start = s.home();
+                       start.p_m += kHandFarM * random.direction();
+                       const Vec3 axis = random.direction();
+                       start.q = quat_from_rotation_vector(kHandFarRad * axis);
+                       const Pose end =
+                           hand.led_from(start, pull ? found : std::vector<SearchHit>{}, kHandSeconds);
+                       return std::pair{end, refine_place(p.grid, s, p.settings, end).score};
                    });
         }
     }

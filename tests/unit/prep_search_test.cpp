@@ -222,7 +222,10 @@ protected:
         char name[] = "/tmp/tact-fit-scene-XXXXXX";
         folder_ = mkdtemp(name);
         std::filesystem::remove(scene());
-        DockingInput baked{.title = "two", .grid = ring().grid, .structures = ring().subunits};
+        DockingInput baked;
+        baked.title = "two";
+        baked.grid = ring().grid;
+        baked.structures = ring().subunits;
         baked.structures.resize(2);
         baked.vertices_max = 2000;
         SceneWriter out;
