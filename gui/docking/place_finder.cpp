@@ -122,8 +122,13 @@ void PlaceFinder::send_pull(const BodiesTopic* topic, std::vector<Command>& comm
     }
     if (pull_ && !places_sent_ && !found_.found.empty()) {
         commands.push_back({CommandKind::clear_found_places, 0.0, {}});
+        const double best = found_.found.front().score;
+        const auto worth = [best](double score) {
+            return best > 0.0 ? std::clamp(score / best, 0.0, 1.0) : 1.0;
+        };
         for (const FoundPlace& f : found_.found)
-            commands.push_back({CommandKind::add_found_place, 0.0, {}, found_.start.id, f.T_model_body});
+            commands.push_back(
+                {CommandKind::add_found_place, worth(f.score), {}, found_.start.id, f.T_model_body});
         places_sent_ = true;
     }
     if (pull_ != pull_asked_) commands.push_back({CommandKind::set_pull, pull_ ? 1.0 : 0.0, {}});

@@ -46,9 +46,10 @@ void start_row(const Theme& theme, const DashboardState& state, FittingState& f)
     ImGui::Checkbox("Pull", &s.pull);
     ImGui::EndDisabled();
     if (ImGui::IsItemHovered(ImGuiHoveredFlags_AllowWhenDisabled))
-        ImGui::SetTooltip(
-            "%s", s.can_pull ? "draw the body gently, with at most 0.5 N, to the place that it leans to"
-                             : "take a body into the hand for which places were found");
+        ImGui::SetTooltip("%s", s.can_pull ? "draw the body gently, with at most 0.8 N, to the place that it "
+                                             "leans to; with Laplacian on "
+                                             "(tab Bodies) the hand feels the shape that the search judged by"
+                                           : "take a body into the hand for which places were found");
     text_coloured(colour::kDim, "by");
     ImGui::SameLine();
     choose(theme, kObjectives, s.objective);

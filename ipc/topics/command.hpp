@@ -32,7 +32,7 @@ enum class CommandKind : std::uint16_t {
     set_detail_filter,
     mark,  // only its event: triggers a flight recording
     // Places that a search found for a body, which pull it while set_pull is on.
-    add_found_place,  // body and pose; one of another body replaces all
+    add_found_place,  // body and pose, value: its score / the best one; one of another body replaces all
     clear_found_places,
     set_pull,  // value: 1 on, 0 off
 };

@@ -36,8 +36,9 @@ bool read_body_order(const CommandTopic& command, ServoOrder& order) {
         case CommandKind::fix_body:
             return id && yes_or_no;
         case CommandKind::place_body:
-        case CommandKind::add_found_place:
             return id && read_pose(command, order);
+        case CommandKind::add_found_place:
+            return id && command.value >= 0.0 && command.value <= 1.0 && read_pose(command, order);
         case CommandKind::add_body:
             return command.body <= 0xFFFFU && read_pose(command, order);
         case CommandKind::remove_body:

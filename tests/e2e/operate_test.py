@@ -227,7 +227,7 @@ def gestures(operator):
         operator.wait("Space disarms", lambda s: s["state"] == "ready")
         operator.place(*keys)
         places.append(operator.end()["fit"]["offset_a"])
-        moved_a.append(float(re.search(r"refined body 1: moved ([0-9.]+) A", operator.said()).group(1)))
+        moved_a.append(float(re.search(r"refined body 1: ([0-9.]+) ", operator.said()).group(1)))
     refined, undone, redone = places
     return expect("R refines: moved %.2f A, ends %.2f A from the pose in the file" % (moved_a[0], refined), moved_a[0] > 1.0 and refined < 0.5) + \
         expect("Ctrl+Z undoes %.2f A: ends %.2f A away" % (moved_a[1], undone), moved_a[1] > 1.0 and undone > 0.5 * moved_a[1]) + \

@@ -113,6 +113,7 @@ public:
             refine_near(p, i, p.grid, "");
             led_by_hand(p, i);
             if (p.structures.size() < 2) continue;
+            if (!does("refine")) continue;
             std::vector<PlacedStructure> others;
             for (std::size_t k = 0; k < p.structures.size(); ++k)
                 if (k != i) others.push_back({&p.structures[k], p.structures[k].home()});
@@ -155,6 +156,7 @@ private:
         rows_.push_back(row);
     }
     void search_alone(const Pair& p, std::size_t i) {
+        if (!does("search")) return;
         const Structure& s = p.structures[i];
         repeat(p, s, p.grid, "search alone", [&](SeededRandom& random) {
             const Quat by = random.rotation();
@@ -163,6 +165,7 @@ private:
         });
     }
     void refine_near(const Pair& p, std::size_t i, const DensityGrid& grid, const std::string& where) {
+        if (!does("refine")) return;
         const Structure& s = p.structures[i];
         for (const double far : {1.0, 2.0}) {
             const double shift_m = far * 10.0 * kAngstromM, turn_rad = far * 20.0 * kDegreeRad;
@@ -179,27 +182,35 @@ private:
                    });
         }
     }
+    [[nodiscard]] bool does(const char* what) const { return e_.only.empty() || e_.only == what; }
     // From where a hand finds a place only rarely: without and with the pull towards the places of one search.
     void led_by_hand(const Pair& p, std::size_t i) {
+        if (!does("hand")) return;
         const Structure& s = p.structures[i];
         const HandInMap hand(p.grid, s, p.settings.resolution_m);
         const std::vector<SearchHit> found = search(p.grid, s, p.settings).hits;
-        for (const bool pull : {false, true}) {
-            repeat(p, s, p.grid,
-                   text("hand from %.0f A, %.0f deg", kHandFarM / kAngstromM, kHandFarRad / kDegreeRad) +
-                       (pull ? ", pull" : ""),
-                   [&](SeededRandom& random) {
-                       Pose start = s.home();
-                       start.p_m += kHandFarM * random.direction();
-                       const Vec3 axis = random.direction();
-                       start.q = quat_from_rotation_vector(kHandFarRad * axis);
-                       const Pose end =
-                           hand.led_from(start, pull ? found : std::vector<SearchHit>{}, kHandSeconds);
-                       return std::pair{end, refine_place(p.grid, s, p.settings, end).score};
-                   });
+        struct Way {
+            const char* name;
+            bool pull, laplacian;
+        };
+        for (const auto& [name, pull, laplacian] :
+             {Way{"", false, false}, Way{", pull", true, false}, Way{", Laplacian, pull", true, true}}) {
+            repeat(
+                p, s, p.grid,
+                text("hand from %.0f A, %.0f deg", kHandFarM / kAngstromM, kHandFarRad / kDegreeRad) + name,
+                [&, pull = pull, laplacian = laplacian](SeededRandom& random) {
+                    Pose start = s.home();
+                    start.p_m += kHandFarM * random.direction();
+                    const Vec3 axis = random.direction();
+                    start.q = quat_from_rotation_vector(kHandFarRad * axis);
+                    const Pose end = hand.led_from(start, pull ? found : std::vector<SearchHit>{}, laplacian,
+                                                   kHandSeconds);
+                    return std::pair{end, refine_place(p.grid, s, p.settings, end).score};
+                });
         }
     }
     void together(const Pair& p) {
+        if (!does("together")) return;
         std::vector<FitRow> each;
         std::vector<std::vector<double>> away(p.structures.size());
         std::vector<double> seconds;

@@ -5,7 +5,6 @@
 
 #include "hal/sim/sim_hand.hpp"
 #include "ipc/scene/file/scene_file.hpp"
-#include "ipc/topics/bodies.hpp"
 #include "ipc/topics/command.hpp"
 #include "prep/docking/bake_docking.hpp"
 #include "rt/force/docking/docking_model.hpp"
@@ -39,10 +38,25 @@ HandInMap::HandInMap(const DensityGrid& grid, const Structure& structure, double
 
 HandInMap::~HandInMap() = default;
 
-Pose HandInMap::led_from(const Pose& start, const std::vector<SearchHit>& places, double seconds) const {
+Pose HandInMap::led_from(const Pose& start, const std::vector<SearchHit>& places, bool laplacian,
+                         double seconds) const {
     DockingSettings settings;
     settings.bodies = {{.structure = 0, .T_model_body = start, .fixed = false, .in_hand = true}};
-    const auto model = load_docking_model(SceneFile::from_bytes(scene_->bytes, "fitting"), settings);
+    std::unique_ptr<ForceModel> model =
+        load_docking_model(SceneFile::from_bytes(scene_->bytes, "fitting"), settings);
+    const auto turn_on = [&](CommandKind command) {
+        ModelOrder order;
+        order.kind = ModelOrder::Kind::setting;
+        order.command = static_cast<std::uint8_t>(command);
+        order.on = true;
+        static_cast<void>(model->order(order));
+    };
+    if (laplacian) {
+        turn_on(CommandKind::set_laplacian);
+        std::unique_ptr<ForceModel> next = model->rebuild(model->bodies());
+        static_cast<void>(next->adopt(*model));
+        model = std::move(next);
+    }
     if (!places.empty()) {
         ModelOrder order;
         order.kind = ModelOrder::Kind::setting;
@@ -50,9 +64,10 @@ Pose HandInMap::led_from(const Pose& start, const std::vector<SearchHit>& places
         order.body = model->bodies().id[0];
         for (const SearchHit& hit : places) {
             order.T_model_body = hit.T_model_body;
+            order.value = std::clamp(hit.score / places.front().score, 0.0, 1.0);
             static_cast<void>(model->order(order));
         }
-        static_cast<void>(model->set_options(kDockingPull, true));
+        turn_on(CommandKind::set_pull);
     }
     SimHand hand({}, Vec3::Constant(1.0));
     ToolState tool;

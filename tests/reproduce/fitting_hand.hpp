@@ -21,8 +21,8 @@ public:
     HandInMap(const HandInMap&) = delete;
     HandInMap& operator=(const HandInMap&) = delete;
 
-    // Where the structure is after this time. places: pull it; none: no pull.
-    [[nodiscard]] Pose led_from(const Pose& start, const std::vector<SearchHit>& places,
+    // Where the structure is after this time. places: pull it; none: no pull. laplacian: the force of the Laplacian of the map.
+    [[nodiscard]] Pose led_from(const Pose& start, const std::vector<SearchHit>& places, bool laplacian,
                                 double seconds) const;
 
 private:

@@ -21,30 +21,32 @@ Pose shifted(const Pose& at, const Vec3& dx_world_m, const Vec3& turn_rad) {
     return {at.p_m + dx_world_m / kScale, (by * at.q).normalized()};
 }
 // The energy as the header states it, computed anew: distances from moved points, in extended precision.
-double energy_j(const std::vector<Pose>& places, const Pose& here) {
+double energy_j(const std::vector<std::pair<Pose, double>>& places, const Pose& here) {
     // Six points on the axes, at a distance that gives the radius of gyration: their second moments are those of a round body.
     const double w = BasinPull::kForce_n / (BasinPull::kStiffness_n_m * kScale);
     long double sum = 0.0L;
-    for (const Pose& place : places) {
+    for (const auto& [place, worth] : places) {
         double d2 = 0.0;
         for (int axis = 0; axis < 3; ++axis)
             for (const double sign : {-1.0, 1.0}) {
                 const Vec3 at = sign * kGyration_m * Vec3::Unit(axis);
                 d2 += (here.p_m + here.q * at - place.p_m - place.q * at).squaredNorm() / 6.0;
             }
-        sum += std::exp(-static_cast<long double>((std::sqrt(d2 + w * w) - w) / w));
+        sum += std::exp(-static_cast<long double>(
+            (std::sqrt(d2 + w * w) - w + BasinPull::kHandicap * kGyration_m * (1.0 - worth)) / w));
     }
     return static_cast<double>(-static_cast<long double>(BasinPull::kForce_n * kScale * w) * std::log(sum));
 }
 
 struct Places {
     BasinPull pull;
-    std::vector<Pose> list;
+    std::vector<std::pair<Pose, double>> list;
     explicit Places(std::uint64_t seed, std::size_t count = 6) {
         SeededRandom random(seed);
         for (std::size_t i = 0; i < count; ++i) {
-            list.push_back({random_vector(random, 30e-10), random_turn(random)});
-            EXPECT_TRUE(pull.add(3, list.back()));
+            const Pose place{random_vector(random, 30e-10), random_turn(random)};
+            list.push_back({place, i == 0 ? 1.0 : 0.7 + 0.3 * random.uniform()});
+            EXPECT_TRUE(pull.add(3, place, list.back().second));
         }
     }
     [[nodiscard]] BasinPull::Pull at(const Pose& here) const { return pull.at(here, kGyration_m, kScale); }
@@ -80,9 +82,9 @@ TEST(BasinPull, force_and_torque_are_bounded_and_zero_at_a_lone_place) {
         EXPECT_LE(w.force_n.norm(), BasinPull::kForce_n);
         EXPECT_LE(w.torque_n_m.norm(), BasinPull::kForce_n * kScale * kGyration_m);
     }
-    EXPECT_LT(one.at(one.list[0]).wrench_world.force_n.norm(), 1e-12);
-    EXPECT_LT(one.at(one.list[0]).wrench_world.torque_n_m.norm(), 1e-12);
-    const Pose far{one.list[0].p_m + Vec3(200e-10, 0.0, 0.0), one.list[0].q};
+    EXPECT_LT(one.at(one.list[0].first).wrench_world.force_n.norm(), 1e-12);
+    EXPECT_LT(one.at(one.list[0].first).wrench_world.torque_n_m.norm(), 1e-12);
+    const Pose far{one.list[0].first.p_m + Vec3(200e-10, 0.0, 0.0), one.list[0].first.q};
     EXPECT_NEAR(one.at(far).wrench_world.force_n.x(), -BasinPull::kForce_n, 0.02);
 }
 
@@ -94,7 +96,7 @@ TEST(BasinPull, no_direction_is_stiffer_than_stated) {
     for (int i = 0; i < 20'000; ++i) {
         Pose here{random_vector(random, 40e-10), random_turn(random)};
         if (i % 2 == 0) {  // near a place, or between two
-            const Pose& a = places.list[static_cast<std::size_t>(i / 2) % 6];
+            const Pose& a = places.list[static_cast<std::size_t>(i / 2) % 6].first;
             here = {a.p_m + random_vector(random, 5e-10),
                     shifted(a, Vec3::Zero(), random_vector(random, 0.2)).q};
         }
@@ -138,11 +140,23 @@ TEST(BasinPull, closed_paths_through_all_places_give_no_energy_away) {
     }
 }
 
+TEST(BasinPull, a_better_place_pulls_from_farther_away) {
+    const Vec3 x = Vec3::UnitX();
+    const auto force = [&](double worth) {
+        BasinPull pull;
+        EXPECT_TRUE(pull.add(1, {40e-10 * x, Quat::Identity()}, 1.0));
+        EXPECT_TRUE(pull.add(1, {-20e-10 * x, Quat::Identity()}, worth));
+        return pull.at({}, kGyration_m, kScale).wrench_world.force_n.x();
+    };
+    EXPECT_LT(force(1.0), -0.4);  // to the nearer one
+    EXPECT_GT(force(0.5), 0.4);   // 55 angstrom behind
+}
+
 TEST(BasinPull, belongs_to_one_body_and_is_bounded_in_number) {
     BasinPull pull;
-    for (std::size_t i = 0; i < BasinPull::kMax; ++i) EXPECT_TRUE(pull.add(1, {}));
-    EXPECT_FALSE(pull.add(1, {}));
-    EXPECT_TRUE(pull.add(2, {Vec3(1e-9, 0.0, 0.0), Quat::Identity()}));
+    for (std::size_t i = 0; i < BasinPull::kMax; ++i) EXPECT_TRUE(pull.add(1, {}, 1.0));
+    EXPECT_FALSE(pull.add(1, {}, 1.0));
+    EXPECT_TRUE(pull.add(2, {Vec3(1e-9, 0.0, 0.0), Quat::Identity()}, 1.0));
     EXPECT_EQ(pull.count(), 1U);
     EXPECT_EQ(pull.body(), 2U);
     pull.clear();

@@ -232,12 +232,13 @@ TEST(DockingOptions, an_order_between_adopt_and_step_does_not_interrupt_the_forc
     EXPECT_LT((after.wrench_world.force_n - before.wrench_world.force_n).norm(), 0.05);
 }
 
-bool add_place(ForceModel& model, std::uint32_t body, const Pose& place) {
+bool add_place(ForceModel& model, std::uint32_t body, const Pose& place, double worth = 1.0) {
     ModelOrder order;
     order.kind = ModelOrder::Kind::setting;
     order.command = static_cast<std::uint8_t>(CommandKind::add_found_place);
     order.body = body;
     order.T_model_body = place;
+    order.value = worth;
     return model.order(order);
 }
 
@@ -314,6 +315,8 @@ TEST(DockingOptions, impossible_places_are_refused) {
     EXPECT_FALSE(add_place(*model, 1, far));
     far.p_m.x() = std::nan("");
     EXPECT_FALSE(add_place(*model, 1, far));
+    for (const double worth : {-0.1, 1.1, std::nan("")})
+        EXPECT_FALSE(add_place(*model, 1, beside_home(0.0), worth));
     EXPECT_EQ(model->bodies().places, 0U);
     for (std::size_t i = 0; i < BasinPull::kMax; ++i) EXPECT_TRUE(add_place(*model, 1, beside_home(0.0)));
     EXPECT_FALSE(add_place(*model, 1, beside_home(0.0)));

@@ -103,6 +103,8 @@ TEST(Housekeeping, refuses_orders_to_impossible_bodies) {
     EXPECT_EQ(judged(CommandKind::fix_body, 1, 0.5), CommandResult::refused_value);
     EXPECT_EQ(judged(CommandKind::add_body, 65536), CommandResult::refused_value);
     EXPECT_EQ(judged(CommandKind::set_laplacian, 0, -1.0), CommandResult::refused_value);
+    for (const double worth : {-0.1, 1.1})
+        EXPECT_EQ(judged(CommandKind::add_found_place, 1, worth), CommandResult::refused_value);
     const double nan = std::numeric_limits<double>::quiet_NaN();
     CommandTopic place = command(CommandKind::place_body);
     place.body = 1;

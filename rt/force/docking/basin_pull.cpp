@@ -20,28 +20,30 @@ double width_m(double world_per_model) noexcept {
 
 }  // namespace
 
-bool BasinPull::add(std::uint32_t body, const Pose& T_model_body) noexcept {
+bool BasinPull::add(std::uint32_t body, const Pose& T_model_body, double worth) noexcept {
     if (body != body_) count_ = 0;
     if (count_ == kMax) return false;
     body_ = body;
-    place_[count_++] = T_model_body;
+    place_[count_] = T_model_body;
+    worth_[count_++] = worth;
     return true;
 }
 
 BasinPull::Pull BasinPull::at(const Pose& here, double gyration_m, double world_per_model) const noexcept {
     const double w_m = width_m(world_per_model), r2_m2 = 2.0 / 3.0 * gyration_m * gyration_m;
     const double slope_n = kForce_n * world_per_model;  // joules per metre of the model
-    std::array<double, kMax> long_m{};                  // sqrt(d^2 + w^2)
+    std::array<double, kMax> long_m{}, away_m{};        // sqrt(d^2 + w^2); the same with the handicap
     Pull pull;
     for (std::uint32_t i = 0; i < count_; ++i) {
         const Vec3 v = (here.q * place_[i].q.conjugate()).vec();
         long_m[i] =
             std::sqrt((here.p_m - place_[i].p_m).squaredNorm() + 4.0 * r2_m2 * v.squaredNorm() + w_m * w_m);
-        if (long_m[i] < long_m[pull.nearest]) pull.nearest = i;
+        away_m[i] = long_m[i] + kHandicap * gyration_m * (1.0 - worth_[i]);
+        if (away_m[i] < away_m[pull.nearest]) pull.nearest = i;
     }
     double sum = 0.0;
     for (std::uint32_t i = 0; i < count_; ++i) {
-        const double weight = std::exp((long_m[pull.nearest] - long_m[i]) / w_m);
+        const double weight = std::exp((away_m[pull.nearest] - away_m[i]) / w_m);
         sum += weight;
         const Quat turn = here.q * place_[i].q.conjugate();
         const double share = weight / long_m[i];
@@ -50,7 +52,7 @@ BasinPull::Pull BasinPull::at(const Pose& here, double gyration_m, double world_
     }
     pull.wrench_world.force_n /= sum;
     pull.wrench_world.torque_n_m /= sum;
-    pull.energy_j = slope_n * (long_m[pull.nearest] - w_m - w_m * std::log(sum));
+    pull.energy_j = slope_n * (away_m[pull.nearest] - w_m - w_m * std::log(sum));
     return pull;
 }
 

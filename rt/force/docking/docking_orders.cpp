@@ -87,7 +87,9 @@ bool DockingModel::order_pull(const ModelOrder& order) noexcept {
         const bool known = std::find(list.id.begin(), list.id.begin() + list.count, order.body) !=
                            list.id.begin() + list.count;
         if (!known || !is_placeable(parts_->meta, order.T_model_body)) return false;
-        if (!basins_.add(order.body, {order.T_model_body.p_m, order.T_model_body.q.normalized()}))
+        if (!(order.value >= 0.0 && order.value <= 1.0)) return false;
+        if (!basins_.add(order.body, {order.T_model_body.p_m, order.T_model_body.q.normalized()},
+                         order.value))
             return false;
     }
     if (pulled || is_pulled()) fade(fade_);
