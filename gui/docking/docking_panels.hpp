@@ -97,6 +97,7 @@ struct FitState {
     FitMetrics body;
     double resolution_m = 0.0;
     bool resolution_assumed = false;
+    double contour = 0.0;  // that "inside" refers to, in the map's unit
     bool pose_known = false;
     double from_file_m = 0.0, from_file_rad = 0.0;
 };
@@ -122,11 +123,15 @@ struct ContourRowState {
     double least = 0.0, greatest = 0.0;    // of the map, in its unit
     bool changed = false, add = false;     // user input, taken by the application
     std::size_t dragged = kNone, removed = kNone;
+    // The contour that counts: the first one.
+    [[nodiscard]] double counting(double otherwise) const {
+        return row.empty() ? otherwise : row.front().level;
+    }
 };
 
 // The scene's map and structures, as loaded.
 struct DockingSummary {
-    double contour = 0.0, contour_sigma = 0.0;  // of the scene, in the map's unit
+    double contour = 0.0, contour_sigma = 0.0;  // that counts as inside, in the map's unit
     double resolution_m = 0.0;                  // 0: unknown
     std::array<std::uint32_t, 3> voxels{};
     std::size_t bodies = 0, atoms = 0;

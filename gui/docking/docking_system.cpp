@@ -17,10 +17,7 @@ constexpr std::size_t kShapesMaxInSoftware = 8000;
 
 DockingSummary summary_of(const SceneContent& content) {
     const SceneMeta& meta = content.meta;
-    DockingSummary s{.contour = meta.contour,
-                     .contour_sigma = (meta.contour - meta.map_mean) / meta.map_sigma,
-                     .resolution_m = meta.resolution_m,
-                     .voxels = content.grid.size};
+    DockingSummary s{.resolution_m = meta.resolution_m, .voxels = content.grid.size};
     for (const Structure& structure : docking_of(content).bodies) {
         ++s.bodies;
         s.atoms += structure.size();
@@ -41,6 +38,7 @@ void DockingSystem::use(const std::shared_ptr<const SceneContent>& content, std:
     if (context.software) layer_->molecules().set_shapes_max(kShapesMaxInSoftware);
     begin_contours(view.contours(), content->scale, panels_.contours);
     panels_.scene = summary_of(*content);
+    count_contour();
     std::vector<Pose> homes;
     for (const Structure& structure : docking_of(*content).bodies) homes.push_back(structure.home());
     list_.start(homes);
@@ -115,6 +113,12 @@ void DockingSystem::adapt() {
     if (view_ != nullptr) follow_contours(view_->contours(), content_->scale, panels_.contours);
 }
 
+void DockingSystem::count_contour() {
+    const SceneMeta& meta = content_->meta;
+    panels_.scene.contour = panels_.contours.counting(meta.contour);
+    panels_.scene.contour_sigma = (panels_.scene.contour - meta.map_mean) / meta.map_sigma;
+}
+
 void DockingSystem::follow_bodies(std::int64_t now_ns, const SystemContext& context) {
     list_.predict(now_ns);
     const BodiesTopic* const topic = context.controller.attached() && context.controller.have_bodies
@@ -126,7 +130,8 @@ void DockingSystem::follow_bodies(std::int64_t now_ns, const SystemContext& cont
     for (const FitRequest& request : fitting.requests) fit_controller_.perform(request, list_, commands);
     fitting.hide_requests.clear();
     fitting.requests.clear();
-    fit_controller_.follow(list_, topic, commands);
+    if (content_) count_contour();
+    fit_controller_.follow(list_, topic, panels_.scene.contour, commands);
     if (topic != nullptr)
         for (const Command& command : commands) context.commands.send(command, now_ns);
     fit_controller_.describe(list_, topic, fitting, panels_.fit);

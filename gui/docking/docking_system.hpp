@@ -38,6 +38,8 @@ public:
     void finish(const SystemContext& context) override;
 
 private:
+    // What is shown as the contour, and what "inside" refers to: the first contour, as the person set it.
+    void count_contour();
     void follow_bodies(std::int64_t now_ns, const SystemContext& context);
 
     const std::vector<ContourOption> options_;

@@ -74,8 +74,10 @@ void FitController::show(const std::optional<PlaceFinder::Message>& message) {
         report(message->grade, message->text);
 }
 
-void FitController::follow(const BodyList& list, const BodiesTopic* topic, std::vector<Command>& commands) {
+void FitController::follow(const BodyList& list, const BodiesTopic* topic, double contour,
+                           std::vector<Command>& commands) {
     if (!content_) return;
+    contour_ = contour;
     bodies_.clear();
     FitHistory::Places places;
     for (const ShownBody& b : list.bodies()) {
@@ -84,7 +86,7 @@ void FitController::follow(const BodyList& list, const BodiesTopic* topic, std::
     }
     if (topic != nullptr) history_.observe(places, {topic->grips, topic->placements, topic->active});
     if (fit_) {
-        fit_->request(bodies_);
+        fit_->request(bodies_, contour);
         static_cast<void>(fit_->take(outcome_));
     }
     show(finder_.follow(list, topic, commands));
@@ -185,7 +187,10 @@ void FitController::save(const BodyList& list) {
         out << poses_json(bodies, *content_) << std::flush;
         if (!out)
             throw StartupError("writing " + poses, "the write failed", "check the free space of the disk");
-        saving_.start("tact-prep", {"export", content_->path.string(), "--poses", poses, "-o", saving_to_});
+        char level[48];
+        std::snprintf(level, sizeof level, "--contour=%.17g", contour_);
+        saving_.start("tact-prep",
+                      {"export", content_->path.string(), "--poses", poses, level, "-o", saving_to_});
     } catch (const std::exception& e) {
         report(Grade::bad, e.what());
     }
@@ -238,6 +243,7 @@ void FitController::describe(const BodyList& list, const BodiesTopic* topic, Fit
     fit.all = outcome_.all;
     fit.resolution_m = outcome_.resolution_m;
     fit.resolution_assumed = outcome_.resolution_assumed;
+    fit.contour = outcome_.contour;
     fit.bodies = outcome_.body.size();
     for (std::size_t i = 0; i < outcome_.of.size(); ++i)
         if (outcome_.body[i].id == held) fit.body = outcome_.of[i], fit.body_id = held;

@@ -23,8 +23,9 @@ class FitController {
 public:
     // Another scene, or none: resets everything.
     void use(std::shared_ptr<const SceneContent> content);
-    // Call once a frame; topic: of the attached controller, or null. Adds commands that became due.
-    void follow(const BodyList& list, const BodiesTopic* topic, std::vector<Command>& commands);
+    // Call once a frame; topic: of the attached controller, or null; contour: that counts as inside. Adds commands that became due.
+    void follow(const BodyList& list, const BodiesTopic* topic, double contour,
+                std::vector<Command>& commands);
     void perform(const FitRequest& request, const BodyList& list, std::vector<Command>& commands);
     // At the end: waits for a save in progress, at most this long.
     void finish_saving(Duration patience);
@@ -51,6 +52,7 @@ private:
     std::string message_;
     Grade message_grade_ = Grade::unknown;
     std::vector<FitBody> bodies_;
+    double contour_ = 0.0;  // that counts as inside
 };
 
 }  // namespace tact

@@ -10,7 +10,7 @@ namespace tact {
 
 namespace {
 
-void metrics(const Theme& theme, const FitMetrics& m) {
+void metrics(const Theme& theme, const FitMetrics& m, double contour) {
     row(theme, "Correlation", fixed(m.cc_zero, 4), "about zero");
     row(theme, "", fixed(m.cc_mean, 4), "about the mean");
     // With the value in the map's unit if it fits.
@@ -18,7 +18,9 @@ void metrics(const Theme& theme, const FitMetrics& m) {
                                            format("%.2g, mean over atoms", m.mean_density),
                                            std::string("mean over atoms")};
     row(theme, "Density", fixed(m.mean_density_sigma, 2) + " σ", notes);
-    row(theme, "Inside", format("%.1f %%", 100.0 * m.fraction_inside), "of atoms above contour");
+    const std::array<std::string, 2> inside{format("of atoms above contour %.4g", contour),
+                                            std::string("of atoms above contour")};
+    row(theme, "Inside", format("%.1f %%", 100.0 * m.fraction_inside), inside);
     row(theme, "Overlap", format("%.4g", m.overlap), "map unit · Z");
 }
 
@@ -37,7 +39,7 @@ void DockingPanels::draw_card(const Theme& theme, const PixelRect& card) const {
             format("%.2f Å, %.1f°", f.from_file_m / kAngstromM, f.from_file_rad / kDegreeRad),
             "from file position");
     if (f.known) {
-        metrics(theme, f.body_id != 0 ? f.body : f.all);
+        metrics(theme, f.body_id != 0 ? f.body : f.all, f.contour);
         if (f.body_id != 0 && f.bodies > 1)
             row(theme, "All bodies", fixed(f.all.cc_zero, 4),
                 "about zero, " + fixed(f.all.cc_mean, 4) + " mean");

@@ -33,9 +33,10 @@ FitWorker::~FitWorker() {
     thread_.join();
 }
 
-void FitWorker::request(std::span<const FitBody> bodies) {
+void FitWorker::request(std::span<const FitBody> bodies, std::optional<double> contour) {
     {
         const std::lock_guard lock(mutex_);
+        contour_ = contour.value_or(content_->meta.contour);
         requested_.clear();
         std::copy_if(bodies.begin(), bodies.end(), std::back_inserter(requested_),
                      [&](const FitBody& b) { return b.structure < docking_of(*content_).bodies.size(); });
@@ -54,14 +55,18 @@ void FitWorker::work() {
     // Linux applies nice values per thread. A failure is harmless; raising the value never fails.
     (void)setpriority(PRIO_PROCESS, static_cast<id_t>(gettid()), 10);
     std::vector<FitBody> places;
+    double contour = 0.0;
     std::unique_lock lock(mutex_);
     while (true) {
-        changed_.wait(lock, [&] { return stop_ || (!requested_.empty() && moved(requested_, places)); });
+        changed_.wait(lock, [&] {
+            return stop_ || (!requested_.empty() && (moved(requested_, places) || contour_ != contour));
+        });
         if (stop_) return;
         places = requested_;
+        contour = contour_;
         const std::uint64_t number = outcome_.number + 1;
         lock.unlock();
-        FitOutcome outcome = compute(places);
+        FitOutcome outcome = compute(places, contour);
         outcome.number = number;
         lock.lock();
         outcome_ = std::move(outcome);
@@ -71,9 +76,10 @@ void FitWorker::work() {
     }
 }
 
-FitOutcome FitWorker::compute(std::vector<FitBody> bodies) const {
+FitOutcome FitWorker::compute(std::vector<FitBody> bodies, double contour) const {
     FitOutcome outcome;
     const Instant begun = Monotonic::now();
+    outcome.contour = contour;
     outcome.resolution_m = content_->meta.resolution_m;
     outcome.resolution_assumed = resolution_is_estimated(content_->note);
     if (!(outcome.resolution_m > 0.0)) {
@@ -87,7 +93,7 @@ FitOutcome FitWorker::compute(std::vector<FitBody> bodies) const {
     try {
         FitOfBodies fit = fit_of_bodies(content_->grid, placed,
                                         {.resolution_m = outcome.resolution_m,
-                                         .contour = content_->meta.contour,
+                                         .contour = contour,
                                          .background = content_->meta.map_background,
                                          .sigma = content_->meta.map_sigma});
         outcome.all = fit.all;

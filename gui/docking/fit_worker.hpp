@@ -1,13 +1,14 @@
 // Computes the fit of the bodies to the map in the background, because it takes longer than a frame.
 //
 // Thread   its own, at low priority. It processes the newest request, at most once a second, for at most a tenth of
-//          the time, and only after something moved.
+//          the time, and only after something changed.
 #pragma once
 
 #include <condition_variable>
 #include <cstdint>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <span>
 #include <string>
 #include <thread>
@@ -35,6 +36,7 @@ struct FitOutcome {
     double resolution_m = 0.0;
     bool resolution_assumed = false;  // four voxels, because nobody gave it
     double compute_s = 0.0;
+    double contour = 0.0;      // that the fractions inside refer to
     std::uint64_t number = 0;  // increases with every outcome
 };
 
@@ -47,20 +49,21 @@ public:
     FitWorker(const FitWorker&) = delete;
     FitWorker& operator=(const FitWorker&) = delete;
 
-    // Ignores bodies of structures that the content does not have.
-    void request(std::span<const FitBody> bodies);
+    // Ignores bodies of structures that the content does not have. contour: level that counts as inside; none: the scene's.
+    void request(std::span<const FitBody> bodies, std::optional<double> contour = {});
     // Returns true if there is one newer than outcome.number.
     [[nodiscard]] bool take(FitOutcome& outcome);
 
 private:
     void work();
-    [[nodiscard]] FitOutcome compute(std::vector<FitBody> bodies) const;
+    [[nodiscard]] FitOutcome compute(std::vector<FitBody> bodies, double contour) const;
 
     const std::shared_ptr<const SceneContent> content_;
     const Duration pause_;
     std::mutex mutex_;
     std::condition_variable changed_;
     std::vector<FitBody> requested_;
+    double contour_ = 0.0;  // requested
     FitOutcome outcome_;
     bool stop_ = false;
     std::thread thread_;

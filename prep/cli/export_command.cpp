@@ -40,6 +40,9 @@ void add_export(CLI::App& app) {
     command->add_option("-o,--output", request->options.folder, "Folder to write to, created if absent")
         ->type_name("DIR")
         ->required();
+    command->add_option("--contour", request->options.contour,
+                        "Contour level that the fractions inside refer to, in the map's unit; default: the "
+                        "scene's");
     command->add_flag("--combined", request->options.combined,
                       "Also write all bodies to one file, with a unique id per chain");
     command->add_flag("--force", request->options.force,

@@ -92,20 +92,22 @@ std::string matrix_row(const AtomMove& move, int row) {
 struct Fit {
     std::optional<FitOfBodies> numbers;  // absent if the resolution is unknown
     double resolution_a = 0.0;
+    double contour = 0.0;
 };
 
 Fit fit_of(const SceneFile& scene, const std::vector<Structure>& structures,
-           const std::vector<PlacedBody>& bodies) {
+           const std::vector<PlacedBody>& bodies, double contour) {
     const SceneMeta meta = read_meta(scene);
     Fit fit;
     fit.resolution_a = meta.resolution_m / kAngstromM;
+    fit.contour = contour;
     if (!(meta.resolution_m > 0.0)) return fit;
     std::vector<PlacedStructure> placed;
     placed.reserve(bodies.size());
     for (const PlacedBody& b : bodies) placed.push_back({&structures[b.structure], b.T_model_body});
     fit.numbers = fit_of_bodies(read_grid(scene), placed,
                                 {.resolution_m = meta.resolution_m,
-                                 .contour = meta.contour,
+                                 .contour = contour,
                                  .background = meta.map_background,
                                  .sigma = meta.map_sigma});
     return fit;
@@ -139,7 +141,7 @@ Remarks remarks_of(const SceneMeta& meta, const Fit& fit, std::size_t index, std
     if (!fit.numbers) return remarks;
     remarks.emplace_back("resolution_a", printed("%.4g", fit.resolution_a));
     remarks.emplace_back("region", kFitRegion);
-    remarks.emplace_back("contour", printed("%.6g", meta.contour));
+    remarks.emplace_back("contour", printed("%.6g", fit.contour));
     if (body != nullptr) remark_fit(fit.numbers->body[index], "", remarks);
     if (body == nullptr || count > 1) remark_fit(fit.numbers->all, "all_bodies_", remarks);
     return remarks;
@@ -269,7 +271,7 @@ std::vector<fs::path> export_bodies(const SceneFile& scene, const std::vector<Pl
     const std::vector<Source> sources = sources_of(scene, meta.body_count);
     std::vector<Structure> structures;
     for (std::uint32_t i = 0; i < meta.body_count; ++i) structures.push_back(read_structure(scene, i));
-    const Fit fit = fit_of(scene, structures, bodies);
+    const Fit fit = fit_of(scene, structures, bodies, options.contour.value_or(meta.contour));
     std::vector<std::pair<fs::path, std::string>> files;
     std::vector<AtomMove> moves;
     std::string table = kCsvHead;

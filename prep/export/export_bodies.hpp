@@ -11,6 +11,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <vector>
 
 #include "ipc/scene/file/scene_file.hpp"
@@ -22,6 +23,8 @@ struct ExportOptions {
     std::filesystem::path folder;  // created if absent
     bool combined = false;
     bool force = false;
+    std::optional<double>
+        contour{};  // that the fractions inside refer to, in the map's unit; none: the scene's
 };
 
 // Returns the files written, in order.

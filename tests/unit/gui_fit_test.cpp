@@ -54,6 +54,22 @@ TEST(FitWorker, gives_the_metrics_of_the_newest_pose) {
     EXPECT_LT(moved_away.all.cc_mean, first.all.cc_mean);
 }
 
+TEST(FitWorker, counts_as_inside_what_is_above_the_contour_that_is_shown) {
+    const auto c = content();
+    FitWorker worker(c, Duration(0));
+    const std::vector<FitBody> home = at_home(*c);
+    worker.request(home);
+    const FitOutcome baked = next(worker, {});
+    EXPECT_EQ(baked.contour, 0.5);
+    double highest = 0.0;
+    for (const float v : c->grid.values) highest = std::max(highest, static_cast<double>(v));
+    worker.request(home, 0.9 * highest);  // only the contour has changed
+    const FitOutcome moved_up = next(worker, baked);
+    EXPECT_EQ(moved_up.contour, 0.9 * highest);
+    EXPECT_LT(moved_up.all.fraction_inside, 0.5 * baked.all.fraction_inside);
+    EXPECT_EQ(moved_up.all.cc_mean, baked.all.cc_mean);
+}
+
 TEST(FitWorker, measures_each_body_and_ignores_unknown_structures) {
     const auto c = content();
     FitWorker worker(c, Duration(0));

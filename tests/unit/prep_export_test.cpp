@@ -206,6 +206,24 @@ TEST_F(Export, a_saved_pdb_has_the_pose_of_the_body) {
     for (std::string line; std::getline(lines, line);) EXPECT_LE(line.size(), 80U);
 }
 
+TEST_F(Export, the_fraction_inside_refers_to_the_contour_that_was_asked_for) {
+    const fs::path file = write("small.pdb", kPdb);
+    const SceneFile scene = this->scene({file});
+    const auto saved = [&](std::optional<double> contour) {
+        ExportOptions options{.folder = out()};
+        options.force = true;
+        options.contour = contour;
+        return read(export_bodies(scene, {{7, 0, tilted()}}, options)[0]);
+    };
+    char line[64];
+    std::snprintf(line, sizeof line, "contour: %.6g", read_meta(scene).contour);
+    EXPECT_NE(saved({}).find(line), std::string::npos);
+    const std::string above = saved(1e6), below = saved(-1e6);
+    EXPECT_NE(above.find("contour: 1e+06"), std::string::npos);
+    EXPECT_NE(above.find("fraction_inside_contour: 0.0000"), std::string::npos);
+    EXPECT_NE(below.find("fraction_inside_contour: 1.0000"), std::string::npos);
+}
+
 TEST_F(Export, a_saved_mmcif_has_the_pose_of_the_body) {
     const fs::path file = write("small.cif", kCif);
     const SceneFile scene = this->scene({file});

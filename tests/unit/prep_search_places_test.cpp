@@ -58,5 +58,41 @@ TEST(PlaceTogether, structures_take_right_places_of_the_ring_and_none_twice) {
     }
 }
 
+// From 8 A and 25 degrees away; the plain ascent from there ends elsewhere or lower.
+TEST(Search, near_a_place_the_best_place_within_the_limits_is_found_and_never_a_worse_one) {
+    const Structure& s = ring().subunits.front();
+    SeededRandom random(8);
+    for (int k = 0; k < 3; ++k) {
+        SearchSettings by = settings();
+        Pose start = s.home();
+        start.p_m += 8.0 * kAngstromM * random.direction();
+        start.q = quat_from_rotation_vector(25.0 * kDegreeRad * random.direction());
+        by.near = SearchNear{start, 10.0 * kAngstromM, 30.0 * kDegreeRad};
+        const SearchHit best = search(ring().grid, s, by).hits.at(0);
+        EXPECT_LT(rmsd_a(s, best.T_model_body, s.home()), 1.0) << k;
+        EXPECT_GE(best.score, place_score(ring().grid, s, by, start));
+        EXPECT_NEAR(best.score, place_score(ring().grid, s, by, best.T_model_body), 1e-6);
+        by.near = SearchNear{s.home(), 1.0 * kAngstromM, 1.0 * kDegreeRad};
+        EXPECT_LT(rmsd_a(s, search(ring().grid, s, by).hits.at(0).T_model_body, s.home()), 1.0);
+    }
+}
+
+// At a coarser resolution of the search, its optimum may be worse than a start that is already good.
+TEST(Search, a_search_nearby_at_a_coarser_resolution_gives_nothing_worse_than_the_start) {
+    const Structure& s = ring().subunits.front();
+    SeededRandom random(9);
+    SearchSettings by = settings();
+    by.resolution_m = 0.5 * ring().resolution_m;  // searched twice as coarsely
+    by.rotations_max = 500;
+    for (int k = 0; k < 8; ++k) {
+        Pose start = s.home();
+        start.p_m += 15.0 * kAngstromM * random.direction();
+        start.q = random.rotation();
+        by.near = SearchNear{start, 0.5 * kAngstromM, 0.5 * kDegreeRad};
+        EXPECT_GE(search(ring().grid, s, by).hits.at(0).score, place_score(ring().grid, s, by, start) - 1e-9)
+            << k;
+    }
+}
+
 }  // namespace
 }  // namespace tact::prep_search_places_test
