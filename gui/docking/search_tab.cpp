@@ -16,6 +16,7 @@ constexpr std::array<const char*, 3> kObjectiveHelp{
     "mean density at the atoms, which the hand feels: goes uphill only, finds nothing beyond the next "
     "maximum"};
 constexpr int kMeanDensity = 2;
+constexpr ImU32 kBar = IM_COL32(38, 84, 124, 255);  // the text on it must be legible
 
 bool button(const char* name, bool enabled, const char* help) {
     ImGui::BeginDisabled(!enabled);
@@ -122,10 +123,12 @@ void found_list(const Theme& theme, const DashboardState& state, FittingState& f
 
 void draw_search_progress(const Theme& theme, FittingState& f) {
     const SearchState& s = f.search;
+    ImGui::PushStyleColor(ImGuiCol_PlotHistogram, kBar);
     ImGui::ProgressBar(
         static_cast<float>(s.progress), {ImGui::GetContentRegionAvail().x - theme.px(60.0F), 0.0F},
         format("%s body %u: %.0f %%", s.nearby ? "refining" : "searching", s.running_body, 100.0 * s.progress)
             .c_str());
+    ImGui::PopStyleColor();
     ImGui::SameLine();
     if (ImGui::SmallButton("Cancel")) f.requests.push_back({FitAction::cancel, 0, {}});
 }
