@@ -24,8 +24,11 @@ protected:
     static void SetUpTestSuite() {
         char name[] = "/tmp/tact-placement-test-XXXXXX";
         folder_ = mkdtemp(name);
-        std::string bake = TACT_PREP;
-        bake.append(" demo dock -o '").append(folder_).append("/ring.tact' > /dev/null 2>&1");
+        std::string bake = "'";  // the checkout's path may have spaces
+        bake.append(TACT_PREP)
+            .append("' demo dock -o '")
+            .append(folder_)
+            .append("/ring.tact' > /dev/null 2>&1");
         ASSERT_EQ(std::system(bake.c_str()), 0);
         content_ = load_scene(folder_ + "/ring.tact");
     }
