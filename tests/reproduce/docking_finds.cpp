@@ -46,14 +46,6 @@ Vec3 atom(const Structure& s, std::size_t i) {
     return {static_cast<double>(s.x_m[i]), static_cast<double>(s.y_m[i]), static_cast<double>(s.z_m[i])};
 }
 
-double gyration_m(const Structure& s) {
-    double sum = 0.0;
-    for (std::size_t i = 0; i < s.size(); ++i) {
-        sum += static_cast<double>(s.mass_fraction[i]) * atom(s, i).squaredNorm();
-    }
-    return std::sqrt(sum);
-}
-
 // To a maximum of the summed density, in steps that do not depend on the voxels of the map.
 Pose climb(const DensityMap& map, const Structure& s, const Pose& pose) {
     constexpr ClimbSteps kSteps{.first_m = 0.5 * kA, .most_m = 2.0 * kA, .least_m = 1e-3 * kA};
@@ -116,7 +108,8 @@ Ends ends(const DensityMap& map, const Structure& s, double offset_m, double tur
         double least = 1e300;  // displacement of the atoms (m)
         for (const Pose& e : equivalent) {
             const Pose place = s.home() * e;
-            const double d = (end.p_m - place.p_m).norm() + gyration_m(s) * end.q.angularDistance(place.q);
+            const double d =
+                (end.p_m - place.p_m).norm() + radius_of_gyration_m(s) * end.q.angularDistance(place.q);
             if (d < least) least = d, nearest = place;
         }
         const double away_m = (end.p_m - nearest.p_m).norm(), turned = end.q.angularDistance(nearest.q);

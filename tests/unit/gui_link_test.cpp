@@ -162,6 +162,11 @@ TEST(RegionChecks, refuse_impossible_bodies) {
     b = good_bodies();
     b.body[5].pos_model_m[0] = kNan;  // beyond count: not checked
     EXPECT_TRUE(sensible(b));
+    for (const float pull_n : {-1.0F, 1e6F, std::nanf("")}) {
+        b = good_bodies();
+        b.pull_n = pull_n;
+        EXPECT_FALSE(sensible(b)) << pull_n;
+    }
 }
 
 TEST(RegionChecks, refuse_impossible_numbers_and_unterminated_texts) {
