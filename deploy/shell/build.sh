@@ -75,7 +75,7 @@ tact_build() {
     tact_fresh_if_moved "$preset"
     if command -v ccache >/dev/null && [ -z "${CMAKE_CXX_COMPILER_LAUNCHER+given}" ]; then
         export CMAKE_CXX_COMPILER_LAUNCHER=ccache CCACHE_BASEDIR=$PWD CCACHE_NOHASHDIR=1
-        export CCACHE_SLOPPINESS=pch_defines,time_macros
+        export CCACHE_SLOPPINESS=pch_defines,time_macros CCACHE_DEPEND=1  # no preprocessing before each compilation
     fi
     if ! cmake --preset "$preset" >"$log" 2>&1; then
         cat "$log" >&2

@@ -3,6 +3,7 @@
 #include <cstdio>
 #include <memory>
 
+#include "ipc/base/error.hpp"
 #include "ipc/scene/file/scene_meta.hpp"
 #include "prep/export/export_bodies.hpp"
 #include "prep/input/read_file.hpp"
@@ -18,6 +19,9 @@ struct ExportRequest {
 };
 
 void run_export(const ExportRequest& request) {
+    if (request.options.residues != 0 && request.options.residues % 2 == 0)
+        throw StartupError("fit of residues", "the window is an even number of residues",
+                           "give an odd one, e.g. 9");
     const SceneFile scene = SceneFile::open(request.scene);
     const std::vector<char> json = read_whole_file(request.poses, kPosesBytesMax);
     const std::vector<PlacedBody> bodies =
@@ -43,6 +47,16 @@ void add_export(CLI::App& app) {
     command->add_option("--contour", request->options.contour,
                         "Contour level that the fractions inside refer to, in the map's unit; default: the "
                         "scene's");
+    CLI::Option* const residues =
+        command->add_option("--residues", request->options.residues,
+                            "Also write the fit of each residue (CSV): mean density, and the correlation in "
+                            "windows of so many residues along the "
+                            "chain, an odd number, e.g. 9");
+    residues->type_name("WINDOW")->check(CLI::Range(1, 999));
+    command
+        ->add_flag("--b-column", request->options.b_column,
+                   "Write that correlation into the B column of the structures, to colour them by it")
+        ->needs(residues);
     command->add_flag("--combined", request->options.combined,
                       "Also write all bodies to one file, with a unique id per chain");
     command->add_flag("--force", request->options.force,

@@ -12,6 +12,7 @@
 #include "ipc/base/error.hpp"
 #include "ipc/scene/file/scene_meta.hpp"
 #include "ipc/scene/fit/fit_metrics.hpp"
+#include "prep/export/residue_column.hpp"
 #include "prep/export/write_structure_file.hpp"
 #include "prep/input/read_file.hpp"
 
@@ -198,13 +199,26 @@ std::string chain_id(std::size_t n) {
     }
 }
 
-// The first model of every body, in the order of the bodies.
+// The fit of the residues of one body, together with all others.
+std::vector<ResidueFit> residues_of(const DensityGrid& grid, const SceneMeta& meta,
+                                    const std::vector<Structure>& structures,
+                                    const std::vector<PlacedBody>& bodies, std::size_t body, int window) {
+    std::vector<PlacedStructure> placed{{&structures[bodies[body].structure], bodies[body].T_model_body}};
+    for (std::size_t i = 0; i < bodies.size(); ++i)
+        if (i != body) placed.push_back({&structures[bodies[i].structure], bodies[i].T_model_body});
+    return residue_fit(
+        grid, placed,
+        {.resolution_m = meta.resolution_m, .background = meta.map_background, .sigma = meta.map_sigma},
+        window);
+}
+
+// The first model of every body, in the order of the bodies. sources: one per body.
 std::vector<FileAtom> all_atoms(const std::vector<Source>& sources, const std::vector<PlacedBody>& bodies,
                                 const std::vector<AtomMove>& moves, Remarks& remarks) {
     std::vector<FileAtom> all;
     std::size_t chains = 0;
     for (std::size_t i = 0; i < bodies.size(); ++i) {
-        const Source& s = sources[bodies[i].structure];
+        const Source& s = sources[i];
         std::vector<FileAtom> atoms =
             s.mmcif ? mmcif_atoms(s.text, s.path.string()) : pdb_atoms(s.text, s.path.string());
         std::map<std::string, std::string> renamed;
@@ -272,18 +286,32 @@ std::vector<fs::path> export_bodies(const SceneFile& scene, const std::vector<Pl
     std::vector<Structure> structures;
     for (std::uint32_t i = 0; i < meta.body_count; ++i) structures.push_back(read_structure(scene, i));
     const Fit fit = fit_of(scene, structures, bodies, options.contour.value_or(meta.contour));
+    const DensityGrid grid = options.residues > 0 ? read_grid(scene) : DensityGrid{};
     std::vector<std::pair<fs::path, std::string>> files;
     std::vector<AtomMove> moves;
+    std::vector<Source> written;  // by body
     std::string table = kCsvHead;
     for (std::size_t i = 0; i < bodies.size(); ++i) {
         const PlacedBody& body = bodies[i];
-        const Source& source = sources.at(body.structure);
+        Source& source = written.emplace_back(sources.at(body.structure));
         const Structure& s = structures[body.structure];
         moves.push_back(AtomMove::of(body.T_model_body, s.home_com_model_m));
         const AtomMove& move = moves.back();
-        const Remarks remarks = remarks_of(meta, fit, i, bodies.size(), &body, &move);
+        Remarks remarks = remarks_of(meta, fit, i, bodies.size(), &body, &move);
         // The body id makes file names unique, also if two structures have the same name.
         const std::string stem = source.stem + "-body" + std::to_string(body.id);
+        std::string residue_table;
+        if (options.residues > 0) {
+            const std::vector<ResidueFit> residues =
+                residues_of(grid, meta, structures, bodies, i, options.residues);
+            residue_table = residue_csv(s, residues);
+            if (options.b_column) {
+                source.text = with_b_column(source.text, source.mmcif, source.path.string(), s, residues);
+                remarks.emplace_back(
+                    "b_column",
+                    printed("correlation about the mean in windows of %d residues", options.residues));
+            }
+        }
         std::string name = stem + ".cif", text;
         if (source.mmcif) {
             text = moved_mmcif(source.text, source.path.string(), move, remarks);
@@ -301,11 +329,13 @@ std::vector<fs::path> export_bodies(const SceneFile& scene, const std::vector<Pl
         table += csv_row(body, s.name, name, move, fit, i);
         files.emplace_back(options.folder / name, std::move(text));
         files.emplace_back(options.folder / (stem + ".matrix.txt"), matrix_text(body, s.name, move));
+        if (options.residues > 0)
+            files.emplace_back(options.folder / (stem + ".residues.csv"), residue_table);
     }
     files.emplace_back(options.folder / "bodies.csv", table);
     if (options.combined) {
         Remarks remarks = remarks_of(meta, fit, 0, bodies.size(), nullptr, nullptr);
-        const std::vector<FileAtom> atoms = all_atoms(sources, bodies, moves, remarks);
+        const std::vector<FileAtom> atoms = all_atoms(written, bodies, moves, remarks);
         const bool mmcif =
             std::any_of(sources.begin(), sources.end(), [](const Source& s) { return s.mmcif; });
         auto pdb = mmcif ? std::nullopt : new_pdb(atoms, remarks);

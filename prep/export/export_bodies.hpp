@@ -2,6 +2,7 @@
 //
 //   NAME-bodyID.pdb or .cif     the original file with its atoms moved and the fit in its remarks
 //   NAME-bodyID.matrix.txt      3x4 matrix from the file's coordinates to the placed ones, in ångström; axis, angle
+//   NAME-bodyID.residues.csv    with `residues`: the fit of each residue (residue_column.hpp)
 //   bodies.csv                  a row for each body: matrix, axis, angle, fit
 //   combined.pdb or .cif        with `combined`: all bodies in one file, with a unique id per chain
 //
@@ -24,7 +25,9 @@ struct ExportOptions {
     bool combined = false;
     bool force = false;
     std::optional<double>
-        contour{};  // that the fractions inside refer to, in the map's unit; none: the scene's
+        contour{};     // that the fractions inside refer to, in the map's unit; none: the scene's
+    int residues = 0;  // window of the correlation of residues, an odd number of them; 0: none is computed
+    bool b_column = false;  // that correlation also replaces the B values
 };
 
 // Returns the files written, in order.

@@ -5,8 +5,8 @@
 
 #include "ipc/base/error.hpp"
 #include "ipc/scene/density/subtracted_map.hpp"
-#include "prep/map/low_pass.hpp"
 #include "prep/search/joint_fit.hpp"
+#include "prep/search/refine_in_turns.hpp"
 
 namespace tact {
 namespace {
@@ -43,10 +43,10 @@ public:
                                    "check map, resolution and structure, or leave it out");
         }
         choose();
-        refine_in_turns();
+        refine_all();
         for (int again = 0; again < kSearchesAgain; ++again) {
             for (std::size_t i = 0; i < structures_.size(); ++i) search_again(i, next());
-            refine_in_turns();
+            refine_all();
         }
         result_.correlation = joint_.correlation(fields());
         for (SearchResult& r : result_.found) r.hits.resize(std::min(r.hits.size(), wanted_hits_));
@@ -82,35 +82,8 @@ private:
                    ? map_
                    : subtract_placed(map_, settings_.background, others, settings_.resolution_m).grid;
     }
-    // The sum of squares of map - scale * sum of simulated densities falls when a structure climbs the smoothed rest of the map,
-    // because the sum of squares of its own density does not depend on its pose.
-    void refine_in_turns() {
-        DensityGrid own = map_;
-        for (float& v : own.values) v -= static_cast<float>(settings_.background);
-        std::vector<std::vector<float>> simulated;
-        for (const PlacedStructure& p : placed_)
-            simulated.push_back(simulated_map(map_, {&p, 1}, settings_.resolution_m));
-        std::vector<float> sum(map_.count(), 0.0F);
-        for (const auto& one : simulated)
-            for (std::size_t v = 0; v < sum.size(); ++v) sum[v] += one[v];
-        DensityGrid rest = own;
-        for (int turn = 0; turn < kRefinements; ++turn)
-            for (std::size_t i = 0; i < structures_.size(); ++i) {
-                double with_map = 0.0, with_itself = 0.0;
-                for (std::size_t v = 0; v < sum.size(); ++v) {
-                    with_map += static_cast<double>(sum[v]) * static_cast<double>(own.values[v]);
-                    with_itself += static_cast<double>(sum[v]) * static_cast<double>(sum[v]);
-                }
-                if (!(with_map > 0.0 && with_itself > 0.0)) return;
-                const auto scale = static_cast<float>(with_map / with_itself);
-                for (std::size_t v = 0; v < sum.size(); ++v)
-                    rest.values[v] = own.values[v] - scale * (sum[v] - simulated[i][v]);
-                const DensityMap felt(low_pass(rest, 0.0, settings_.resolution_m), 0.0, 1.0);
-                placed_[i].T_model_body = refine(felt, structures_[i], placed_[i].T_model_body).T_model_body;
-                for (std::size_t v = 0; v < sum.size(); ++v) sum[v] -= simulated[i][v];
-                simulated[i] = simulated_map(map_, {&placed_[i], 1}, settings_.resolution_m);
-                for (std::size_t v = 0; v < sum.size(); ++v) sum[v] += simulated[i][v];
-            }
+    void refine_all() {
+        refine_in_turns(map_, settings_.background, settings_.resolution_m, placed_, kRefinements);
         for (std::size_t i = 0; i < structures_.size(); ++i) {
             SearchResult& found = result_.found[i];
             SearchHit& hit = found.hits.front();

@@ -10,6 +10,7 @@
 #include "prep/console/target.hpp"
 #include "prep/search/fit_input.hpp"
 #include "prep/search/fit_program.hpp"
+#include "prep/search/place_symmetric.hpp"
 #include "prep/search/place_together.hpp"
 #include "prep/search/search_report.hpp"
 
@@ -23,24 +24,39 @@ struct SearchRequest {
     std::size_t rotations_max = 4000, hits_max = 20;
     unsigned threads = 0;
     bool together = false;
+    std::string symmetry;  // of copies; "find": the one that explains the map best
+    [[nodiscard]] std::vector<Symmetry> symmetries() const;
 };
+
+std::vector<Symmetry> SearchRequest::symmetries() const {
+    if (symmetry != "find") return {symmetry_of(symmetry)};
+    std::vector<Symmetry> list;
+    for (unsigned n = 2; n <= 12; ++n) list.push_back({Symmetry::Kind::cyclic, n});
+    for (unsigned n = 2; n <= 7; ++n) list.push_back({Symmetry::Kind::dihedral, n});
+    return list;
+}
 
 double seconds_since(std::chrono::steady_clock::time_point begin) {
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
 }
 
-// Measured in the map as it is.
+// Measured in the map as it is. Copies clash with each other too.
 void measure(SearchedModel& m, const FitData& data) {
     for (const SearchHit& hit : m.found.hits) {
         const PlacedStructure alone{&m.structure, hit.T_model_body};
         m.cc_about_mean.push_back(fit_metrics(data.grid, {&alone, 1}, data.metrics).cc_mean);
         std::vector<PlacedStructure> all = data.placed();
         all.insert(all.begin(), alone);
+        if (m.copies)
+            for (const SearchHit& other : m.found.hits)
+                if (&other != &hit) all.push_back({&m.structure, other.T_model_body});
         m.clashes.push_back(count_clashes(all).pairs_of[0]);
     }
 }
 
 SearchReport search_files(const SearchRequest& request, const Progress& progress) {
+    const std::vector<Symmetry> symmetries =
+        request.symmetry.empty() ? std::vector<Symmetry>{} : request.symmetries();
     report(progress, 0.0, "reading the map");
     const FitData data = read_fit_input(request.input);
     const SearchSettings settings{.resolution_m = data.metrics.resolution_m,
@@ -60,8 +76,14 @@ SearchReport search_files(const SearchRequest& request, const Progress& progress
         if (request.together) continue;
         const auto begin = std::chrono::steady_clock::now();
         const auto count = static_cast<double>(models);
-        m.found = search(data.rest, m.structure, settings,
-                         part(progress, static_cast<double>(i) / count, static_cast<double>(i + 1) / count));
+        const Progress own =
+            part(progress, static_cast<double>(i) / count, static_cast<double>(i + 1) / count);
+        if (symmetries.empty()) {
+            m.found = search(data.rest, m.structure, settings, own);
+        } else {
+            m.copies = place_symmetric(data.rest, m.structure, symmetries, settings, own);
+            m.found = m.copies->found;
+        }
         m.seconds = seconds_since(begin);
     }
     if (request.together) {
@@ -107,8 +129,15 @@ void set_up_search(CLI::App& app) {
                    "Correlation about the mean of the Laplacians of the densities, or of the densities")
         ->check(CLI::IsMember({"laplacian", "density"}))
         ->capture_default_str();
-    app.add_flag("--together", request->together,
-                 "Place all models in one map, so that together they explain it best");
+    CLI::Option* const together =
+        app.add_flag("--together", request->together,
+                     "Place all models in one map, so that together they explain it best");
+    app.add_option(
+           "--symmetry", request->symmetry,
+           "Place copies of each model, related by this symmetry: C7, D3, helix:RISE,TWIST,COPIES (angstrom, "
+           "degrees), or find, to try C2 to C12 and D2 to D7; its axis is found")
+        ->type_name("NAME")
+        ->excludes(together);
     app.add_option("--hits", request->hits_max, "Number of places per model")
         ->check(CLI::Range(1, 1000))
         ->capture_default_str();

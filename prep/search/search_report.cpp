@@ -38,11 +38,22 @@ std::string as_table(const SearchReport& r) {
                text("%zu atoms, %zu orientations, within %.1f degrees, searched at %.1f Å, %.1f s\n",
                     m.structure.size(), m.found.rotations, m.found.cover_rad / kDegreeRad,
                     m.found.search_resolution_m / kAngstromM, m.seconds);
+        if (m.copies) {
+            const Vec3 axis = m.copies->place.T_model_frame.q * Vec3::UnitZ(),
+                       through_a = m.copies->place.T_model_frame.p_m / kAngstromM;
+            out += text(
+                "  %zu copies by %s, axis %.4f %.4f %.4f through %.1f %.1f %.1f Å; together: correlation "
+                "%.4f; "
+                "refined without symmetry their atoms are %.2f Å away\n",
+                m.found.hits.size(), m.copies->symmetry.name().c_str(), axis.x(), axis.y(), axis.z(),
+                through_a.x(), through_a.y(), through_a.z(), m.copies->correlation,
+                m.copies->free_difference_m / kAngstromM);
+        }
         if (m.found.hits.empty())
             out += "  no place found\n";
         else
-            out += text("%5s %8s %7s %14s %8s   %s\n", "rank", "score", "z", "cc about mean", "clashes",
-                        "centre, Å");
+            out += text("%5s %8s %7s %14s %8s   %s\n", m.copies ? "copy" : "rank", "score", "z",
+                        "cc about mean", "clashes", "centre, Å");
         for (std::size_t i = 0; i < m.found.hits.size(); ++i) {
             const SearchHit& hit = m.found.hits[i];
             const Vec3 at_a = hit.T_model_body.p_m / kAngstromM;
@@ -75,6 +86,15 @@ nlohmann::ordered_json as_json(const SearchReport& r) {
                                         {"random_score_mean", m.found.random_mean},
                                         {"random_score_deviation", m.found.random_deviation},
                                         {"seconds", m.seconds}};
+        if (m.copies) {
+            const Vec3 axis = m.copies->place.T_model_frame.q * Vec3::UnitZ(),
+                       through_a = m.copies->place.T_model_frame.p_m / kAngstromM;
+            searched["symmetry"] = {{"name", m.copies->symmetry.name()},
+                                    {"axis", {axis.x(), axis.y(), axis.z()}},
+                                    {"through_a", {through_a.x(), through_a.y(), through_a.z()}},
+                                    {"correlation", m.copies->correlation},
+                                    {"free_difference_a", m.copies->free_difference_m / kAngstromM}};
+        }
         json["searches"].push_back(searched);
         for (std::size_t i = 0; i < m.found.hits.size(); ++i) {
             const SearchHit& hit = m.found.hits[i];

@@ -1,7 +1,8 @@
 // What a search found, as a table for a person, as JSON and as CSV.
 //
 // JSON    hits[]: model, rank, score, z, cc_about_mean, clashes (with the fixed structures) and matrix: 3 x 4, row-major, from
-//         the coordinates of the model's file to those of the map, angstrom. searches[]: one per model, how it was searched
+//         the coordinates of the model's file to those of the map, angstrom. searches[]: one per model, how it was searched,
+//         and the symmetry of its copies: name, axis, a point of it (through_a, in the map), correlation of all copies
 // CSV     one row per model: its best hit; matrix in twelve columns
 #pragma once
 
@@ -10,7 +11,7 @@
 #include <string>
 #include <vector>
 
-#include "prep/search/search.hpp"
+#include "prep/search/place_symmetric.hpp"
 
 namespace tact {
 
@@ -21,6 +22,7 @@ struct SearchedModel {
     std::vector<double> cc_about_mean;   // by hit; in the map as it is
     std::vector<std::uint64_t> clashes;  // by hit
     double seconds = 0.0;
+    std::optional<PlacedSymmetric> copies{};  // by symmetry; then the hits are the copies
 };
 
 struct SearchReport {

@@ -4,7 +4,7 @@ tact_tests(prep_docking_tests SOURCES
         unit/prep_synthetic_test.cpp unit/prep_bake_test.cpp
     USES prep_map prep_structure prep_codebook prep_synthetic prep_docking SYSTEM ZLIB::ZLIB)
 tact_tests(prep_search_tests SOURCES
-        unit/prep_search_test.cpp unit/prep_search_places_test.cpp
+        unit/prep_search_test.cpp unit/prep_search_places_test.cpp unit/prep_symmetry_test.cpp
     USES prep_docking prep_search prep_search_command prep_map prep_synthetic scene)
 set_tests_properties(prep_search_places_test PROPERTIES LABELS long)
 tact_tests(prep_mesh_tests SOURCES

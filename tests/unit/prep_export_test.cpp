@@ -8,6 +8,7 @@
 #include <cmath>
 #include <fstream>
 #include <gemmi/pdb.hpp>
+#include <map>
 #include <set>
 #include <sstream>
 
@@ -222,6 +223,56 @@ TEST_F(Export, the_fraction_inside_refers_to_the_contour_that_was_asked_for) {
     EXPECT_NE(above.find("contour: 1e+06"), std::string::npos);
     EXPECT_NE(above.find("fraction_inside_contour: 0.0000"), std::string::npos);
     EXPECT_NE(below.find("fraction_inside_contour: 1.0000"), std::string::npos);
+}
+
+// Atoms of a residue have its correlation, with the digits of the table; waters none.
+TEST_F(Export, the_fit_of_residues_is_a_table_and_fills_the_b_column_if_asked) {
+    for (const bool mmcif : {false, true}) {
+        const fs::path file = mmcif ? write("small.cif", kCif) : write("small.pdb", kPdb);
+        const SceneFile scene = this->scene({file});
+        ExportOptions options{.folder = out()};
+        options.force = true;
+        options.residues = 1;
+        const auto kept = export_bodies(scene, {{7, 0, tilted()}}, options);
+        const auto atoms_of = [&](const fs::path& path) {
+            return mmcif ? mmcif_atoms(read(path), "saved") : pdb_atoms(read(path), "saved");
+        };
+        EXPECT_NEAR(atoms_of(kept[0])[1].b_iso, 11.0, 1e-9);
+        ASSERT_EQ(kept[2].filename(), "small-body7.residues.csv");
+        std::map<std::string, double> table;  // "chain,residue"
+        std::istringstream lines(read(kept[2]));
+        std::string line;
+        std::getline(lines, line);
+        EXPECT_EQ(line, "chain,residue,atoms,density_sigma,correlation");
+        while (std::getline(lines, line)) {
+            const std::size_t second = line.find(',', line.find(',') + 1), last = line.rfind(',');
+            if (last + 1 < line.size()) table[line.substr(0, second)] = std::stod(line.substr(last + 1));
+        }
+        ASSERT_FALSE(table.empty());
+        options.b_column = true;
+        const auto filled = export_bodies(scene, {{7, 0, tilted()}}, options);
+        std::size_t with = 0;
+        for (const FileAtom& a : atoms_of(filled[0])) {
+            if (a.model != 1) continue;
+            const auto found = table.find(a.chain + "," + a.residue);
+            const bool has = found != table.end() && a.residue_name != "HOH";
+            EXPECT_NEAR(a.b_iso, has ? found->second : 0.0, 0.0051) << a.name;
+            with += has ? 1 : 0;
+        }
+        EXPECT_GE(with, 2U);
+        EXPECT_NE(read(filled[0]).find("b_column"), std::string::npos);
+        expect_same_place(import_structure(filled[0]).structure, import_structure(file).structure, tilted());
+    }
+    const std::string tag = "_atom_site.B_iso_or_equiv";
+    std::string none = kCif;
+    none.replace(none.find(tag), tag.size(), "_atom_site.other");
+    const SceneFile scene = this->scene({write("none.cif", none)});
+    ExportOptions options{.folder = out()};
+    options.force = true, options.residues = 3, options.b_column = true;
+    EXPECT_NE(error_of([&] {
+                  export_bodies(scene, {{1, 0, tilted()}}, options);
+              }).find("--b-column"),
+              std::string::npos);
 }
 
 TEST_F(Export, a_saved_mmcif_has_the_pose_of_the_body) {

@@ -1,6 +1,7 @@
 // The whole search in the ring of six: a subunit has six right places there.
 #include <gtest/gtest.h>
 
+#include "prep/search/place_symmetric.hpp"
 #include "prep/search/place_together.hpp"
 #include "tests/unit/prep_search_fixture.hpp"
 
@@ -55,6 +56,61 @@ TEST(PlaceTogether, structures_take_right_places_of_the_ring_and_none_twice) {
         EXPECT_LT(nearest_a, 1.0) << i;
         for (std::size_t k = 0; k < i; ++k)
             EXPECT_GT((at.p_m - placed.found[k].hits.front().T_model_body.p_m).norm(), 10.0 * kAngstromM);
+    }
+}
+
+// The ring is C6; that is found among symmetries whose copies would be too few, too many or nowhere.
+TEST(PlaceSymmetric, six_copies_of_a_subunit_are_placed_about_the_axis_of_the_ring) {
+    const Structure& s = ring().subunits.front();
+    SearchSettings by = settings();
+    by.rotations_max = 500;
+    const std::vector<Symmetry> any{symmetry_of("C2"), symmetry_of("C5"), symmetry_of("C6"),
+                                    symmetry_of("C12"), symmetry_of("D3")};
+    const PlacedSymmetric placed = place_symmetric(ring().grid, s, any, by);
+    EXPECT_EQ(placed.symmetry.name(), "C6");
+    ASSERT_EQ(placed.found.hits.size(), 6U);
+    std::vector<bool> seen(6, false);
+    for (const SearchHit& hit : placed.found.hits)
+        for (std::size_t j = 0; j < 6; ++j)
+            if (rmsd_a(s, hit.T_model_body, place_in_ring(s, j)) < 1.0) seen[j] = true;
+    EXPECT_EQ(std::count(seen.begin(), seen.end(), true), 6);
+    const Vec3 axis = placed.place.T_model_frame.q * Vec3::UnitZ();
+    EXPECT_GT(std::abs(axis.z()), std::cos(0.5 * kDegreeRad));
+    EXPECT_LT(placed.place.T_model_frame.p_m.head<2>().norm(), 0.5 * kAngstromM);
+    EXPECT_LT(placed.free_difference_m, 1.0 * kAngstromM);
+    EXPECT_THROW(place_symmetric(ring().grid, s, {symmetry_of("helix:400,10,3")}, by), StartupError);
+}
+
+// Copies by two-fold axes and along a helix, in maps simulated from known places.
+TEST(PlaceSymmetric, copies_of_a_dihedral_and_of_a_helix_are_found) {
+    const Structure& s = ring().subunits.front();
+    SearchSettings by = settings();
+    by.rotations_max = 500;
+    by.background = 0.0;
+    SeededRandom random(12);
+    for (const char* name : {"D2", "helix:45,60,4"}) {
+        const Symmetry symmetry = symmetry_of(name);
+        DensityGrid grid = ring().grid;
+        Vec3 middle = grid.origin_m;
+        for (int axis = 0; axis < 3; ++axis)
+            middle[axis] += 0.5 * grid.spacing_m[axis] * grid.size[static_cast<std::size_t>(axis)];
+        SymmetricPlace right{{middle, random.rotation()}, {}};
+        const Vec3 first_m = symmetry.kind == Symmetry::Kind::dihedral ? Vec3(25e-10, 25e-10, 28e-10)
+                                                                       : Vec3(30e-10, 0.0, -67e-10);
+        right.T_model_first = right.T_model_frame * Pose{first_m, random.rotation()};
+        std::vector<PlacedStructure> copies;
+        for (std::size_t k = 0; k < symmetry.copies(); ++k)
+            copies.push_back({&s, pose_of_copy(symmetry, right, k)});
+        grid.values = simulated_map(grid, copies, by.resolution_m);
+        const PlacedSymmetric placed = place_symmetric(grid, s, {symmetry}, by);
+        ASSERT_EQ(placed.found.hits.size(), 4U) << name;
+        for (const PlacedStructure& copy : copies) {
+            double nearest_a = 1e9;
+            for (const SearchHit& hit : placed.found.hits)
+                nearest_a = std::min(nearest_a, rmsd_a(s, hit.T_model_body, copy.T_model_body));
+            EXPECT_LT(nearest_a, 1.0) << name;
+        }
+        EXPECT_GT(placed.correlation, 0.95) << name;
     }
 }
 

@@ -14,6 +14,6 @@ tact_tests(scene_mesh_tests SOURCES
     USES scene base prep_mesh prep_surface SYSTEM rapidcheck)
 tact_tests(scene_fit_tests SOURCES
         unit/scene_fit_metrics_test.cpp unit/scene_simulated_map_test.cpp unit/scene_refine_test.cpp
-        unit/scene_fit_real_test.cpp
+        unit/scene_fit_real_test.cpp unit/scene_residue_fit_test.cpp
     USES scene prep_map prep_structure)
 set_tests_properties(scene_fit_real_test PROPERTIES LABELS long)  # not under sanitizers

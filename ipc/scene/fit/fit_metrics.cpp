@@ -5,84 +5,11 @@
 #include <vector>
 
 #include "ipc/base/error.hpp"
+#include "ipc/scene/fit/fit_sums.hpp"
 
 namespace tact {
 
 namespace {
-
-constexpr float kRegionShare = 0.05F;
-
-Vec3 in_voxels(const DensityGrid& grid, const PlacedStructure& placed, std::size_t atom) {
-    const Structure& s = *placed.structure;
-    const Vec3 body(static_cast<double>(s.x_m[atom]), static_cast<double>(s.y_m[atom]),
-                    static_cast<double>(s.z_m[atom]));
-    return (placed.T_model_body * body - grid.origin_m).cwiseQuotient(grid.spacing_m);
-}
-
-// Trilinear interpolation of the map; outside the box the background.
-double trilinear(const DensityGrid& grid, const Vec3& at, double background) {
-    double value = 0.0;
-    const Vec3 low = at.array().floor();
-    if (!(low.array() >= -1.0).all() ||
-        !(low.x() < grid.size[0] && low.y() < grid.size[1] && low.z() < grid.size[2])) {
-        return background;
-    }
-    for (int corner = 0; corner < 8; ++corner) {
-        double weight = 1.0;
-        std::array<std::int64_t, 3> voxel{};
-        bool inside = true;
-        for (int a = 0; a < 3; ++a) {
-            const int up = (corner >> a) & 1;
-            const double part = at[a] - low[a];
-            weight *= up == 1 ? part : 1.0 - part;
-            const auto axis = static_cast<std::size_t>(a);
-            voxel[axis] = static_cast<std::int64_t>(low[a]) + up;
-            inside = inside && voxel[axis] >= 0 && voxel[axis] < static_cast<std::int64_t>(grid.size[axis]);
-        }
-        value += weight * (inside ? static_cast<double>(grid.at(static_cast<std::uint32_t>(voxel[0]),
-                                                                static_cast<std::uint32_t>(voxel[1]),
-                                                                static_cast<std::uint32_t>(voxel[2])))
-                                  : background);
-    }
-    return value;
-}
-
-struct Sums {
-    double u = 0.0, v = 0.0, uu = 0.0, vv = 0.0, uv = 0.0;
-    std::uint64_t voxels = 0;
-};
-
-// simulated: one value per voxel of the box.
-void correlate(const DensityGrid& grid, const VoxelBox& box, std::span<const float> simulated,
-               FitMetrics& fit) {
-    const float most = simulated.empty() ? 0.0F : *std::max_element(simulated.begin(), simulated.end());
-    if (!(most > 0.0F)) return;
-    Sums sum;
-    std::size_t i = 0;
-    for (std::uint32_t z = 0; z < box.size[2]; ++z) {
-        for (std::uint32_t y = 0; y < box.size[1]; ++y) {
-            const float* const row =
-                &grid.values[(std::size_t{box.first[2] + z} * grid.size[1] + box.first[1] + y) *
-                                 grid.size[0] +
-                             box.first[0]];
-            for (std::uint32_t x = 0; x < box.size[0]; ++x, ++i) {
-                if (!(simulated[i] > kRegionShare * most)) continue;
-                const auto u = static_cast<double>(row[x]), v = static_cast<double>(simulated[i]);
-                sum.u += u, sum.v += v;
-                sum.uu += u * u, sum.vv += v * v, sum.uv += u * v;
-                ++sum.voxels;
-            }
-        }
-    }
-    const auto n = static_cast<double>(sum.voxels);
-    const double zero = std::sqrt(sum.uu * sum.vv);
-    const double varied =
-        std::sqrt(std::max(0.0, sum.uu - sum.u * sum.u / n) * std::max(0.0, sum.vv - sum.v * sum.v / n));
-    fit.region_voxels = sum.voxels;
-    fit.overlap = sum.uv;
-    fit.cc_zero = zero > 0.0 ? sum.uv / zero : 0.0;
-    fit.cc_mean = varied > 0.0 ? (sum.uv - sum.u * sum.v / n) / varied : 0.0;
-}
 
 // Adds a box of values to the values of the whole grid.
 void add_box(const DensityGrid& grid, const VoxelBox& box, std::span<const float> part,
@@ -102,7 +29,7 @@ void add_box(const DensityGrid& grid, const VoxelBox& box, std::span<const float
 void look_at_atoms(const DensityGrid& grid, const PlacedStructure& placed, double background, double contour,
                    FitMetrics& fit) {
     for (std::size_t i = 0; i < placed.structure->size(); ++i) {
-        const double value = trilinear(grid, in_voxels(grid, placed, i), background);
+        const double value = map_at(grid, atom_in_voxels(grid, placed, i), background);
         fit.mean_density += value;
         fit.fraction_inside += value > contour ? 1.0 : 0.0;
     }
@@ -115,6 +42,11 @@ void divide_by_atoms(FitMetrics& fit, double background, double sigma) {
     fit.mean_density /= n;
     fit.fraction_inside /= n;
     if (sigma > 0.0) fit.mean_density_sigma = (fit.mean_density - background) / sigma;
+}
+
+void add_correlation(const RegionCorrelation& c, FitMetrics& fit) {
+    fit.cc_zero = c.cc_zero, fit.cc_mean = c.cc_mean;
+    fit.overlap = c.overlap, fit.region_voxels = c.voxels;
 }
 
 }  // namespace
@@ -145,7 +77,7 @@ FitOfBodies fit_of_bodies(const DensityGrid& grid, std::span<const PlacedStructu
         VoxelBox box = reached_box(grid, placed.subspan(b, 1), settings.resolution_m);
         own.assign(box.count(), 0.0F);
         add_simulated(grid, placed[b], settings.resolution_m, 1.0F, box, own);
-        correlate(grid, box, own, fit.body[b]);
+        add_correlation(correlate(grid, box, own, own), fit.body[b]);
         look_at_atoms(grid, placed[b], background, settings.contour, fit.body[b]);
         fit.all.mean_density += fit.body[b].mean_density;
         fit.all.fraction_inside += fit.body[b].fraction_inside;
@@ -157,7 +89,7 @@ FitOfBodies fit_of_bodies(const DensityGrid& grid, std::span<const PlacedStructu
     }
     divide_by_atoms(fit.all, background, sigma);
     if (placed.size() == 1) fit.all = fit.body.front();
-    if (placed.size() > 1) correlate(grid, together, sum, fit.all);
+    if (placed.size() > 1) add_correlation(correlate(grid, together, sum, sum), fit.all);
     const ClashCounts clashes = count_clashes(placed);
     fit.all.clashes = clashes.pairs;
     for (std::size_t b = 0; b < placed.size(); ++b) fit.body[b].clashes = clashes.pairs_of[b];

@@ -1,0 +1,21 @@
+// The fit of each residue (ipc/scene/fit/residue_fit.hpp) as a table, and in the B column of a structure file, where viewers colour by it.
+//
+// B column   the correlation; 0 for atoms that have none: of residues off the map, waters, other models
+// Errors     StartupError: an mmCIF file without a B column
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "ipc/scene/fit/residue_fit.hpp"
+
+namespace tact {
+
+// Columns chain, residue, atoms, density_sigma, correlation (empty: none).
+std::string residue_csv(const Structure& structure, const std::vector<ResidueFit>& fit);
+
+std::string with_b_column(std::string_view text, bool mmcif, const std::string& name,
+                          const Structure& structure, const std::vector<ResidueFit>& fit);
+
+}  // namespace tact
