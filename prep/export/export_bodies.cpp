@@ -11,7 +11,7 @@
 
 #include "ipc/base/error.hpp"
 #include "ipc/scene/file/scene_meta.hpp"
-#include "ipc/scene/fit/fit_metrics.hpp"
+#include "prep/export/fit_remarks.hpp"
 #include "prep/export/residue_column.hpp"
 #include "prep/export/write_structure_file.hpp"
 #include "prep/input/read_file.hpp"
@@ -30,13 +30,6 @@ struct Source {
     bool mmcif = false;
     std::string stem;  // "1oel" of 1oel.pdb.gz
 };
-
-template <class... Values>
-std::string printed(const char* format, Values... values) {
-    char text[512];
-    std::snprintf(text, sizeof text, format, values...);
-    return text;
-}
 
 std::string stem_of(const fs::path& path) {
     fs::path name = path.filename();
@@ -81,111 +74,6 @@ std::vector<Source> sources_of(const SceneFile& scene, std::uint32_t structures)
         sources.push_back(std::move(s));
     }
     return sources;
-}
-
-Eigen::AngleAxisd axis_of(const AtomMove& move) { return Eigen::AngleAxisd(Quat(move.turn).normalized()); }
-
-std::string matrix_row(const AtomMove& move, int row) {
-    return printed("%.12f %.12f %.12f %.6f", move.turn(row, 0), move.turn(row, 1), move.turn(row, 2),
-                   move.shift_a[row]);
-}
-
-struct Fit {
-    std::optional<FitOfBodies> numbers;  // absent if the resolution is unknown
-    double resolution_a = 0.0;
-    double contour = 0.0;
-};
-
-Fit fit_of(const SceneFile& scene, const std::vector<Structure>& structures,
-           const std::vector<PlacedBody>& bodies, double contour) {
-    const SceneMeta meta = read_meta(scene);
-    Fit fit;
-    fit.resolution_a = meta.resolution_m / kAngstromM;
-    fit.contour = contour;
-    if (!(meta.resolution_m > 0.0)) return fit;
-    std::vector<PlacedStructure> placed;
-    placed.reserve(bodies.size());
-    for (const PlacedBody& b : bodies) placed.push_back({&structures[b.structure], b.T_model_body});
-    fit.numbers = fit_of_bodies(read_grid(scene), placed,
-                                {.resolution_m = meta.resolution_m,
-                                 .contour = contour,
-                                 .background = meta.map_background,
-                                 .sigma = meta.map_sigma});
-    return fit;
-}
-
-void remark_fit(const FitMetrics& m, const std::string& prefix, Remarks& remarks) {
-    remarks.emplace_back(prefix + "correlation_about_zero", printed("%.4f", m.cc_zero));
-    remarks.emplace_back(prefix + "correlation_about_mean", printed("%.4f", m.cc_mean));
-    remarks.emplace_back(prefix + "overlap", printed("%.6g", m.overlap));
-    remarks.emplace_back(prefix + "mean_density", printed("%.6g", m.mean_density));
-    remarks.emplace_back(prefix + "mean_density_sigma", printed("%.4f", m.mean_density_sigma));
-    remarks.emplace_back(prefix + "fraction_inside_contour", printed("%.4f", m.fraction_inside));
-    remarks.emplace_back(prefix + "clashes", std::to_string(m.clashes));
-}
-
-Remarks remarks_of(const SceneMeta& meta, const Fit& fit, std::size_t index, std::size_t count,
-                   const PlacedBody* body, const AtomMove* move) {
-    Remarks remarks;
-    remarks.emplace_back("scene", meta.title);
-    if (body != nullptr) {
-        remarks.emplace_back("body", std::to_string(body->id));
-        for (int row = 0; row < 3; ++row)
-            remarks.emplace_back("matrix_row_" + std::to_string(row + 1),  // fits a line of PDB
-                                 printed("%.8f %.8f %.8f %.4f", move->turn(row, 0), move->turn(row, 1),
-                                         move->turn(row, 2), move->shift_a[row]));
-        const Eigen::AngleAxisd turn = axis_of(*move);
-        remarks.emplace_back("axis",
-                             printed("%.9f %.9f %.9f", turn.axis().x(), turn.axis().y(), turn.axis().z()));
-        remarks.emplace_back("angle_deg", printed("%.6f", turn.angle() / kDegreeRad));
-    }
-    if (!fit.numbers) return remarks;
-    remarks.emplace_back("resolution_a", printed("%.4g", fit.resolution_a));
-    remarks.emplace_back("region", kFitRegion);
-    remarks.emplace_back("contour", printed("%.6g", fit.contour));
-    if (body != nullptr) remark_fit(fit.numbers->body[index], "", remarks);
-    if (body == nullptr || count > 1) remark_fit(fit.numbers->all, "all_bodies_", remarks);
-    return remarks;
-}
-
-std::string matrix_text(const PlacedBody& body, const std::string& name, const AtomMove& move) {
-    const Eigen::AngleAxisd turn = axis_of(move);
-    std::string text = "# body " + std::to_string(body.id) + ", " + name +
-                       "\n# place = matrix * (x, y, z, 1) of the original file; angstrom\n" +
-                       printed("# axis %.9f %.9f %.9f\n# angle_deg %.6f\n", turn.axis().x(), turn.axis().y(),
-                               turn.axis().z(), turn.angle() / kDegreeRad);
-    for (int row = 0; row < 3; ++row) text += matrix_row(move, row) + '\n';
-    return text;
-}
-
-std::string csv_text(const std::string& text) {
-    std::string out = "\"";
-    for (const char c : text) out += c == '"' ? std::string("\"\"") : std::string(1, c);
-    return out + '"';
-}
-
-constexpr char kCsvHead[] =
-    "id,structure,name,file,m11,m12,m13,m14_a,m21,m22,m23,m24_a,m31,m32,m33,m34_a,axis_x,axis_y,axis_z,"
-    "angle_deg,com_x_a,com_y_a,com_z_a,resolution_a,cc_zero,cc_mean,overlap,mean_density,mean_density_sigma,"
-    "fraction_inside,region_voxels,atoms,clashes\n";
-
-std::string csv_row(const PlacedBody& body, const std::string& name, const std::string& file,
-                    const AtomMove& move, const Fit& fit, std::size_t index) {
-    std::string row = printed("%u,%u,", body.id, body.structure) + csv_text(name) + ',' + csv_text(file);
-    for (int r = 0; r < 3; ++r)
-        row += printed(",%.12f,%.12f,%.12f,%.6f", move.turn(r, 0), move.turn(r, 1), move.turn(r, 2),
-                       move.shift_a[r]);
-    const Eigen::AngleAxisd turn = axis_of(move);
-    const Vec3 com_a = body.T_model_body.p_m / kAngstromM;
-    row += printed(",%.9f,%.9f,%.9f,%.6f,%.4f,%.4f,%.4f", turn.axis().x(), turn.axis().y(), turn.axis().z(),
-                   turn.angle() / kDegreeRad, com_a.x(), com_a.y(), com_a.z());
-    if (!fit.numbers) return row + ",,,,,,,,,,\n";
-    const FitMetrics& m = fit.numbers->body[index];
-    return row + printed(",%.4g,%.6f,%.6f,%.8g,%.8g,%.6f,%.6f,%llu,%llu,%llu\n", fit.resolution_a, m.cc_zero,
-                         m.cc_mean, m.overlap, m.mean_density, m.mean_density_sigma, m.fraction_inside,
-                         static_cast<unsigned long long>(m.region_voxels),
-                         static_cast<unsigned long long>(m.atoms),
-                         static_cast<unsigned long long>(m.clashes));
 }
 
 // A, B, … Z, a … z, 0 … 9, then AA, AB, … ZZ, AAA, …; only mmCIF has room for ids of two letters and more.
@@ -285,7 +173,7 @@ std::vector<fs::path> export_bodies(const SceneFile& scene, const std::vector<Pl
     const std::vector<Source> sources = sources_of(scene, meta.body_count);
     std::vector<Structure> structures;
     for (std::uint32_t i = 0; i < meta.body_count; ++i) structures.push_back(read_structure(scene, i));
-    const Fit fit = fit_of(scene, structures, bodies, options.contour.value_or(meta.contour));
+    const SavedFit fit = fit_of(scene, structures, bodies, options.contour.value_or(meta.contour));
     const DensityGrid grid = options.residues > 0 ? read_grid(scene) : DensityGrid{};
     std::vector<std::pair<fs::path, std::string>> files;
     std::vector<AtomMove> moves;
@@ -307,9 +195,8 @@ std::vector<fs::path> export_bodies(const SceneFile& scene, const std::vector<Pl
             residue_table = residue_csv(s, residues);
             if (options.b_column) {
                 source.text = with_b_column(source.text, source.mmcif, source.path.string(), s, residues);
-                remarks.emplace_back(
-                    "b_column",
-                    printed("correlation about the mean in windows of %d residues", options.residues));
+                std::string window = "correlation about the mean, window in residues: ";
+                remarks.emplace_back("b_column", window.append(std::to_string(options.residues)));
             }
         }
         std::string name = stem + ".cif", text;

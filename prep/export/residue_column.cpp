@@ -25,9 +25,8 @@ Column column_of(const Structure& s, const std::vector<ResidueFit>& fit) {
 
 std::string value_of(const Column& column, const FileAtom& atom) {
     const auto found = column.find({atom.chain, atom.residue});
-    const bool other = atom.residue_name == "HOH" || found == column.end();
     char text[16];
-    std::snprintf(text, sizeof text, "%6.2f", other ? 0.0 : found->second);
+    std::snprintf(text, sizeof text, "%6.2f", found == column.end() ? 0.0 : found->second);
     return text;
 }
 

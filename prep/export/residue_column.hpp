@@ -1,6 +1,6 @@
 // The fit of each residue (ipc/scene/fit/residue_fit.hpp) as a table, and in the B column of a structure file, where viewers colour by it.
 //
-// B column   the correlation; 0 for atoms that have none: of residues off the map, waters, other models
+// B column   the correlation; 0 for atoms that have none: of residues off the map, and waters
 // Errors     StartupError: an mmCIF file without a B column
 #pragma once
 

@@ -30,7 +30,7 @@ Structure two_chains() {
                 s.element.push_back(a == 3 ? 8 : 6);
                 s.mass_fraction.push_back(1.0F / (8 * kResidues));
                 s.chain.push_back(chain);
-                s.residue.push_back(r + 5);
+                s.residue.push_back(r + 5 + kResidues * chain);  // no gap between the chains
                 s.trace.push_back(a == 1);
             }
     s.mass_u = 12.0 * static_cast<double>(s.size());
@@ -108,7 +108,7 @@ TEST(ResidueFit, the_correlation_of_a_window_is_that_of_sums_over_all_voxels) {
                                 std::size_t{40}, std::size_t{79}}) {
         const ResidueFit& f = fit[r];
         EXPECT_EQ(f.chain, r / kResidues);
-        EXPECT_EQ(f.residue, static_cast<int>(r % kResidues) + 5);
+        EXPECT_EQ(f.residue, static_cast<int>(r) + 5);
         EXPECT_EQ(f.atoms, 4U);
         const auto window = density(m.grid, m.structure, m.pose, [&](std::size_t i) {
             return m.structure.chain[i] == f.chain && std::abs(m.structure.residue[i] - f.residue) <= 3;
