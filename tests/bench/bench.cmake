@@ -9,7 +9,6 @@ function(tact_bench source)
     get_filename_component(name ${source} NAME_WE)
     tact_program(${name} SOURCES ${source} ${arg_EXTRA} USES ${arg_USES}
         SYSTEM ${arg_SYSTEM} benchmark::benchmark benchmark::benchmark_main)
-    target_compile_options(${name} PRIVATE $<$<CONFIG:Release>:-O3>)  # as the code that they measure
     set_target_properties(${name} PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/bench)
     add_test(NAME ${name} COMMAND ${name} --benchmark_min_time=0.001 WORKING_DIRECTORY ${CMAKE_SOURCE_DIR})
     set_tests_properties(${name} PROPERTIES TIMEOUT 300 LABELS bench)

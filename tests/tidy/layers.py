@@ -108,7 +108,7 @@ NAMED = [("gui/", re.compile(r"\bSceneKind::"), ["gui/window/systems.cpp"]),
          ("rt/", re.compile(r"\bSceneKind::"), ["rt/start/systems.cpp"])]
 CALL = re.compile(r"\b(tact_library|tact_program|tact_tests|tact_test|tact_bench|tact_fuzz|tact_plugin)\s*\(([^()]*)\)", re.S)
 INCLUDE = re.compile(r'^\s*#\s*include\s*([<"])([^>"]+)[>"]')
-KEYWORDS = {"COMPUTES", "SOURCES", "USES", "SYSTEM", "LABELS", "EXTRA", "TIMEOUT"}
+KEYWORDS = {"SOURCES", "USES", "SYSTEM", "LABELS", "EXTRA", "TIMEOUT"}
 SKIP = {"build", "out", ".git", ".cache"}
 
 

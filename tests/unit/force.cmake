@@ -26,4 +26,4 @@ tact_test(unit/force_refinement_test.cpp USES scene force prep_mesh prep_surface
 tact_test(unit/force_field_test.cpp USES base scene force prep_field)
 # Not under sanitizers, where they take minutes: campaigns of numbers over code that the other tests run too.
 set_tests_properties(force_docking_stiffness_test force_surface_energy_test force_surface_settled_test
-    force_tool_energy_test certify_drilling_test PROPERTIES LABELS long)
+    force_tool_energy_test certify_drilling_test certify_surface_test PROPERTIES LABELS long)
