@@ -88,7 +88,7 @@ def main():
         s.must("tact-prep", "demo", "dock", "-o", s.path("dock.tact"))
         recording, _ = s.session("docking", s.path("dock.tact"), "--start-offset-a", 3, "--hand", "wander", "--copies", 2)
         s.session("docking, freely running", s.path("dock.tact"), "--free-run", "--goal", 2000, "--law", "fixed", "--level", "docking.force=1",
-                  "--hand", "wander", "--start-offset-a", 2)
+                  "--hand", "wander", "--start-offset-a", 2, least_force_n=0.02)  # how far the hand gets depends on the machine
         s.must("tact-prep", "demo", "touch", "--parts", 60, "-o", s.path("ground.tact"))
         s.session("surface", s.path("ground.tact"), "--hand", "stroke", "--tool-radius-mm", 1)
         s.session("surface, adaptive", s.path("ground.tact"), "--hand", "stroke", "--tool-radius-mm", 1, "--mode", "chr")
