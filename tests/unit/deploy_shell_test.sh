@@ -111,6 +111,12 @@ out=$(STUB_UID=1000 setsid bash -uc '. "$1/deploy/shell/packages.sh"
 expect_text "$out" "sudo asks for a password, and there is no terminal to ask on"
 expect_text "$out" "run first: sudo apt-get install lack"
 
+# A room that would not end in time is left out, first its tests: seconds left, seconds of the stage test.
+room_for() { bash -uc '. "$1/deploy/shell/room.sh"; tact_room_for "$2" "$3"' _ "$root" "$1" "$2"; }
+[ "$(room_for 3000 600)" = --brief ] || fail "a fast machine leaves out tests in the room"
+[ "$(room_for 1500 1200)" = --programs ] || fail "the room's tests begin and cannot end"
+[ -z "$(room_for 900 1200)" ] || fail "the room begins and cannot end"
+
 # Percentages grow, name the step, and end with the last step of the plan.
 out=$(bash -uc '. "$1/deploy/shell/progress.sh"; tact_plan a 60 b 180; tact_step a first; tact_share 50 first
     tact_step b second; for i in 20 40 60 80 100; do tact_share $i second; done; tact_plan_end' _ "$root")
