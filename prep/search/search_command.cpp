@@ -24,17 +24,8 @@ struct SearchRequest {
     std::size_t rotations_max = 4000, hits_max = 20;
     unsigned threads = 0;
     bool together = false;
-    std::string symmetry;  // of copies; "find": the one that explains the map best
-    [[nodiscard]] std::vector<Symmetry> symmetries() const;
+    std::string symmetry;  // of copies
 };
-
-std::vector<Symmetry> SearchRequest::symmetries() const {
-    if (symmetry != "find") return {symmetry_of(symmetry)};
-    std::vector<Symmetry> list;
-    for (unsigned n = 2; n <= 12; ++n) list.push_back({Symmetry::Kind::cyclic, n});
-    for (unsigned n = 2; n <= 7; ++n) list.push_back({Symmetry::Kind::dihedral, n});
-    return list;
-}
 
 double seconds_since(std::chrono::steady_clock::time_point begin) {
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
@@ -56,7 +47,7 @@ void measure(SearchedModel& m, const FitData& data) {
 
 SearchReport search_files(const SearchRequest& request, const Progress& progress) {
     const std::vector<Symmetry> symmetries =
-        request.symmetry.empty() ? std::vector<Symmetry>{} : request.symmetries();
+        request.symmetry.empty() ? std::vector<Symmetry>{} : symmetries_of(request.symmetry);
     report(progress, 0.0, "reading the map");
     const FitData data = read_fit_input(request.input);
     const SearchSettings settings{.resolution_m = data.metrics.resolution_m,

@@ -57,8 +57,8 @@ bool number(const std::string& text, double& value) {
 
 [[noreturn]] void refuse(const std::string& name) {
     throw StartupError("symmetry '" + name + "'", "it is none that is known",
-                       "give C2 to C60, D2 to D60 or helix:RISE,TWIST,COPIES with angstrom and degrees, "
-                       "e.g. helix:27.5,-166.6,7");
+                       "give C2 to C60, D2 to D60, helix:RISE,TWIST,COPIES with angstrom and degrees, e.g. "
+                       "helix:27.5,-166.6,7, or find");
 }
 
 Symmetry helix_of(const std::string& name) {
@@ -130,6 +130,14 @@ Symmetry symmetry_of(const std::string& name) {
         refuse(name);
     return {kind == 'C' ? Symmetry::Kind::cyclic : Symmetry::Kind::dihedral, static_cast<unsigned>(order),
             0.0, 0.0};
+}
+
+std::vector<Symmetry> symmetries_of(const std::string& name) {
+    if (name != "find") return {symmetry_of(name)};
+    std::vector<Symmetry> list;
+    for (unsigned n = 2; n <= 12; ++n) list.push_back({Symmetry::Kind::cyclic, n});
+    for (unsigned n = 2; n <= 7; ++n) list.push_back({Symmetry::Kind::dihedral, n});
+    return list;
 }
 
 Pose pose_of_copy(const Symmetry& symmetry, const SymmetricPlace& place, std::size_t k) {

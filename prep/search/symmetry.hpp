@@ -32,6 +32,9 @@ struct Symmetry {
 
 [[nodiscard]] Symmetry symmetry_of(const std::string& name);
 
+// The same as a list; all of C2 to C12 and D2 to D7 for "find".
+[[nodiscard]] std::vector<Symmetry> symmetries_of(const std::string& name);
+
 // Where the copies are.
 struct SymmetricPlace {
     Pose T_model_frame;  // of symmetry

@@ -28,6 +28,8 @@ TEST(Symmetry, names_are_read_as_they_are_written_and_others_are_refused) {
     for (const char* name : {"C2", "C7", "D3", "D60", "helix:27.5,-166.6,7"})
         EXPECT_EQ(symmetry_of(name).name(), name);
     EXPECT_EQ(symmetry_of("D7").copies(), 14U);
+    EXPECT_EQ(symmetries_of("D7").size(), 1U);
+    EXPECT_EQ(symmetries_of("find").size(), 17U);
     EXPECT_EQ(symmetry_of("helix:27.5,-166.6,7").copies(), 7U);
     for (const char* name : {"", "7", "C", "C1", "C61", "C2.5", "D-3", "T", "Cseven", "C7 ",
                              "helix:", "helix:1,2", "helix:1,2,3,4", "helix:0,10,3", "helix:1,nan,3",
