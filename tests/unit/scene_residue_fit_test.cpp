@@ -84,14 +84,15 @@ struct Made {
     Pose pose{Vec3(1.0, -2.0, 3.0) * kA, quat_from_rotation_vector(Vec3(0.3, 0.2, -0.4))};
     DensityGrid grid;
     FitSettings settings{.resolution_m = kResolutionM, .background = 0.5, .sigma = 2.0};
-    // The map: the structure with residues 20 to 24 of chain A moved by 5 A, on an offset of 0.5.
+    // The map: the structure with residues 20 to 24, and the first three of chain B, moved by 5 A, on an offset of 0.5.
     Made() {
         grid.size = {40, 34, 44};
         grid.spacing_m = Vec3(1.8, 1.9, 2.0) * kA;
         grid.origin_m = Vec3(-24.0, -32.0, -44.0) * kA;
         Structure moved = structure;
         for (std::size_t i = 0; i < moved.size(); ++i)
-            if (moved.chain[i] == 0 && moved.residue[i] >= 20 && moved.residue[i] <= 24)
+            if ((moved.residue[i] >= 20 && moved.residue[i] <= 24) ||
+                (moved.chain[i] == 1 && moved.residue[i] <= 47))
                 moved.x_m[i] += static_cast<float>(5.0 * kA);
         for (const double v : density(grid, moved, pose, [](std::size_t) { return true; }))
             grid.values.push_back(static_cast<float>(0.1 * v + 0.5));
@@ -126,8 +127,8 @@ TEST(ResidueFit, a_stretch_that_is_elsewhere_in_the_map_is_found_and_the_rest_is
     for (const ResidueFit& f : fit) {
         const bool wrong = f.chain == 0 && f.residue >= 20 && f.residue <= 24;
         if (wrong) best_wrong = std::max(best_wrong, *f.correlation), wrong_sigma += f.density_sigma / 5.0;
-        // Five residues away no atom of a window is near a moved one.
-        if (f.chain == 1 || std::abs(f.residue - 22) > 12) {
+        // Twelve residues away no atom of a window is near a moved one, and the end of chain A is not beside the start of B.
+        if (f.residue > 59 || (f.chain == 0 && std::abs(f.residue - 22) > 12)) {
             worst_right = std::min(worst_right, *f.correlation);
             right_sigma = std::max(right_sigma, f.density_sigma);
         }
