@@ -138,7 +138,8 @@ TEST(ResidueFit, a_stretch_that_is_elsewhere_in_the_map_is_found_and_the_rest_is
     EXPECT_GT(right_sigma, wrong_sigma);
 }
 
-TEST(ResidueFit, residues_off_the_map_have_none_and_an_unknown_resolution_is_refused) {
+TEST(ResidueFit,
+     residues_off_the_map_have_none_an_unknown_unit_is_zero_and_an_unknown_resolution_is_refused) {
     Made m;
     m.pose.p_m += Vec3(0.0, 0.0, 1e-7);
     const PlacedStructure placed{&m.structure, m.pose};
@@ -146,6 +147,11 @@ TEST(ResidueFit, residues_off_the_map_have_none_and_an_unknown_resolution_is_ref
         EXPECT_FALSE(f.correlation);
         EXPECT_EQ(f.density_sigma, 0.0);  // background
     }
+    Made flat;
+    flat.settings.sigma = 0.0;
+    const PlacedStructure there{&flat.structure, flat.pose};
+    for (const ResidueFit& f : residue_fit(flat.grid, {&there, 1}, flat.settings, 5))
+        EXPECT_EQ(f.density_sigma, 0.0);
     m.settings.resolution_m = 0.0;
     EXPECT_THROW((void)residue_fit(m.grid, {&placed, 1}, m.settings, 5), std::runtime_error);
 }

@@ -75,8 +75,8 @@ std::vector<ResidueFit> residue_fit(const DensityGrid& grid, std::span<const Pla
         ResidueFit& fit = residues[r];
         for (std::size_t i = fit.first_atom; i < fit.first_atom + fit.atoms; ++i)
             fit.density_sigma += map_at(grid, atom_in_voxels(grid, placed.front(), i), settings.background);
-        fit.density_sigma =
-            (fit.density_sigma / static_cast<double>(fit.atoms) - settings.background) / settings.sigma;
+        const double mean = fit.density_sigma / static_cast<double>(fit.atoms);
+        fit.density_sigma = settings.sigma > 0.0 ? (mean - settings.background) / settings.sigma : 0.0;
         const Structure part = window_of(s, residues, r, window / 2);
         const PlacedStructure at{&part, placed.front().T_model_body};
         const VoxelBox box = reached_box(grid, {&at, 1}, settings.resolution_m);

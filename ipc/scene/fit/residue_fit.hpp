@@ -1,7 +1,8 @@
 // Fit of each residue of a placed structure to a map, for what a single number of the whole structure hides: a loop or a domain
 // that is wrong.
 //
-//   density_sigma   mean of the map at the residue's atoms (trilinear), (value - background) / sigma
+//   density_sigma   mean of the map at the residue's atoms (trilinear), (value - background) / sigma;
+//                   0 if sigma is not positive
 //   correlation     about the mean, of the map with the simulated density of ALL placed structures, over the voxels where the
 //                   simulated density of a window of residues along the chain exceeds 5 % of its largest value. Between -1 and 1;
 //                   1 where the map is what the structures predict there, whatever its scale and offset
