@@ -19,6 +19,13 @@ std::string text(const char* format, ...) {
     return line;
 }
 
+struct Axis {
+    Vec3 direction, through_a;
+};
+Axis axis_of(const SymmetricPlace& place) {
+    return {place.T_model_frame.q * Vec3::UnitZ(), place.T_model_frame.p_m / kAngstromM};
+}
+
 std::string quoted(const std::string& field) {
     if (field.find_first_of(",\"\n") == std::string::npos) return field;
     std::string out = "\"";
@@ -39,8 +46,7 @@ std::string as_table(const SearchReport& r) {
                     m.structure.size(), m.found.rotations, m.found.cover_rad / kDegreeRad,
                     m.found.search_resolution_m / kAngstromM, m.seconds);
         if (m.copies) {
-            const Vec3 axis = m.copies->place.T_model_frame.q * Vec3::UnitZ(),
-                       through_a = m.copies->place.T_model_frame.p_m / kAngstromM;
+            const auto [axis, through_a] = axis_of(m.copies->place);
             out += text(
                 "  %zu copies by %s, axis %.4f %.4f %.4f through %.1f %.1f %.1f Å; together: correlation "
                 "%.4f; "
@@ -87,8 +93,7 @@ nlohmann::ordered_json as_json(const SearchReport& r) {
                                         {"random_score_deviation", m.found.random_deviation},
                                         {"seconds", m.seconds}};
         if (m.copies) {
-            const Vec3 axis = m.copies->place.T_model_frame.q * Vec3::UnitZ(),
-                       through_a = m.copies->place.T_model_frame.p_m / kAngstromM;
+            const auto [axis, through_a] = axis_of(m.copies->place);
             searched["symmetry"] = {{"name", m.copies->symmetry.name()},
                                     {"axis", {axis.x(), axis.y(), axis.z()}},
                                     {"through_a", {through_a.x(), through_a.y(), through_a.z()}},
