@@ -180,6 +180,25 @@ TEST(SearchReport, the_matrix_leads_from_the_file_to_the_map_and_names_are_quote
     EXPECT_EQ(std::count(none.begin(), none.end(), ','), 20 + 21);  // a comma in the name of the map
 }
 
+TEST(SearchReport, copies_name_their_symmetry_its_axis_and_a_point_of_it_in_the_map) {
+    SearchReport report{"a.mrc", "laplacian", 12.0, {}, {}, {}};
+    SearchedModel& m = report.models.emplace_back();
+    m.structure = ring().subunits[1];
+    m.copies.emplace();
+    m.copies->symmetry = symmetry_of("C6");
+    m.copies->place.T_model_frame = {Vec3(1.0, 2.0, 3.0) * kAngstromM,
+                                     Quat::FromTwoVectors(Vec3::UnitZ(), Vec3::UnitX())};
+    m.copies->correlation = 0.75;
+    const nlohmann::ordered_json said = as_json(report)["searches"][0]["symmetry"];
+    EXPECT_EQ(said["name"], "C6");
+    EXPECT_NEAR(said["axis"][0].get<double>(), 1.0, 1e-12);
+    EXPECT_NEAR(said["through_a"][1].get<double>(), 2.0, 1e-9);
+    EXPECT_EQ(said["correlation"], 0.75);
+    EXPECT_NE(as_table(report).find("copies by C6"), std::string::npos);
+    m.copies.reset();
+    EXPECT_FALSE(as_json(report)["searches"][0].contains("symmetry"));
+}
+
 class FitInScene : public testing::Test {
 protected:
     FitInScene() {
