@@ -8,7 +8,7 @@
 #include <span>
 #include <vector>
 
-#include "gui/docking/bonds.hpp"
+#include "ipc/scene/density/bonds.hpp"
 #include "ipc/scene/density/structure.hpp"
 
 namespace tact {

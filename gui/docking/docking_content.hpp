@@ -3,8 +3,8 @@
 
 #include <vector>
 
-#include "gui/docking/bonds.hpp"
 #include "gui/render/scene_content.hpp"
+#include "ipc/scene/density/bonds.hpp"
 #include "ipc/scene/density/structure.hpp"
 
 namespace tact {

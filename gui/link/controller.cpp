@@ -23,10 +23,11 @@ Controller::News Controller::poll() {
         region_ = MappedRegion<RtRegion>::map(std::move(news.rt_fd), refusal_);
         bone_ = MappedBoneRegion();
         if (news.bone_fd.valid()) bone_ = MappedBoneRegion::map(std::move(news.bone_fd), bone_refusal_);
-        seen_tool_ = seen_second_ = seen_bodies_ = seen_touch_ = seen_drill_ = seen_head_ = seen_tracker_ =
-            seen_devices_ = seen_health_ = seen_lateness_ = seen_levels_ = seen_recorders_ = 0;
-        have_tool = have_second = have_bodies = have_touch = have_drill = have_head = have_tracker =
-            have_devices = have_health = have_lateness = have_levels = have_recorders = false;
+        seen_tool_ = seen_second_ = seen_bodies_ = seen_shapes_ = seen_touch_ = seen_drill_ = seen_head_ =
+            seen_tracker_ = seen_devices_ = seen_health_ = seen_lateness_ = seen_levels_ = seen_recorders_ =
+                0;
+        have_tool = have_second = have_bodies = have_shapes = have_touch = have_drill = have_head =
+            have_tracker = have_devices = have_health = have_lateness = have_levels = have_recorders = false;
         cursor_ = trace_cursor_ = RingCursor{};
         told.arrived = !region_.empty();
         if (region_.empty()) refusal_ = "the controller's region cannot be used: " + refusal_;
@@ -56,6 +57,7 @@ Controller::Fresh Controller::read() {
     fresh.tool = take(region_->tool[0], seen_tool_, tool, have_tool);
     fresh.second = take(region_->tool[1], seen_second_, second, have_second);
     fresh.bodies = take(region_->bodies, seen_bodies_, bodies, have_bodies);
+    fresh.shapes = take(region_->shapes, seen_shapes_, shapes, have_shapes);
     fresh.touch = take(region_->touch, seen_touch_, touch, have_touch);
     fresh.drill = take(region_->drill, seen_drill_, drill, have_drill);
     fresh.head = take(region_->head, seen_head_, head, have_head);

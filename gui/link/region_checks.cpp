@@ -40,6 +40,16 @@ bool sensible(const BodiesTopic& b) noexcept {
     });
 }
 
+bool sensible(const ShapesTopic& s) noexcept {
+    const auto within = [](float v, float most) { return v >= 0.0F && v <= most; };
+    if (!within(s.rmsd_m, 1e-3F) || !within(s.strain, 1e3F) || !within(s.strain_most, 1e3F) || s.bends > 1)
+        return false;
+    return std::all_of(s.body, s.body + kBodiesMax, [](const ShapeRow& row) {
+        return std::all_of(row.amplitude_m, row.amplitude_m + kShapeModesMax,
+                           [](float a) { return std::fabs(a) < 1e-3F; });
+    });
+}
+
 bool sensible(const ToolTopic& t) noexcept {
     return near(t.pos_world_m) && unit_quaternion(t.quat_world_tool_xyzw) && near(t.force_world_n) &&
            near(t.torque_world_n_m) && near(t.force_model_n) && near(t.velocity_world_m_s);

@@ -10,12 +10,14 @@
 #include "ipc/topics/health.hpp"
 #include "ipc/topics/levels.hpp"
 #include "ipc/topics/recorders.hpp"
+#include "ipc/topics/shapes.hpp"
 #include "ipc/topics/tool.hpp"
 #include "ipc/topics/touch.hpp"
 
 namespace tact {
 
 [[nodiscard]] bool sensible(const BodiesTopic& bodies) noexcept;
+[[nodiscard]] bool sensible(const ShapesTopic& shapes) noexcept;
 [[nodiscard]] bool sensible(const ToolTopic& tool) noexcept;
 [[nodiscard]] bool sensible(const TouchTopic& touch) noexcept;
 [[nodiscard]] bool sensible(const DrillTopic& drill) noexcept;

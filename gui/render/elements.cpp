@@ -15,14 +15,6 @@ constexpr std::uint32_t kColour[] = {
     0xB8B8D0, 0xA6544D, 0x575961, 0x9E4FB5, 0xAB5C00, 0x754F45, 0x428296, 0x420066, 0x007D00, 0x70ABFA,
     0x00BAFF, 0x00A1FF, 0x008FFF, 0x0080FF, 0x006BFF, 0x545CF2, 0x785CE3};
 
-// Picometres. Manganese, iron and cobalt: high spin.
-constexpr std::uint8_t kCovalentPm[] = {
-    76,  31,  0,   0,   0,   84,  76,  71,  66,  57,  0,   0,   0,   121, 111, 107, 105, 102, 0,
-    0,   0,   170, 160, 153, 139, 161, 152, 150, 124, 132, 122, 122, 120, 119, 120, 120, 0,   0,
-    0,   190, 175, 164, 154, 147, 146, 142, 139, 145, 144, 142, 139, 139, 138, 139, 0,   0,   0,
-    207, 204, 203, 201, 199, 198, 198, 196, 194, 192, 192, 189, 190, 187, 187, 175, 170, 162, 151,
-    144, 141, 136, 136, 132, 145, 146, 148, 140, 150, 0,   0,   0,   215, 206, 200, 196};
-
 struct Radius {
     std::uint8_t atomic_number;
     float a;
@@ -57,11 +49,6 @@ float vdw_radius_a(std::uint8_t atomic_number) {
     for (const Radius& r : kVdw)
         if (r.atomic_number == atomic_number) return r.a;
     return 2.0F;
-}
-
-float covalent_radius_a(std::uint8_t atomic_number) {
-    return atomic_number < std::size(kCovalentPm) ? 0.01F * static_cast<float>(kCovalentPm[atomic_number])
-                                                  : 0.0F;
 }
 
 }  // namespace tact

@@ -15,8 +15,4 @@ using Rgb8 = std::array<std::uint8_t, 3>;
 [[nodiscard]] Rgb8 chain_colour(std::size_t chain);
 // Van der Waals radius (Bondi 1964, Mantina 2009), ångström; 2 if unknown.
 [[nodiscard]] float vdw_radius_a(std::uint8_t atomic_number);
-// Covalent radius (Cordero 2008), ångström. 0: distance tells no bond (noble gases, and ions of groups 1 and 2, which
-// have many atoms at bonding distance).
-[[nodiscard]] float covalent_radius_a(std::uint8_t atomic_number);
-
 }  // namespace tact

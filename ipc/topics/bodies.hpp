@@ -25,6 +25,7 @@ enum DockingOption : std::uint32_t {
     kDockingSubtraction = 1U << 1,  // subtracts the density explained by the other bodies
     kDockingLaplacian = 1U << 2,    // uses the Laplacian-filtered map
     kDockingPull = 1U << 3,         // pulls towards places that a search found
+    kDockingFlexible = 1U << 4,     // the body in the hand bends along its normal modes
 };
 
 struct BodyPlace {

@@ -34,9 +34,10 @@ enum class CommandKind : std::uint16_t {
     // Places that a search found for a body, which pull it while set_pull is on.
     add_found_place,  // body and pose, value: its score / the best one; one of another body replaces all
     clear_found_places,
-    set_pull,  // value: 1 on, 0 off
+    set_pull,      // value: 1 on, 0 off
+    set_flexible,  // value: 1 on, 0 off
 };
-inline constexpr CommandKind kLastCommand = CommandKind::set_pull;
+inline constexpr CommandKind kLastCommand = CommandKind::set_flexible;
 // True for commands that the force model executes or refuses; all others concern the loop.
 [[nodiscard]] constexpr bool is_for_model(CommandKind kind) {
     return kind >= CommandKind::select_body && kind <= kLastCommand && kind != CommandKind::mark;

@@ -19,6 +19,7 @@
 #include "ipc/topics/load.hpp"
 #include "ipc/topics/record.hpp"
 #include "ipc/topics/recorders.hpp"
+#include "ipc/topics/shapes.hpp"
 #include "ipc/topics/tool.hpp"
 #include "ipc/topics/touch.hpp"
 
@@ -31,6 +32,7 @@ struct RtRegion {
     static constexpr char kName[] = "tact.rt";
     Latest<ToolTopic> tool[kHandsMax];
     Latest<BodiesTopic> bodies;
+    Latest<ShapesTopic> shapes;
     Latest<TouchTopic> touch;
     Latest<DrillTopic> drill;
     Latest<HeadTopic> head;
@@ -54,7 +56,7 @@ struct RtRegion {
     std::uint64_t scene_checksum;
     std::uint64_t reserved[7];  // zero
     using Topics =
-        TopicList<ToolTopic, BodiesTopic, TouchTopic, DrillTopic, HeadTopic, TrackerTopic, DevicesTopic,
+        TopicList<ToolTopic, BodiesTopic, ShapesTopic, TouchTopic, DrillTopic, HeadTopic, TrackerTopic, DevicesTopic,
                   HealthTopic, LatenessTopic, LevelsTopic, DisplayTopic, RecordersTopic, EventTopic,
                   TraceTopic, StartTopic, CycleTopic, HandTopic, MailboxTopic, ReportTopic, RunText>;
 };

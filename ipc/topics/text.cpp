@@ -249,6 +249,8 @@ const char* command_kind_text(CommandKind kind) noexcept {
             return "clear the places found";
         case CommandKind::set_pull:
             return "pull to places found";
+        case CommandKind::set_flexible:
+            return "bending";
     }
     return kUnknown;
 }

@@ -26,7 +26,7 @@
 
 #include "ipc/base/error.hpp"
 #include "ipc/base/random.hpp"
-#include "prep/codebook/vector_grid.hpp"
+#include "ipc/scene/density/vector_grid.hpp"
 
 namespace tact {
 

@@ -13,6 +13,7 @@
 #include "prep/map/low_pass.hpp"
 #include "prep/map/map_statistics.hpp"
 #include "prep/mesh/progressive.hpp"
+#include "prep/modes/bake_modes.hpp"
 
 namespace tact {
 namespace {
@@ -255,7 +256,9 @@ BakedDocking bake_docking(const DockingInput& input, SceneWriter& out, const Pro
         "and %.3g N m/rad",
         gain.energy_j_per_sigma, gain.force_n_p99, gain.stiffness_n_m_max, gain.torque_n_m_rad_max));
 
-    report(progress, 0.98, "packing the scene");
+    for (const std::string& line : bake_modes(input.structures, input.modes, out, part(progress, 0.98, 0.99)))
+        say(line);
+    report(progress, 0.99, "packing the scene");
     write_meta(out, meta, note);
     write_grid(out, grid);
     if (input.force_map_resolution_m) write_grid(out, force_map_grid, kForceMapGrid);

@@ -27,6 +27,7 @@ struct DockingInput {
     std::optional<double>
         force_map_resolution_m;  // resolution of the smoothed force map; default: not smoothed
     std::uint32_t vertices_max = 1'000'000;
+    std::uint32_t modes = 0;  // of each structure, for bending; at most kModesMax
 };
 
 struct BakedBody {

@@ -11,6 +11,7 @@
 
 #include "ipc/base/parent_death.hpp"
 #include "ipc/base/units.hpp"
+#include "ipc/scene/density/normal_modes.hpp"
 #include "ipc/version/version.hpp"
 #include "prep/console/console.hpp"
 #include "prep/console/scene_report.hpp"
@@ -33,7 +34,7 @@ struct DockSettings {
     std::vector<std::string> models;
     std::optional<double> contour, resolution_a, force_map_resolution_a;
     double level = 0.0;
-    std::uint32_t vertices_max = 1'000'000;
+    std::uint32_t vertices_max = 1'000'000, modes = 0;
     pid_t ends_with = 0;
     bool json = false;
 };
@@ -116,6 +117,7 @@ void dock(const DockSettings& o, bool demo) {
     if (o.resolution_a) input.resolution_m = *o.resolution_a * kAngstromM;
     if (o.force_map_resolution_a) input.force_map_resolution_m = *o.force_map_resolution_a * kAngstromM;
     input.vertices_max = o.vertices_max;
+    input.modes = o.modes;
     SceneWriter out;
     const BakedDocking baked = bake_docking(input, out, progress);
     report(progress, 0.99, "writing the scene");
@@ -167,6 +169,10 @@ void add_dock(CLI::App& app, CLI::App& demo) {
             "farther away; default: not smoothed");
         sub->add_option("--vertices-max", o->vertices_max,
                         "Maximum number of vertices of the drawn surface; 0: no limit")
+            ->capture_default_str();
+        sub->add_option("--modes", o->modes,
+                        "Normal modes of each structure, along which it can bend; 12 are a good start")
+            ->check(CLI::Range(0U, kModesMax))
             ->capture_default_str();
         sub->add_flag("--json", o->json, "Print the properties of the baked scene as JSON");
     };

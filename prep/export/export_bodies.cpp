@@ -11,6 +11,7 @@
 
 #include "ipc/base/error.hpp"
 #include "ipc/scene/file/scene_meta.hpp"
+#include "prep/export/bent_places.hpp"
 #include "prep/export/fit_remarks.hpp"
 #include "prep/export/residue_column.hpp"
 #include "prep/export/write_structure_file.hpp"
@@ -100,15 +101,53 @@ std::vector<ResidueFit> residues_of(const DensityGrid& grid, const SceneMeta& me
         window);
 }
 
-// The first model of every body, in the order of the bodies. sources: one per body.
-std::vector<FileAtom> all_atoms(const std::vector<Source>& sources, const std::vector<PlacedBody>& bodies,
-                                const std::vector<AtomMove>& moves, Remarks& remarks) {
+std::vector<FileAtom> atoms_of(const Source& s) {
+    return s.mmcif ? mmcif_atoms(s.text, s.path.string()) : pdb_atoms(s.text, s.path.string());
+}
+
+// A body in its own shape: bent if its modes have amplitudes.
+struct Shaped {
+    Structure structure;
+    std::vector<Vec3> at_a;  // bent places of the atoms of its file; empty: straight
+    Remarks remarks;
+};
+
+Shaped shaped(const SceneFile& scene, const Structure& structure, const PlacedBody& body,
+              const Source& source) {
+    Shaped out{structure, {}, {}};
+    if (std::all_of(body.amplitude_m.begin(), body.amplitude_m.end(), [](float a) { return a == 0.0F; }))
+        return out;
+    const NormalModes modes = read_modes(scene, body.structure, structure);
+    if (modes.count() < body.amplitude_m.size())
+        throw StartupError(kAttempt,
+                           "body " + std::to_string(body.id) + " is bent along " +
+                               std::to_string(body.amplitude_m.size()) + " modes, and its structure has " +
+                               std::to_string(modes.count()) + " in " + scene.name(),
+                           "give the scene in which the body was bent");
+    out.structure = bent_structure(structure, modes, body.amplitude_m);
+    BentPlaces bent = bent_places(atoms_of(source), structure, modes, body.amplitude_m);
+    out.at_a = std::move(bent.at_a);
+    char text[200];
+    std::snprintf(
+        text, sizeof text,
+        "along %zu normal modes, RMSD to the file %.2f angstrom; %zu bonds within %.2f %% of the file "
+        "(%.0f %% before they were brought back)",
+        body.amplitude_m.size(), bent.rmsd_a, bent.bonds, 100.0 * bent.bond_most,
+        100.0 * bent.bond_most_modes);
+    out.remarks.emplace_back("bent", text);
+    return out;
+}
+
+// The first model of every body, in the order of the bodies. sources and shapes: one per body.
+std::vector<FileAtom> all_atoms(const std::vector<Source>& sources, const std::vector<Shaped>& shapes,
+                                const std::vector<PlacedBody>& bodies, const std::vector<AtomMove>& moves,
+                                Remarks& remarks) {
     std::vector<FileAtom> all;
     std::size_t chains = 0;
     for (std::size_t i = 0; i < bodies.size(); ++i) {
         const Source& s = sources[i];
-        std::vector<FileAtom> atoms =
-            s.mmcif ? mmcif_atoms(s.text, s.path.string()) : pdb_atoms(s.text, s.path.string());
+        std::vector<FileAtom> atoms = atoms_of(s);
+        for (std::size_t k = 0; k < shapes[i].at_a.size(); ++k) atoms[k].place_a = shapes[i].at_a[k];
         std::map<std::string, std::string> renamed;
         std::string listed;
         const int model = atoms.empty() ? 1 : atoms.front().model;
@@ -173,7 +212,16 @@ std::vector<fs::path> export_bodies(const SceneFile& scene, const std::vector<Pl
     const std::vector<Source> sources = sources_of(scene, meta.body_count);
     std::vector<Structure> structures;
     for (std::uint32_t i = 0; i < meta.body_count; ++i) structures.push_back(read_structure(scene, i));
-    const SavedFit fit = fit_of(scene, structures, bodies, options.contour.value_or(meta.contour));
+    std::vector<Shaped> shapes;
+    std::vector<Structure> structure_of_body;
+    std::vector<PlacedBody> in_shape = bodies;  // by body
+    for (std::size_t i = 0; i < bodies.size(); ++i) {
+        const std::uint32_t structure = bodies[i].structure;
+        shapes.push_back(shaped(scene, structures[structure], bodies[i], sources.at(structure)));
+        structure_of_body.push_back(shapes.back().structure);
+        in_shape[i].structure = static_cast<std::uint32_t>(i);
+    }
+    const SavedFit fit = fit_of(scene, structure_of_body, in_shape, options.contour.value_or(meta.contour));
     const DensityGrid grid = options.residues > 0 ? read_grid(scene) : DensityGrid{};
     std::vector<std::pair<fs::path, std::string>> files;
     std::vector<AtomMove> moves;
@@ -186,12 +234,13 @@ std::vector<fs::path> export_bodies(const SceneFile& scene, const std::vector<Pl
         moves.push_back(AtomMove::of(body.T_model_body, s.home_com_model_m));
         const AtomMove& move = moves.back();
         Remarks remarks = remarks_of(meta, fit, i, bodies.size(), &body, &move);
+        remarks.insert(remarks.end(), shapes[i].remarks.begin(), shapes[i].remarks.end());
         // The body id makes file names unique, also if two structures have the same name.
         const std::string stem = source.stem + "-body" + std::to_string(body.id);
         std::string residue_table;
         if (options.residues > 0) {
             const std::vector<ResidueFit> residues =
-                residues_of(grid, meta, structures, bodies, i, options.residues);
+                residues_of(grid, meta, structure_of_body, in_shape, i, options.residues);
             residue_table = residue_csv(s, residues);
             if (options.b_column) {
                 source.text = with_b_column(source.text, source.mmcif, source.path.string(), s, residues);
@@ -201,14 +250,15 @@ std::vector<fs::path> export_bodies(const SceneFile& scene, const std::vector<Pl
         }
         std::string name = stem + ".cif", text;
         if (source.mmcif) {
-            text = moved_mmcif(source.text, source.path.string(), move, remarks);
-        } else if (auto pdb = moved_pdb(source.text, source.path.string(), move, remarks)) {
+            text = moved_mmcif(source.text, source.path.string(), move, remarks, shapes[i].at_a);
+        } else if (auto pdb = moved_pdb(source.text, source.path.string(), move, remarks, shapes[i].at_a)) {
             name = stem + ".pdb";
             text = std::move(*pdb);
         } else {  // a coordinate does not fit the columns of PDB
-            std::vector<FileAtom> atoms = pdb_atoms(source.text, source.path.string());
-            for (FileAtom& a : atoms) {
-                a.place_a = move * a.place_a;
+            std::vector<FileAtom> atoms = atoms_of(source);
+            for (std::size_t k = 0; k < atoms.size(); ++k) {
+                FileAtom& a = atoms[k];
+                a.place_a = move * (shapes[i].at_a.empty() ? a.place_a : shapes[i].at_a[k]);
                 if (a.adp_u) a.adp_u = move.turned(*a.adp_u);
             }
             text = new_mmcif(atoms, stem, remarks);
@@ -222,7 +272,7 @@ std::vector<fs::path> export_bodies(const SceneFile& scene, const std::vector<Pl
     files.emplace_back(options.folder / "bodies.csv", table);
     if (options.combined) {
         Remarks remarks = remarks_of(meta, fit, 0, bodies.size(), nullptr, nullptr);
-        const std::vector<FileAtom> atoms = all_atoms(written, bodies, moves, remarks);
+        const std::vector<FileAtom> atoms = all_atoms(written, shapes, bodies, moves, remarks);
         const bool mmcif =
             std::any_of(sources.begin(), sources.end(), [](const Source& s) { return s.mmcif; });
         auto pdb = mmcif ? std::nullopt : new_pdb(atoms, remarks);

@@ -6,12 +6,13 @@
 
 #include "ipc/base/error.hpp"
 #include "ipc/base/units.hpp"
+#include "ipc/scene/density/normal_modes.hpp"
 
 namespace tact {
 namespace {
 
 constexpr std::size_t kBodiesInFileMax = 1024;
-constexpr double kFarthestA = 1e5;
+constexpr double kFarthestA = 1e5, kAmplitudeMostA = 1e3;
 
 using nlohmann::json;
 
@@ -67,6 +68,15 @@ std::vector<PlacedBody> read_poses(std::string_view text, const std::string& nam
         if (const auto fixed = b.find("fixed"); fixed != b.end()) {
             if (!fixed->is_boolean()) fail("fixed is neither true nor false");
             body.fixed = fixed->get<bool>();
+        }
+        if (const auto bent = b.find("mode_amplitudes_a"); bent != b.end()) {
+            if (!bent->is_array() || bent->size() > kModesMax)
+                fail("mode_amplitudes_a is not a list of at most " + std::to_string(kModesMax) + " numbers");
+            for (const json& a : *bent) {
+                if (!a.is_number() || !(std::abs(a.get<double>()) <= kAmplitudeMostA))
+                    fail("mode_amplitudes_a holds something else than a number from -1000 to 1000");
+                body.amplitude_m.push_back(static_cast<float>(kAngstromM * a.get<double>()));
+            }
         }
         if (!(std::abs(body.T_model_body.q.norm() - 1.0) < 1e-3))
             fail("quat_model_body_xyzw does not have length 1");

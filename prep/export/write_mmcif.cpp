@@ -53,7 +53,7 @@ void turn_adps(CifTable table, std::size_t first, const AtomMove& move, const st
 }  // namespace
 
 std::string moved_mmcif(std::string_view text, const std::string& name, const AtomMove& move,
-                        const Remarks& remarks) {
+                        const Remarks& remarks, std::span<const Vec3> bent_a) {
     (void)mmcif_atoms(text, name);  // checks that the text is mmCIF and every number is valid
     CifDocument document = CifDocument::read(text, name);
     for (std::size_t block = 0; block < document.blocks(); ++block) {
@@ -64,7 +64,7 @@ std::string moved_mmcif(std::string_view text, const std::string& name, const At
             const auto number = [&](std::size_t k) {
                 return file_number(places.raw(row, k), "a coordinate", name, "atom_site");
             };
-            const Vec3 p = move * Vec3(number(0), number(1), number(2));
+            const Vec3 p = move * (bent_a.empty() ? Vec3(number(0), number(1), number(2)) : bent_a[row]);
             for (std::size_t k = 0; k < 3; ++k) {
                 places.set(row, k, fixed(p[static_cast<int>(k)], 3));
                 if (places.has(3 + k)) places.set(row, 3 + k, "?");  // fractional: the cell is removed

@@ -70,7 +70,7 @@ bool put_adp(const Adp& u, char* to) {
 }  // namespace
 
 std::optional<std::string> moved_pdb(std::string_view text, const std::string& name, const AtomMove& move,
-                                     const Remarks& remarks) {
+                                     const Remarks& remarks, std::span<const Vec3> bent_a) {
     const std::vector<FileAtom> atoms = pdb_atoms(text, name);  // checks every number
     std::size_t next = 0;
     bool said = false;
@@ -88,7 +88,9 @@ std::optional<std::string> moved_pdb(std::string_view text, const std::string& n
         }
         if (line.starts_with("ATOM  ") || line.starts_with("HETATM")) {
             if (line.size() < 54) line.resize(54, ' ');
-            if (!put_place(move * atoms[next++].place_a, &line[30])) return std::nullopt;
+            const Vec3& place_a = bent_a.empty() ? atoms[next].place_a : bent_a[next];
+            ++next;
+            if (!put_place(move * place_a, &line[30])) return std::nullopt;
         } else if (line.starts_with("ANISOU") && next > 0 && atoms[next - 1].adp_u) {
             if (line.size() < 70) line.resize(70, ' ');
             if (!put_adp(move.turned(*atoms[next - 1].adp_u), &line[28])) return std::nullopt;

@@ -21,6 +21,12 @@ namespace {
 // Null: the system has no model for the hand.
 using Model = std::unique_ptr<ForceModel>;
 
+template <class Published, class Topic>
+Model published(std::unique_ptr<Published> model, Latest<Topic>& topic) {
+    model->publish_to(topic);
+    return model;
+}
+
 Model make_docking(const SystemInput& in, SharedScene* /*shared*/, std::uint32_t hand) {
     if (hand > 0) return nullptr;
     const StartOptions& o = in.options;
@@ -34,13 +40,7 @@ Model make_docking(const SystemInput& in, SharedScene* /*shared*/, std::uint32_t
         s.bodies = read_start_bodies(o.poses, names);
     }
     if (o.copies > 1) s.more_bodies = copies_about(read_grid(in.scene), o.copies);
-    return load_docking_model(in.scene, s);
-}
-
-template <class SurfaceOrTool>
-Model published(std::unique_ptr<SurfaceOrTool> model, RtRegion& region) {
-    model->publish_to(region.touch);
-    return model;
+    return published(load_docking_model(in.scene, s), in.region.shapes);
 }
 
 Model make_surface(const SystemInput& in, SharedScene* /*shared*/, std::uint32_t hand) {
@@ -49,8 +49,8 @@ Model make_surface(const SystemInput& in, SharedScene* /*shared*/, std::uint32_t
     s.radius_m = 1e-3 * in.options.tool_radius_mm;
     for (std::size_t i = 0; i < kSurfaceModeNames.size(); ++i)
         if (in.config.surface.mode == kSurfaceModeNames[i]) s.mode = static_cast<SurfaceMode>(i);
-    if (has_touch_tool(in.scene)) return published(load_tool_model(in.scene, s), in.region);
-    return published(load_surface_model(in.scene, s), in.region);
+    if (has_touch_tool(in.scene)) return published(load_tool_model(in.scene, s), in.region.touch);
+    return published(load_surface_model(in.scene, s), in.region.touch);
 }
 
 Model make_drill(const SystemInput& in, SharedScene* shared, std::uint32_t hand) {

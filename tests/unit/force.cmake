@@ -4,6 +4,7 @@ tact_tests(force_docking_tests SOURCES
         unit/force_partial_sums_test.cpp unit/force_clash_test.cpp unit/force_docking_options_test.cpp
         unit/force_basin_pull_test.cpp
     USES force scene reference SYSTEM rapidcheck)
+tact_test(unit/force_flexible_test.cpp USES force scene prep_codebook prep_modes prep_synthetic)
 tact_test(unit/force_docking_test.cpp USES force)
 tact_tests(force_surface_tests SOURCES
         unit/force_surface_test.cpp unit/force_surface_modes_test.cpp unit/force_surface_settled_test.cpp

@@ -9,7 +9,7 @@
 #include <random>
 
 #include "ipc/base/error.hpp"
-#include "prep/codebook/vector_grid.hpp"
+#include "ipc/scene/density/vector_grid.hpp"
 
 namespace tact::prep_neural_gas_test {
 namespace {

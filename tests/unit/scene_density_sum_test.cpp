@@ -114,6 +114,34 @@ TEST_P(DensitySum, agrees_with_sample_in_maps_too_large_for_fourfold_storage) {
     }
 }
 
+TEST_P(DensitySum, gives_the_gradient_of_each_point) {
+    const DensityGrid grid = noise_grid({23, 20, 16});
+    const DensityMap fourfold(grid, 0.0, 1.0, options()), once(grid, 0.0, 1.0, stored_once());
+    const Pose T = pose_in(grid, Vec3(11.3, 9.1, 8.7), Quat(0.6, -0.3, 0.5, 0.2));
+    for (const std::size_t count : {1, 7, 8, 16, 17, 600}) {
+        const Points p = random_points(count, 15e-10, static_cast<unsigned>(count));
+        for (const DensityMap* map : {&once, &fourfold}) {
+            // One more than points, which must stay as it is.
+            std::vector<float> x(count + 1, 7.0F), y = x, z = x;
+            const PointGradients each{x, y, z};
+            const DensitySums with = map->sum(p.view(), T, &each), without = map->sum(p.view(), T);
+            EXPECT_EQ(with.gradient, without.gradient);
+            EXPECT_EQ(with.moment, without.moment);
+            for (std::size_t i = 0; i < count; ++i) {
+                Vec3 gradient;
+                static_cast<void>(
+                    map->sample(T * Eigen::Vector3f(p.x[i], p.y[i], p.z[i]).cast<double>(), gradient));
+                const Vec3 found = Eigen::Vector3f(x[i], y[i], z[i]).cast<double>();
+                const auto w = static_cast<double>(p.w[i]);
+                EXPECT_LT((found - w * gradient).norm() * 2e-10, 3e-5 * w)
+                    << kernel().name << ", point " << i;
+            }
+            EXPECT_EQ(x[count], 7.0F);
+            EXPECT_EQ(z[count], 7.0F);
+        }
+    }
+}
+
 // The corners to which points are clamped, next to the last rows of the coefficients.
 TEST_P(DensitySum, is_zero_in_the_farthest_corners) {
     const DensityGrid grid = noise_grid({8, 8, 8});

@@ -135,7 +135,14 @@ TACT_AVX2 inline double total(__m256 v) {
     return sum;
 }
 
-template <bool windows>
+TACT_AVX2 inline float total_float(__m256 v) {
+    __m128 sum = _mm_add_ps(_mm256_castps256_ps128(v), _mm256_extractf128_ps(v, 1));
+    sum = _mm_add_ps(sum, _mm_movehl_ps(sum, sum));
+    return _mm_cvtss_f32(_mm_add_ss(sum, _mm_shuffle_ps(sum, sum, 1)));
+}
+
+// each: writes the gradient of each point too.
+template <bool windows, bool each>
 TACT_AVX2 void sum_points(const DensityJob& job, DensityJobSums& sums) {
     const std::ptrdiff_t plane_stride = job.plane_stride, row_stride = job.row_stride;
     Block block;
@@ -163,6 +170,7 @@ TACT_AVX2 void sum_points(const DensityJob& job, DensityJobSums& sums) {
                 const __m256 rx = _mm256_broadcast_ss(&block.r[0][i]),
                              ry = _mm256_broadcast_ss(&block.r[1][i]);
                 const __m256 rz = _mm256_broadcast_ss(&block.r[2][i]);
+                __m256 one[3] = {_mm256_setzero_ps(), _mm256_setzero_ps(), _mm256_setzero_ps()};
                 for (int half = 0; half < 2; ++half) {
                     const float* const p = patch + std::ptrdiff_t{8 * half};
                     __m256 c = load_rows<windows>(p, row_stride, second);
@@ -186,9 +194,17 @@ TACT_AVX2 void sum_points(const DensityJob& job, DensityJobSums& sums) {
                     gx = _mm256_add_ps(gx, px);
                     gy = _mm256_add_ps(gy, py);
                     gz = _mm256_add_ps(gz, pz);
+                    if constexpr (each) {
+                        one[0] = _mm256_add_ps(one[0], px);
+                        one[1] = _mm256_add_ps(one[1], py);
+                        one[2] = _mm256_add_ps(one[2], pz);
+                    }
                     mx = _mm256_fnmadd_ps(rz, py, _mm256_fmadd_ps(ry, pz, mx));
                     my = _mm256_fnmadd_ps(rx, pz, _mm256_fmadd_ps(rz, px, my));
                     mz = _mm256_fnmadd_ps(ry, px, _mm256_fmadd_ps(rx, py, mz));
+                }
+                if constexpr (each) {
+                    for (int a = 0; a < 3; ++a) job.gradient[a][begin + i] = total_float(one[a]);
                 }
             }
         }
@@ -206,10 +222,17 @@ TACT_AVX2 void sum_points(const DensityJob& job, DensityJobSums& sums) {
 
 TACT_AVX2 void density_sum_avx2(const DensityJob& job, DensityJobSums& sums) {
     sums = DensityJobSums{};
+    const bool each = job.gradient[0] != nullptr;
     if (job.windows) {
-        sum_points<true>(job, sums);
+        if (each) {
+            sum_points<true, true>(job, sums);
+        } else {
+            sum_points<true, false>(job, sums);
+        }
+    } else if (each) {
+        sum_points<false, true>(job, sums);
     } else {
-        sum_points<false>(job, sums);
+        sum_points<false, false>(job, sums);
     }
 }
 

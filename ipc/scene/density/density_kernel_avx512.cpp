@@ -222,7 +222,8 @@ struct Accumulators {
 };
 
 template <bool windows>
-TACT_AVX512 inline void add_block(const DensityJob& job, const Block& block, Accumulators& sum) {
+TACT_AVX512 inline void add_block(const DensityJob& job, const Block& block, std::size_t begin,
+                                  Accumulators& sum) {
     Rows rows;
     sum_four<windows, 0>(job, block, rows);
     sum_four<windows, 1>(job, block, rows);
@@ -238,6 +239,14 @@ TACT_AVX512 inline void add_block(const DensityJob& job, const Block& block, Acc
     const __m512 px = _mm512_mul_ps(dot(row_y, block.value_y), per_spacing[0]);
     transpose_lanes(rows.slope_z, row_y);
     const __m512 pz = _mm512_mul_ps(dot(row_y, block.value_y), per_spacing[2]);
+    if (job.gradient[0] != nullptr) {
+        const std::size_t left = job.count - begin;
+        const auto mask = static_cast<__mmask16>(left < std::size_t{kLanes} ? (1U << left) - 1U : 0xFFFFU);
+        const __m512 scale = _mm512_set1_ps(static_cast<float>(kSlopeScale));
+        _mm512_mask_storeu_ps(job.gradient[0] + begin, mask, _mm512_mul_ps(px, scale));
+        _mm512_mask_storeu_ps(job.gradient[1] + begin, mask, _mm512_mul_ps(py, scale));
+        _mm512_mask_storeu_ps(job.gradient[2] + begin, mask, _mm512_mul_ps(pz, scale));
+    }
     const __m512 rx = block.r[0], ry = block.r[1], rz = block.r[2];
     sum.gx = _mm512_add_ps(sum.gx, px);
     sum.gy = _mm512_add_ps(sum.gy, py);
@@ -264,7 +273,7 @@ TACT_AVX512 void sum_points(const DensityJob& job, DensityJobSums& sums) {
         prepare<windows>(job, first, end - first, *now);
         for (std::size_t begin = first; begin < end; begin += kLanes) {
             if (begin + kLanes < end) prepare<windows>(job, begin + kLanes, end - begin - kLanes, *next);
-            add_block<windows>(job, *now, sum);
+            add_block<windows>(job, *now, begin, sum);
             Block* const used = now;
             now = next;
             next = used;

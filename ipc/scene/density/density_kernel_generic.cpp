@@ -70,6 +70,11 @@ void add_point(const DensityJob& job, std::size_t i, Partial& out) {
     }
     const float w = job.weight[i];
     gx *= w, gy *= w, gz *= w;
+    if (job.gradient[0] != nullptr) {
+        job.gradient[0][i] = gx;
+        job.gradient[1][i] = gy;
+        job.gradient[2][i] = gz;
+    }
     out.density += w * density;
     out.gx += gx, out.gy += gy, out.gz += gz;
     out.mx += r[1] * gz - r[2] * gy;

@@ -25,6 +25,7 @@ struct DensityJob {
     // Points, body frame, metres, and their weights.
     const float *x, *y, *z, *weight;
     std::size_t count;
+    float* gradient[3];    // null, or receives w grad rho of each point, per metre, model axes
     float rotation[9];     // row major, body to model
     float per_spacing[3];  // 1 / voxel, per metre
     // The body's origin in padded voxels is cell + fraction. Separate values keep the precision of a

@@ -231,7 +231,8 @@ double DensityMap::sample(const Vec3& point_model_m, Vec3& gradient) const noexc
     return density;
 }
 
-DensitySums DensityMap::sum(const PointsView& points, const Pose& T_model_body) const noexcept {
+DensitySums DensityMap::sum(const PointsView& points, const Pose& T_model_body,
+                            const PointGradients* each) const noexcept {
     DensitySums sums;
     const double norm = T_model_body.q.norm();
     if (!T_model_body.finite() || !(norm > 1e-6 && norm < 1e6)) return sums;
@@ -240,6 +241,10 @@ DensitySums DensityMap::sum(const PointsView& points, const Pose& T_model_body) 
     job.x = points.x.data(), job.y = points.y.data(), job.z = points.z.data();
     job.weight = points.weight.data();
     job.count = std::min({points.x.size(), points.y.size(), points.z.size(), points.weight.size()});
+    if (each != nullptr) {
+        job.count = std::min({job.count, each->x.size(), each->y.size(), each->z.size()});
+        job.gradient[0] = each->x.data(), job.gradient[1] = each->y.data(), job.gradient[2] = each->z.data();
+    }
     job.windows = job.count < kMany && windows_.size() > 0;
     const DensityLayout layout = density_layout(padded_, job.windows);
     job.coefficients = job.windows ? windows_.data() : columns_.data();

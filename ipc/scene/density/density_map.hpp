@@ -66,6 +66,11 @@ struct DensityBends {
         Eigen::Matrix3d::Zero();  // symmetric part of that of moment, sigma per radian squared
 };
 
+// Receives w grad rho of each point of a sum, sigma per model metre, model axes; at least as long as the points.
+struct PointGradients {
+    std::span<float> x, y, z;
+};
+
 struct DensityKernel;  // ipc/scene/density/density_kernels.hpp
 
 class DensityMap {
@@ -90,7 +95,8 @@ public:
     // The same summed over the points of a rigid body at T_model_body; the servo's inner loop. Uses the
     // widest instruction set of the processor; results agree with sample() to single precision. Zero for a
     // pose that is not finite or has no rotation.
-    [[nodiscard]] DensitySums sum(const PointsView& points, const Pose& T_model_body) const noexcept TACT_RT;
+    [[nodiscard]] DensitySums sum(const PointsView& points, const Pose& T_model_body,
+                                  const PointGradients* each = nullptr) const noexcept TACT_RT;
 
     // Derivatives of the sums; for a few points at a time (density_bend.cpp). Zero as in sum().
     [[nodiscard]] DensityBends bends(const PointsView& points,

@@ -14,19 +14,21 @@
 namespace tact {
 namespace {
 
-constexpr float kLevelJump = 0.011F;  // change of the knob in one step; its slew rate is below
+constexpr double kFlexibleCost = 1.3;  // of a step that bends the body too, in steps of a rigid one
+constexpr float kLevelJump = 0.011F;   // change of the knob in one step; its slew rate is below
 
 }  // namespace
 
 DockingModel::DockingModel(const SceneMeta& meta, const DensityGrid& grid,
                            const std::vector<Structure>& structures, const std::vector<Codebook>& codebooks,
-                           const DockingSettings& settings)
-    : parts_(make_docking_parts(meta, grid, structures, codebooks)),
+                           const DockingSettings& settings, const std::vector<NormalModes>& modes)
+    : parts_(make_docking_parts(meta, grid, structures, codebooks, modes)),
       energy_j_per_sigma_(start_energy_j_per_sigma(meta, settings)),
       whole_(make_force_map(*parts_, newtons_per_gradient(), 0, {})),
       built_(whole_),
       force_map_(whole_.get()),
-      bodies_(start_bodies(*parts_, settings), static_cast<std::uint32_t>(parts_->structures.size())) {
+      bodies_(start_bodies(*parts_, settings), static_cast<std::uint32_t>(parts_->structures.size())),
+      flexible_(parts_->flexible, parts_->levels) {
     clash_gains_ = parts_->clash_gains;
     clash_gains_.force_n *= settings.force_scale;
     clash_gains_.stiffness_n_m *= settings.force_scale;
@@ -42,7 +44,8 @@ DockingModel::DockingModel(const DockingModel& like, const ModelBodies& bodies)
       energy_j_per_sigma_(like.energy_j_per_sigma_),
       clash_gains_(like.clash_gains_),
       pull_scale_(like.pull_scale_),
-      bodies_({}, static_cast<std::uint32_t>(parts_->structures.size())) {
+      bodies_({}, static_cast<std::uint32_t>(parts_->structures.size())),
+      flexible_(parts_->flexible, parts_->levels) {
     const std::uint32_t asked = bodies.options_asked & kForceMapOptions;
     const std::uint32_t asked_whole = asked & ~kDockingSubtraction;
     whole_ = like.whole_->options == asked_whole
@@ -51,6 +54,7 @@ DockingModel::DockingModel(const DockingModel& like, const ModelBodies& bodies)
     built_ = asked == asked_whole ? whole_ : make_force_map(*parts_, newtons_per_gradient(), asked, bodies);
     force_map_ = built_.get();
     bodies_.list() = bodies;
+    topic_ = like.topic_;
     error_scale_.fill(1.0);
     bends_scale_.fill({1.0, 1.0});
 }
@@ -58,7 +62,7 @@ DockingModel::DockingModel(const DockingModel& like, const ModelBodies& bodies)
 LevelBlend DockingModel::blend() const noexcept {
     const std::size_t structure = bodies_.structure();
     return {.maps = force_map_->maps,
-            .levels = parts_->levels[structure],
+            .levels = flexible_.levels(structure),
             .metrics = force_map_->metrics[structure],
             .error_scale = error_scale_[structure],
             .energy_j_per_sigma = energy_j_per_sigma_,
@@ -77,7 +81,12 @@ KnobSpec DockingModel::knob() const noexcept {
 }
 
 PathLoad DockingModel::predict(float fidelity) const noexcept {
-    return bodies_.in_hand() ? blend().predict(fidelity) : PathLoad{};
+    if (!bodies_.in_hand()) return {};
+    PathLoad load = blend().predict(fidelity);
+    if (is_flexible())
+        load.cost_predicted = Duration(
+            static_cast<std::int64_t>(kFlexibleCost * static_cast<double>(load.cost_predicted.count())));
+    return load;
 }
 
 std::uint32_t DockingModel::items(float fidelity) const noexcept {
@@ -125,6 +134,21 @@ StepResult DockingModel::evaluate(const Pose& T_model_body, const Budget& budget
     static_cast<void>(add_clash(T_model_body, result));
     static_cast<void>(add_pull(T_model_body, result));
     return result;
+}
+
+bool DockingModel::is_flexible() const noexcept {
+    return (bodies_.list().options_asked & kDockingFlexible) != 0 && bodies_.in_hand() &&
+           flexible_.can_bend(bodies_.structure());
+}
+
+void DockingModel::bend(const Pose& T_model_body, const Budget& budget, StepResult& result) noexcept {
+    const Instant begin = Monotonic::now();
+    const bool on = is_flexible();
+    flexible_.hold(bodies_.active_id(), bodies_.structure(), on);
+    if (!flexible_.bent()) return;
+    flexible_.step(blend(), T_model_body, budget, step_s(), on, !bodies_.active_fixed());
+    if (flexible_.moved()) audit_.restart();
+    result.load.cost += Monotonic::now() - begin;
 }
 
 bool DockingModel::is_pulled() const noexcept {
@@ -195,6 +219,7 @@ StepResult DockingModel::step(const ToolState& tool, const Budget& budget) noexc
 
 StepResult DockingModel::feel(const ToolState& tool, const Budget& budget) noexcept {
     if (!bodies_.in_hand()) {
+        flexible_.hold(0, 0, (bodies_.list().options_asked & kDockingFlexible) != 0);
         fade_.rest();
         clutched_ = true;
         bodies_.list().pull_n = 0.0;
@@ -219,7 +244,9 @@ StepResult DockingModel::feel(const ToolState& tool, const Budget& budget) noexc
     const BasinPull::Pull pull = add_pull(body, clash);
     bodies_.list().place = pull.nearest;
     bodies_.list().pull_n = held ? 0.0 : pull.wrench_world.force_n.norm();
-    StepResult result = blend().evaluate(body, budget, &kept_);
+    bend(body, budget, clash);
+    // A body that bends has no older sums to keep.
+    StepResult result = blend().evaluate(body, budget, flexible_.bent() ? nullptr : &kept_);
     audit(result, body);
     stiffness_audit_.step(blend(), budget.fidelity, body, step_s(), bends_scale_[bodies_.structure()]);
     stepped_ = true;
@@ -245,10 +272,11 @@ void DockingModel::glide(float fidelity, StepResult& result) noexcept {
 // A measured error above the bound raises the bound of all levels of this structure permanently. Steps that reused
 // earlier sums are skipped: they do not measure their level and have no time to spare.
 void DockingModel::audit(const StepResult& result, const Pose& T_model_body) noexcept {
-    if (result.status != StepStatus::ok || result.load.recomputed_fraction < 1.0F) return;
+    if (result.status != StepStatus::ok || result.load.recomputed_fraction < 1.0F || flexible_.moved())
+        return;
     double& scale = error_scale_[bodies_.structure()];
     const double per_newton = 1.0 / std::max(newtons_per_gradient(), 1e-300);
-    if (!audit_.step(force_map_->maps.front(), parts_->levels[bodies_.structure()].back(), T_model_body,
+    if (!audit_.step(force_map_->maps.front(), blend().levels.back(), T_model_body,
                      per_newton * result.wrench_world.force_n, per_newton * result.load.error / scale,
                      result.load.items))
         return;

@@ -13,6 +13,8 @@
 //           the load and is not part of the density's error.
 // Bodies    copies of a structure share its point sets. When the body in the hand changes, the old force fades
 //           to zero before the new one fades in.
+// Flexible  with kDockingFlexible the body bends along its normal modes (flexible_body.hpp); a constant-time order. Clash force
+//           and pull are those of the straight body.
 // Knob      "docking.force": codebook levels from the smallest to all atoms, blended in between.
 // Work      step() recomputes the budget's work fraction (level_blend.hpp); evaluate() always sums a whole level.
 // Frames    wrench in world, bodies in model; SceneMeta converts between them.
@@ -32,12 +34,15 @@
 #include "ipc/scene/density/structure.hpp"
 #include "ipc/scene/file/scene_file.hpp"
 #include "ipc/scene/file/scene_meta.hpp"
+#include "ipc/shm/latest.hpp"
+#include "ipc/topics/shapes.hpp"
 #include "rt/force/docking/basin_pull.hpp"
 #include "rt/force/docking/clash_force.hpp"
 #include "rt/force/docking/docking_bodies.hpp"
 #include "rt/force/docking/docking_parts.hpp"
 #include "rt/force/docking/docking_start.hpp"
 #include "rt/force/docking/error_audit.hpp"
+#include "rt/force/docking/flexible_body.hpp"
 #include "rt/force/docking/force_map.hpp"
 #include "rt/force/docking/level_blend.hpp"
 #include "rt/force/docking/level_glide.hpp"
@@ -49,9 +54,11 @@ namespace tact {
 
 class DockingModel final : public ForceModel {
 public:
-    // codebooks: one per structure; levels of ascending size with fewer vectors than the structure has atoms.
+    // codebooks: one per structure; levels of ascending size with fewer vectors than the structure has atoms. modes: one per
+    // structure, or none.
     DockingModel(const SceneMeta& meta, const DensityGrid& grid, const std::vector<Structure>& structures,
-                 const std::vector<Codebook>& codebooks, const DockingSettings& settings);
+                 const std::vector<Codebook>& codebooks, const DockingSettings& settings,
+                 const std::vector<NormalModes>& modes = {});
 
     [[nodiscard]] KnobSpec knob() const noexcept TACT_RT override;
     [[nodiscard]] std::uint32_t items(float fidelity) const noexcept TACT_RT override;
@@ -66,6 +73,8 @@ public:
     [[nodiscard]] bool stale() const noexcept TACT_RT override;
     [[nodiscard]] std::unique_ptr<ForceModel> rebuild(const ModelBodies& bodies) const override;
     bool adopt(const ForceModel& old) noexcept TACT_RT override;
+    void publish(const ModelCycle& cycle) noexcept TACT_RT override;
+    void publish_to(Latest<ShapesTopic>& topic) { topic_ = &topic; }
     void give_up() noexcept TACT_RT override;
 
     // Wrench on the active body at a pose, including clash force and pull; equals the wrench of step() after its ramp.
@@ -80,6 +89,7 @@ public:
     [[nodiscard]] const ClashGains& clash_gains() const { return clash_gains_; }
     [[nodiscard]] const ErrorAudit& audit() const { return audit_; }
     [[nodiscard]] const StiffnessAudit& stiffness_audit() const { return stiffness_audit_; }
+    [[nodiscard]] const FlexibleBody& flexible() const { return flexible_; }
 
     static constexpr const char* kKnobPath = "docking.force";
 
@@ -97,6 +107,8 @@ private:
     [[nodiscard]] StepResult feel(const ToolState& tool, const Budget& budget) noexcept;
     [[nodiscard]] ModelStiffness of_clash() const noexcept;
     [[nodiscard]] bool is_pulled() const noexcept;
+    [[nodiscard]] bool is_flexible() const noexcept;  // the option is on, and the body in the hand can bend
+    void bend(const Pose& T_model_body, const Budget& budget, StepResult& result) noexcept;
     // Returns the pull, which is part of the result.
     BasinPull::Pull add_pull(const Pose& T_model_body, StepResult& result) const noexcept;
     bool order_pull(const ModelOrder& order) noexcept;
@@ -115,6 +127,7 @@ private:
     std::shared_ptr<const ForceMap> whole_, built_;
     const ForceMap* force_map_;
     DockingBodies bodies_;
+    FlexibleBody flexible_;
     // The grip: translation from tool to centre of mass (constant in world axes), and rotation from tool to body.
     Vec3 com_from_tool_world_m_ = Vec3::Zero();
     Quat q_tool_body_ = Quat::Identity();
@@ -127,6 +140,7 @@ private:
     ErrorAudit audit_;
     StiffnessAudit stiffness_audit_;
     BasinPull basins_;
+    Latest<ShapesTopic>* topic_ = nullptr;
     bool stepped_ = false;    // the last step had a force of the density
     bool at_others_ = false;  // the last step had points near other bodies
     // By structure, from audits; at least 1.

@@ -10,7 +10,10 @@
 namespace tact {
 namespace {
 
-constexpr std::uint32_t kInstantOptions = kDockingClash | kDockingPull;  // need no other density
+static_assert(kModesMax == kShapeModesMax);
+
+// Need no other density; the last one changes no force at once.
+constexpr std::uint32_t kInstantOptions = kDockingClash | kDockingPull | kDockingFlexible;
 
 // 0: a command for another system.
 std::uint32_t option_of(std::uint8_t command) noexcept {
@@ -23,6 +26,8 @@ std::uint32_t option_of(std::uint8_t command) noexcept {
             return kDockingLaplacian;
         case CommandKind::set_pull:
             return kDockingPull;
+        case CommandKind::set_flexible:
+            return kDockingFlexible;
         default:
             return 0;
     }
@@ -73,7 +78,7 @@ bool DockingModel::set_options(std::uint32_t options, bool on) noexcept {
     const std::uint32_t before = asked;
     asked = on ? asked | options : asked & ~options;
     const bool another = choose_density();
-    if (another || ((before ^ asked) & kInstantOptions) != 0) fade(fade_);
+    if (another || ((before ^ asked) & (kDockingClash | kDockingPull)) != 0) fade(fade_);
     return true;
 }
 
@@ -109,7 +114,9 @@ bool DockingModel::order(const ModelOrder& order) noexcept {
         if (!is_placeable(parts_->meta, order.T_model_body)) return false;
         checked.T_model_body.q.normalize();
     }
-    switch (bodies_.order(checked)) {
+    const DockingBodies::Change change = bodies_.order(checked);
+    if (order.kind == ModelOrder::Kind::remove) flexible_.forget_removed(bodies_.list());
+    switch (change) {
         case DockingBodies::Change::refused:
             return false;
         case DockingBodies::Change::moved:
@@ -150,9 +157,31 @@ bool DockingModel::adopt(const ForceModel& old) noexcept {
     error_scale_ = before.error_scale_;
     bends_scale_ = before.bends_scale_;
     basins_ = before.basins_;
+    flexible_.take_shapes(before.flexible_);
     fade(before.fade_);
     static_cast<void>(choose_density());
     return true;
+}
+
+void DockingModel::publish(const ModelCycle& cycle) noexcept {
+    const bool may_bend = std::any_of(parts_->flexible.begin(), parts_->flexible.end(),
+                                      [](const FlexibleParts& parts) { return parts.bends(); });
+    if (topic_ == nullptr || !may_bend) return;
+    ShapesTopic t{};
+    t.taken_at_ns = to_ns(cycle.now);
+    t.cycle = cycle.cycle;
+    t.strain = static_cast<float>(flexible_.strain());
+    t.strain_most = static_cast<float>(StrainLimit::kMost);
+    t.bends = is_flexible() ? 1 : 0;
+    std::size_t row = 0;
+    for (const BodyShape& shape : flexible_.shapes()) {
+        if (shape.id == 0) continue;
+        if (shape.id == bodies_.active_id()) t.rmsd_m = static_cast<float>(shape.rmsd_m());
+        t.body[row].id = shape.id;
+        std::copy(shape.amplitude_m.begin(), shape.amplitude_m.end(), t.body[row].amplitude_m);
+        ++row;
+    }
+    topic_->publish(t);
 }
 
 void DockingModel::give_up() noexcept {

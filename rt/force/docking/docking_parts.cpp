@@ -37,7 +37,8 @@ std::vector<PointSet> levels_of(const Structure& structure, const Codebook& code
 
 std::shared_ptr<const DockingParts> make_docking_parts(const SceneMeta& meta, const DensityGrid& grid,
                                                        const std::vector<Structure>& structures,
-                                                       const std::vector<Codebook>& codebooks) {
+                                                       const std::vector<Codebook>& codebooks,
+                                                       const std::vector<NormalModes>& modes) {
     const bool scale_good = std::isfinite(meta.world_per_model) && meta.world_per_model > 0.0;
     const bool gain_good = std::isfinite(meta.energy_j_per_sigma) && meta.energy_j_per_sigma >= 0.0;
     if (!scale_good || !gain_good) {
@@ -61,6 +62,8 @@ std::shared_ptr<const DockingParts> make_docking_parts(const SceneMeta& meta, co
                                "bake the scene again");
         }
         parts->levels.push_back(levels_of(structures[i], codebooks[i]));
+        parts->flexible.push_back(make_flexible_parts(structures[i], parts->levels.back(),
+                                                      i < modes.size() ? modes[i] : NormalModes{}));
         parts->clash.emplace_back(structures[i]);
         parts->gyration_m.push_back(radius_of_gyration_m(structures[i]));
     }

@@ -14,6 +14,7 @@
 #include "ipc/scene/density/structure.hpp"
 #include "ipc/scene/file/scene_meta.hpp"
 #include "rt/force/docking/clash_force.hpp"
+#include "rt/force/docking/flexible_parts.hpp"
 #include "rt/force/docking/point_set.hpp"
 
 namespace tact {
@@ -32,6 +33,7 @@ struct DockingParts {
     DensityGrid grid;  // map of the force without options
     std::vector<Structure> structures;
     std::vector<std::vector<PointSet>> levels;
+    std::vector<FlexibleParts> flexible;  // by structure
     // By structure.
     std::vector<ClashField> clash;
     std::vector<double> gyration_m;  // radius
@@ -39,9 +41,10 @@ struct DockingParts {
     std::shared_ptr<LaplacianUnit> laplacian_unit = std::make_shared<LaplacianUnit>();
 };
 
-// codebooks: one per structure.
+// codebooks: one per structure; modes: one per structure, or none.
 std::shared_ptr<const DockingParts> make_docking_parts(const SceneMeta& meta, const DensityGrid& grid,
                                                        const std::vector<Structure>& structures,
-                                                       const std::vector<Codebook>& codebooks);
+                                                       const std::vector<Codebook>& codebooks,
+                                                       const std::vector<NormalModes>& modes);
 
 }  // namespace tact

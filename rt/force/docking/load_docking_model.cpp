@@ -14,11 +14,14 @@ std::unique_ptr<DockingModel> load_docking_model(const SceneFile& scene, const D
     }
     std::vector<Structure> structures;
     std::vector<Codebook> codebooks;
+    std::vector<NormalModes> modes;
     for (std::uint32_t i = 0; i < meta.body_count && i < ModelBodies::kMax; ++i) {
         structures.push_back(read_structure(scene, i));
         codebooks.push_back(read_codebook(scene, i));
+        modes.push_back(read_modes(scene, i, structures.back()));
     }
-    return std::make_unique<DockingModel>(meta, read_force_map_grid(scene), structures, codebooks, settings);
+    return std::make_unique<DockingModel>(meta, read_force_map_grid(scene), structures, codebooks, settings,
+                                          modes);
 }
 
 }  // namespace tact

@@ -82,6 +82,7 @@ PointSet make_point_set(const PointsView& points, const std::string& name) {
         set.y_m.push_back(points.y[i]);
         set.z_m.push_back(points.z[i]);
         set.weight.push_back(points.weight[i]);
+        set.source.push_back(static_cast<std::uint32_t>(i));
         set.radius_m = std::max(set.radius_m,
                                 std::hypot(static_cast<double>(points.x[i]), static_cast<double>(points.y[i]),
                                            static_cast<double>(points.z[i])));

@@ -6,6 +6,7 @@
 // Fails by StartupError: no points, points that are not finite or farther out than a millimetre, invalid weights.
 #pragma once
 
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -15,7 +16,8 @@ namespace tact {
 
 struct PointSet {
     std::vector<float> x_m, y_m, z_m, weight;
-    double radius_m = 0.0;  // distance of the farthest point from the origin
+    std::vector<std::uint32_t> source;  // index of each point in the order that it was given
+    double radius_m = 0.0;              // distance of the farthest point from the origin
 
     [[nodiscard]] std::size_t size() const { return x_m.size(); }
     [[nodiscard]] PointsView view() const { return {x_m, y_m, z_m, weight}; }

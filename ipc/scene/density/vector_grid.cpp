@@ -1,4 +1,4 @@
-#include "prep/codebook/vector_grid.hpp"
+#include "ipc/scene/density/vector_grid.hpp"
 
 #include <algorithm>
 #include <cmath>

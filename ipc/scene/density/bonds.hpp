@@ -21,6 +21,10 @@ inline constexpr double kBondSlackA = 0.45, kBondMinA = 0.4;
 inline constexpr std::size_t kRowAtomsMax = 192;  // crystals have thirty in three cells
 inline constexpr std::size_t kBondsOfAtomMax = 8;
 
+// Covalent radius (Cordero 2008), ångström. 0: distance tells no bond (noble gases, and ions of groups 1 and 2, which
+// have many atoms at bonding distance).
+[[nodiscard]] float covalent_radius_a(std::uint8_t atomic_number);
+
 // Sorted, without duplicates.
 [[nodiscard]] std::vector<Bond> find_bonds(const Structure& structure);
 // True if the rule above joins these two atoms.

@@ -1,14 +1,22 @@
-#include "gui/docking/bonds.hpp"
+#include "ipc/scene/density/bonds.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
+#include <iterator>
 
-#include "gui/render/elements.hpp"
 #include "ipc/base/units.hpp"
 
 namespace tact {
 namespace {
+
+// Picometres. Manganese, iron and cobalt: high spin.
+constexpr std::uint8_t kCovalentPm[] = {
+    76,  31,  0,   0,   0,   84,  76,  71,  66,  57,  0,   0,   0,   121, 111, 107, 105, 102, 0,
+    0,   0,   170, 160, 153, 139, 161, 152, 150, 124, 132, 122, 122, 120, 119, 120, 120, 0,   0,
+    0,   190, 175, 164, 154, 147, 146, 142, 139, 145, 144, 142, 139, 139, 138, 139, 0,   0,   0,
+    207, 204, 203, 201, 199, 198, 198, 196, 194, 192, 192, 189, 190, 187, 187, 175, 170, 162, 151,
+    144, 141, 136, 136, 132, 145, 146, 148, 140, 150, 0,   0,   0,   215, 206, 200, 196};
 
 constexpr std::uint8_t kSulphur = 16;
 // Above the longest possible bond, so that a bond reaches the next cell at most.
@@ -46,6 +54,11 @@ std::uint64_t key_of(const Place& p) {
 }
 
 }  // namespace
+
+float covalent_radius_a(std::uint8_t atomic_number) {
+    return atomic_number < std::size(kCovalentPm) ? 0.01F * static_cast<float>(kCovalentPm[atomic_number])
+                                                  : 0.0F;
+}
 
 bool bonded(const Structure& s, std::uint32_t i, std::uint32_t j) {
     const double ri = static_cast<double>(covalent_radius_a(s.element[i]));
