@@ -94,6 +94,18 @@ void options(const Theme& theme, DashboardState& state, const FittingState& f) {
     ImGui::SameLine(theme.px(178.0F));
     box("Laplacian", kDockingLaplacian, CommandKind::set_laplacian,
         "force from the Laplacian of the map: shape counts more than density");
+    ImGui::BeginDisabled(!f.can_bend);
+    box("Flexible", kDockingFlexible, CommandKind::set_flexible,
+        f.can_bend
+            ? "the held body bends along its normal modes into the density; off: it returns to its own shape"
+            : "the held body has no normal modes: bake the scene with --modes 12");
+    ImGui::EndDisabled();
+    if (f.bent_rmsd_m > 0.0) {
+        ImGui::SameLine(theme.px(84.0F));
+        ImGui::TextDisabled("%s", format("bent by %.2f Å RMSD, strain %.0f of %.0f %%",
+                                         f.bent_rmsd_m / kAngstromM, 100.0 * f.strain, 100.0 * f.strain_most)
+                                      .c_str());
+    }
     ImGui::EndDisabled();
     if (f.building) text_small(theme, colour::kWatch, "preparing the density ...");
 }

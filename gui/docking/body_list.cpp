@@ -45,8 +45,18 @@ void BodyList::follow(const BodiesTopic& topic) {
     }
 }
 
+void BodyList::follow(const ShapesTopic& topic) {
+    for (ShownBody& body : bodies_) {
+        const std::span<const float> bent = amplitudes_of(topic, body.id);
+        body.amplitude_m.assign(bent.begin(), bent.end());
+    }
+}
+
 void BodyList::forget_motion() {
-    for (ShownBody& body : bodies_) body.predictor.clear();
+    for (ShownBody& body : bodies_) {
+        body.predictor.clear();
+        body.amplitude_m.clear();
+    }
 }
 
 void BodyList::predict(std::int64_t now_ns) {

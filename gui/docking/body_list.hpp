@@ -13,16 +13,18 @@
 
 #include "gui/link/pose_predictor.hpp"
 #include "ipc/topics/bodies.hpp"
+#include "ipc/topics/shapes.hpp"
 
 namespace tact {
 
 struct ShownBody {
     std::uint32_t id = 0;
     std::uint16_t structure = 0;
-    std::uint16_t flags = 0;  // BodyFlag
-    bool hidden = false;      // in this window only; its force remains
-    Pose newest;              // as published
-    Pose T_model_body;        // predicted
+    std::uint16_t flags = 0;           // BodyFlag
+    bool hidden = false;               // in this window only; its force remains
+    Pose newest;                       // as published
+    Pose T_model_body;                 // predicted
+    std::vector<float> amplitude_m{};  // bent along the modes of its structure; empty: straight
     PosePredictor predictor;
 };
 
@@ -31,6 +33,7 @@ public:
     // The scene's structures at their home poses, with the ids that a controller assigns at its start.
     void start(std::span<const Pose> homes);
     void follow(const BodiesTopic& topic);
+    void follow(const ShapesTopic& topic);
     void forget_motion();  // for another controller
     void predict(std::int64_t now_ns);
     void set_hidden(std::uint32_t id, bool hidden);

@@ -4,6 +4,11 @@
 
 namespace tact {
 
+const NormalModes& DockingContent::modes_of(std::size_t body) const {
+    static const NormalModes kNone;
+    return body < modes.size() ? modes[body] : kNone;
+}
+
 void DockingContent::each_point(const std::function<void(const Vec3&)>& take) const {
     for (const Structure& s : bodies)
         for (std::size_t i = 0; i < s.size(); ++i)
@@ -24,6 +29,7 @@ std::unique_ptr<SystemContent> read_docking(SceneFile file, SceneContent& conten
         docking->codebooks.push_back(i < file.count({'C', 'O', 'D', 'E'}) ? read_codebook(file, i)
                                                                           : Codebook{});
         docking->bonds.push_back(find_bonds(docking->bodies.back()));
+        docking->modes.push_back(read_modes(file, i, docking->bodies.back()));
     }
     return docking;
 }

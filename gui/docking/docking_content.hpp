@@ -5,6 +5,7 @@
 
 #include "gui/render/scene_content.hpp"
 #include "ipc/scene/density/bonds.hpp"
+#include "ipc/scene/density/normal_modes.hpp"
 #include "ipc/scene/density/structure.hpp"
 
 namespace tact {
@@ -14,7 +15,10 @@ public:
     std::vector<Structure> bodies;
     std::vector<Codebook> codebooks;       // one per body
     std::vector<std::vector<Bond>> bonds;  // one list per body
+    std::vector<NormalModes> modes;        // one per body, or none
 
+    // count() 0: the body does not bend.
+    [[nodiscard]] const NormalModes& modes_of(std::size_t body) const;
     void each_point(const std::function<void(const Vec3&)>& take) const override;
 };
 

@@ -67,7 +67,10 @@ void DockingLayer::draw_marks(const LayerPass& pass) {
     const std::vector<Codebook>& books = docking_of(*content_).codebooks;
     for (const DrawnBody& body : frame.bodies) {
         const std::size_t s = body.structure;
-        if (body.hidden || body.ghost || s >= codebooks_.size() || codebooks_[s].empty()) continue;
+        // Codebooks are of the straight structure.
+        if (body.hidden || body.ghost || !body.amplitude_m.empty() || s >= codebooks_.size() ||
+            codebooks_[s].empty())
+            continue;
         Points& points = codebooks_[s][codebook_level(books[s], frame.points_summed)];
         const Eigen::Matrix4f eye =
             pass.eye_from_scene * scene_from_body(body.T_model_body, content_->centre_model_m);

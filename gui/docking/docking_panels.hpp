@@ -72,8 +72,10 @@ struct SearchState {
 
 struct FittingState {
     std::vector<BodyState> bodies;
-    std::uint32_t options = 0;  // DockingOption, currently in effect
-    bool building = false;      // the controller prepares another density
+    std::uint32_t options = 0;                                  // DockingOption, currently in effect
+    bool building = false;                                      // the controller prepares another density
+    bool can_bend = false;                                      // the body in the hand has normal modes
+    double bent_rmsd_m = 0.0, strain = 0.0, strain_most = 0.0;  // of the body in the hand
     bool saving = false;
     SearchState search;
     bool resolution_estimated = false;  // of the map

@@ -62,6 +62,7 @@ void DockingSystem::attach(const SystemContext& context) {
 
 void DockingSystem::read(const Controller::Fresh& fresh, const SystemContext& context) {
     if (fresh.bodies) list_.follow(context.controller.bodies);
+    if (fresh.shapes) list_.follow(context.controller.shapes);
 }
 
 bool DockingSystem::perform(KeyAction what, std::size_t place, const SystemContext& context) {
@@ -135,12 +136,29 @@ void DockingSystem::follow_bodies(std::int64_t now_ns, const SystemContext& cont
     if (topic != nullptr)
         for (const Command& command : commands) context.commands.send(command, now_ns);
     fit_controller_.describe(list_, topic, fitting, panels_.fit);
+    describe_shape(context.controller, fitting);
+}
+
+void DockingSystem::describe_shape(const Controller& controller, FittingState& fitting) const {
+    const auto active = list_.active();
+    const DockingContent* const docking = content_ ? &docking_of(*content_) : nullptr;
+    fitting.can_bend =
+        docking != nullptr && active && docking->modes_of(list_.bodies()[*active].structure).count() > 0;
+    const bool known = controller.attached() && controller.have_shapes && active;
+    fitting.bent_rmsd_m = known ? static_cast<double>(controller.shapes.rmsd_m) : 0.0;
+    fitting.strain = known ? static_cast<double>(controller.shapes.strain) : 0.0;
+    fitting.strain_most = known ? static_cast<double>(controller.shapes.strain_most) : 0.0;
 }
 
 void DockingSystem::prepare(std::int64_t now_ns, bool sharp, ViewFrame& frame, const SystemContext& context) {
     follow_bodies(now_ns, context);
     drawn_.clear();
-    for (const ShownBody& b : list_.bodies()) drawn_.push_back({b.T_model_body, b.structure, b.id, b.hidden});
+    for (const ShownBody& b : list_.bodies())
+        drawn_.push_back({.T_model_body = b.T_model_body,
+                          .structure = b.structure,
+                          .id = b.id,
+                          .hidden = b.hidden,
+                          .amplitude_m = b.amplitude_m});
     if (panels_.fitting.search.ghosts)
         for (const DrawnBody& ghost : fit_controller_.finder().ghosts(list_)) drawn_.push_back(ghost);
     if (const auto active = list_.active()) frame.force_at_model_m = drawn_[*active].T_model_body.p_m;
@@ -167,6 +185,7 @@ bool DockingSystem::add_to_key(ContentKey& key) const {
         key.add(body.hidden);
         key.add(body.ghost);
         if (!body.hidden) key.add(body.T_model_body);
+        for (const float a : body.amplitude_m) key.add_rounded(static_cast<double>(a), 2e-12);
     }
     return true;
 }

@@ -40,6 +40,7 @@ public:
 private:
     // What is shown as the contour, and what "inside" refers to: the first contour, as the person set it.
     void count_contour();
+    void describe_shape(const Controller& controller, FittingState& fitting) const;
     void follow_bodies(std::int64_t now_ns, const SystemContext& context);
 
     const std::vector<ContourOption> options_;

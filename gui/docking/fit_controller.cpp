@@ -81,7 +81,7 @@ void FitController::follow(const BodyList& list, const BodiesTopic* topic, doubl
     bodies_.clear();
     FitHistory::Places places;
     for (const ShownBody& b : list.bodies()) {
-        bodies_.push_back({b.id, b.structure, b.T_model_body});
+        bodies_.push_back({b.id, b.structure, b.T_model_body, b.amplitude_m});
         places.push_back({b.id, b.newest});
     }
     if (topic != nullptr) history_.observe(places, {topic->grips, topic->placements, topic->active});
@@ -183,7 +183,7 @@ void FitController::save(const BodyList& list) {
         std::ofstream out(poses);
         std::vector<PosedBody> bodies;
         for (const ShownBody& b : list.bodies())
-            bodies.push_back({{b.id, b.structure, b.newest}, (b.flags & kBodyFixed) != 0});
+            bodies.push_back({{b.id, b.structure, b.newest, b.amplitude_m}, (b.flags & kBodyFixed) != 0});
         out << poses_json(bodies, *content_) << std::flush;
         if (!out)
             throw StartupError("writing " + poses, "the write failed", "check the free space of the disk");

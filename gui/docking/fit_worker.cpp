@@ -6,6 +6,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cmath>
 #include <exception>
 #include <iterator>
 
@@ -13,11 +14,24 @@
 
 namespace tact {
 
+namespace {
+
+bool bent_apart(std::span<const float> a, std::span<const float> b) {
+    for (std::size_t k = 0; k < std::max(a.size(), b.size()); ++k) {
+        const float x = k < a.size() ? a[k] : 0.0F, y = k < b.size() ? b[k] : 0.0F;
+        if (std::abs(static_cast<double>(x) - static_cast<double>(y)) > 0.01 * kAngstromM) return true;
+    }
+    return false;
+}
+
+}  // namespace
+
 bool moved(std::span<const FitBody> a, std::span<const FitBody> b) {
     return !std::equal(a.begin(), a.end(), b.begin(), b.end(), [](const FitBody& x, const FitBody& y) {
         return x.id == y.id && x.structure == y.structure &&
                (x.T_model_body.p_m - y.T_model_body.p_m).norm() <= 0.01 * kAngstromM &&
-               x.T_model_body.q.angularDistance(y.T_model_body.q) <= 0.01 * kDegreeRad;
+               x.T_model_body.q.angularDistance(y.T_model_body.q) <= 0.01 * kDegreeRad &&
+               !bent_apart(x.amplitude_m, y.amplitude_m);
     });
 }
 
@@ -86,9 +100,13 @@ FitOutcome FitWorker::compute(std::vector<FitBody> bodies, double contour) const
         outcome.resolution_m = 4.0 * content_->grid.spacing_m.maxCoeff();
         outcome.resolution_assumed = true;
     }
-    std::vector<PlacedStructure> placed;
+    const DockingContent& docking = docking_of(*content_);
+    std::vector<Structure> shaped;
     for (const FitBody& b : bodies)
-        placed.push_back({&docking_of(*content_).bodies[b.structure], b.T_model_body});
+        shaped.push_back(
+            bent_structure(docking.bodies[b.structure], docking.modes_of(b.structure), b.amplitude_m));
+    std::vector<PlacedStructure> placed;
+    for (std::size_t i = 0; i < bodies.size(); ++i) placed.push_back({&shaped[i], bodies[i].T_model_body});
     outcome.body = std::move(bodies);
     try {
         FitOfBodies fit = fit_of_bodies(content_->grid, placed,

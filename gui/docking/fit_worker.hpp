@@ -25,6 +25,7 @@ struct FitBody {
     std::uint32_t id = 0;
     std::uint16_t structure = 0;
     Pose T_model_body;
+    std::vector<float> amplitude_m{};  // bent along the modes of its structure; empty: straight
 };
 
 struct FitOutcome {

@@ -33,6 +33,7 @@ public:
     void fill(std::span<const Stick> sticks);
     [[nodiscard]] std::size_t count() const { return count_; }
     [[nodiscard]] bool filled() const { return filled_; }
+    void clear() { filled_ = false; }  // must be filled again
     void draw() { draw(count_); }
     void draw(std::size_t first);  // as many of them, from the first on
 

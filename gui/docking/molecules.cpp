@@ -6,6 +6,7 @@
 #include "gui/docking/docking_content.hpp"
 #include "gui/render/scene_frame.hpp"
 #include "gui/render/tube.hpp"
+#include "ipc/base/units.hpp"
 
 namespace tact {
 namespace {
@@ -29,37 +30,67 @@ MoleculeLook Molecules::look(std::uint32_t id) const {
     return at != look_of_.end() ? at->second : look_;
 }
 
-ImpostorShapes& Molecules::shapes(std::size_t structure, MoleculeStyle style) {
-    OfStructure& s = structures_[structure];
-    const Structure& atoms = docking_of(*content_).bodies[structure];
+void Molecules::OfStructure::clear() {
+    for (TriangleBuffers& t : tube) t.clear();
+    for (ImpostorShapes& t : trace) t.clear();
+    sticks.clear();
+    spheres.clear();
+}
+
+Molecules::Source Molecules::source_of(const DrawnBody& body) {
+    const DockingContent& docking = docking_of(*content_);
+    const Structure& straight = docking.bodies[body.structure];
+    const std::vector<Bond>& bonds = docking.bonds[body.structure];
+    const NormalModes& modes = docking.modes_of(body.structure);
+    if (body.amplitude_m.empty() || modes.count() < body.amplitude_m.size())
+        return {structures_[body.structure], straight, bonds};
+    Bent& bent = bent_[body.id];
+    bent.drawn = true;
+    double apart_2 = 0.0;
+    for (std::size_t k = 0; k < body.amplitude_m.size(); ++k) {
+        const double before = k < bent.amplitude_m.size() ? static_cast<double>(bent.amplitude_m[k]) : 0.0;
+        apart_2 += std::pow(static_cast<double>(body.amplitude_m[k]) - before, 2);
+    }
+    const bool same = bent.atoms.size() == straight.size() &&
+                      bent.amplitude_m.size() <= body.amplitude_m.size() &&
+                      apart_2 < std::pow(kSameShapeA * kAngstromM, 2);
+    if (!same) {
+        bent.amplitude_m.assign(body.amplitude_m.begin(), body.amplitude_m.end());
+        bent.atoms = bent_structure(straight, modes, body.amplitude_m);
+        bent.made.clear();
+    }
+    return {bent.made, bent.atoms, bonds};
+}
+
+ImpostorShapes& Molecules::shapes(const Source& source, MoleculeStyle style) {
+    OfStructure& s = source.made;
     ImpostorShapes& wanted = style == MoleculeStyle::spheres ? s.spheres : s.sticks;
     if (wanted.filled()) return wanted;
     if (style == MoleculeStyle::spheres) {
-        std::vector<Sphere> spheres = spheres_of(atoms);
+        std::vector<Sphere> spheres = spheres_of(source.atoms);
         order_by_level(spheres);
         wanted.fill(spheres);
     } else {
-        const std::vector<Bond>& bonds = docking_of(*content_).bonds[structure];
-        std::vector<Stick> sticks = sticks_of(atoms, bonds);
-        s.sticks_always = order_by_level(sticks, atoms, bonds);
+        std::vector<Stick> sticks = sticks_of(source.atoms, source.bonds);
+        s.sticks_always = order_by_level(sticks, source.atoms, source.bonds);
         wanted.fill(sticks);
     }
     return wanted;
 }
 
-ImpostorShapes& Molecules::trace(std::size_t structure, std::size_t atoms_per_point) {
-    ImpostorShapes& wanted = structures_[structure].trace[atoms_per_point - 1];
-    if (!wanted.filled()) wanted.fill(trace_of(docking_of(*content_).bodies[structure], atoms_per_point));
+ImpostorShapes& Molecules::trace(const Source& source, std::size_t atoms_per_point) {
+    ImpostorShapes& wanted = source.made.trace[atoms_per_point - 1];
+    if (!wanted.filled()) wanted.fill(trace_of(source.atoms, atoms_per_point));
     return wanted;
 }
 
-TriangleBuffers& Molecules::tube(std::size_t structure, std::size_t step) {
-    OfStructure& s = structures_[structure];
+TriangleBuffers& Molecules::tube(const Source& source, std::size_t step) {
+    OfStructure& s = source.made;
     TriangleBuffers& wanted = s.tube[step];
     if (wanted.indices() > 0) return wanted;
     const std::size_t most = step == 0 ? kTubeVertices / structures_.size() : s.tube_vertices;
     const TubeMesh mesh = build_tubes(
-        docking_of(*content_).bodies[structure],
+        source.atoms,
         static_cast<std::size_t>(static_cast<double>(kTubeLevels[step]) * static_cast<double>(most)));
     if (step == 0) s.tube_vertices = mesh.vertex.size();
     wanted.fill(mesh, GL_STATIC_DRAW);
@@ -71,27 +102,30 @@ void Molecules::draw(std::span<const DrawnBody> bodies, const Eigen::Matrix4f& e
     left_out_ = 0;
     triangles_ = triangles_max_ = 0;
     std::size_t room = shapes_max_;
+    for (auto& [id, bent] : bent_) bent.drawn = false;
     for (const DrawnBody& body : bodies) {
         if (body.hidden || body.structure >= structures_.size()) continue;
         const MoleculeLook l =
             body.ghost ? MoleculeLook{MoleculeStyle::trace, Colouring::body} : look(body.id);
         const ImpostorView view{eye_from_scene * scene_from_body(body.T_model_body, content_->centre_model_m),
                                 projection, haze, l.colouring, body.ghost ? kGhost : chain_colour(body.id)};
+        const Source source = source_of(body);
         if (l.style == MoleculeStyle::tube) {
-            draw_tube(body.structure, view);
+            draw_tube(source, view);
             continue;
         }
         // Decided by the number of atoms, before any shapes are made.
-        const std::size_t atoms = docking_of(*content_).bodies[body.structure].size();
+        const std::size_t atoms = source.atoms.size();
         const std::size_t shapes_drawn = l.style == MoleculeStyle::trace ? 0 : atoms;
         if (shapes_drawn > room) {
             ++left_out_;
-            draw_tube(body.structure, view);
+            draw_tube(source, view);
             continue;
         }
         room -= shapes_drawn;
-        draw_shapes(body.structure, l.style, view);
+        draw_shapes(source, l.style, view);
     }
+    std::erase_if(bent_, [](const auto& entry) { return !entry.second.drawn; });
 }
 
 void Molecules::count(std::size_t drawn, std::size_t most) {
@@ -99,38 +133,38 @@ void Molecules::count(std::size_t drawn, std::size_t most) {
     triangles_max_ += static_cast<std::uint32_t>(most);
 }
 
-void Molecules::draw_shapes(std::size_t structure, MoleculeStyle style, ImpostorView view) {
+void Molecules::draw_shapes(const Source& source, MoleculeStyle style, ImpostorView view) {
     if (!impostors_) impostors_ = std::make_unique<ImpostorPrograms>();
     constexpr std::size_t kTrianglesOfShape = 2;
     const auto part = static_cast<double>(std::clamp(level_, 0.01F, 1.0F));
     glDisable(GL_CULL_FACE);
     if (style == MoleculeStyle::trace) {
-        const std::size_t most = trace(structure, 1).count();
+        const std::size_t most = trace(source, 1).count();
         ImpostorShapes& wanted =
-            trace(structure, std::clamp<std::size_t>(std::lround(1.0 / part), 1, kTraceSteps));
+            trace(source, std::clamp<std::size_t>(std::lround(1.0 / part), 1, kTraceSteps));
         impostors_->use_sticks(view);
         wanted.draw(wanted.count());
         return count(kTrianglesOfShape * wanted.count(), kTrianglesOfShape * most);
     }
-    ImpostorShapes& all = shapes(structure, style);
+    ImpostorShapes& all = shapes(source, style);
     auto drawn = static_cast<std::size_t>(std::ceil(part * static_cast<double>(all.count())));
     if (style == MoleculeStyle::spheres) {
         view.grow = static_cast<float>(std::cbrt(static_cast<double>(all.count()) /
                                                  static_cast<double>(std::max<std::size_t>(drawn, 1))));
         impostors_->use_spheres(view);
     } else {
-        drawn = std::clamp(drawn, structures_[structure].sticks_always, all.count());
+        drawn = std::clamp(drawn, source.made.sticks_always, all.count());
         impostors_->use_sticks(view);
     }
     all.draw(drawn);
     count(kTrianglesOfShape * drawn, kTrianglesOfShape * all.count());
 }
 
-void Molecules::draw_tube(std::size_t structure, const ImpostorView& view) {
+void Molecules::draw_tube(const Source& source, const ImpostorView& view) {
     std::size_t step = 0;
     while (step + 1 < kTubeLevels.size() && kTubeLevels[step] > 1.001F * level_) ++step;
-    const TriangleBuffers& full = tube(structure, 0);  // first: the others are parts of it
-    TriangleBuffers& tubes = tube(structure, step);
+    const TriangleBuffers& full = tube(source, 0);  // first: the others are parts of it
+    TriangleBuffers& tubes = tube(source, step);
     count(static_cast<std::size_t>(tubes.indices()) / 3, static_cast<std::size_t>(full.indices()) / 3);
     Paint paint;
     if (view.colouring == Colouring::body)

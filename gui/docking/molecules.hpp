@@ -2,6 +2,7 @@
 //
 // Shared   the graphics data of a structure is created when a style is first drawn, once for all its copies; a
 //          body adds only its pose.
+// Bent     a body that is bent along its modes has graphics data of its own, made again when its shape has changed by kSameShapeA.
 // Cost     trace and tube are cheap anywhere. Sticks and spheres are impostors, one per bond or atom: cheap on a
 //          graphics card, expensive in software. A frame draws at most shapes_max of them (set_shapes_max);
 //          further bodies are drawn as tubes, and left_out() counts them.
@@ -32,7 +33,8 @@ struct DrawnBody {
     std::uint32_t structure = 0;  // index in the scene
     std::uint32_t id = 0;         // identifies the body for the setters below
     bool hidden = false;
-    bool ghost = false;  // a place found: drawn as a thin, grey trace
+    bool ghost = false;                    // a place found: drawn as a thin, grey trace
+    std::span<const float> amplitude_m{};  // bent along the modes of its structure; empty: straight
 };
 
 class Molecules {
@@ -62,24 +64,41 @@ public:
 private:
     static constexpr std::array kTubeLevels{1.0F, 0.7F, 0.5F, 0.35F, 0.25F, 0.17F};
     static constexpr std::size_t kTraceSteps = 4;
+    static constexpr double kSameShapeA = 0.03;
     struct OfStructure {
         std::array<TriangleBuffers, kTubeLevels.size()> tube;
         std::array<ImpostorShapes, kTraceSteps> trace;  // by the atoms per point
         ImpostorShapes sticks, spheres;
         std::size_t sticks_always = 0;  // drawn at any level
         std::size_t tube_vertices = 0;  // of the tube at level 1
+
+        void clear();
     };
-    ImpostorShapes& shapes(std::size_t structure, MoleculeStyle style);
-    ImpostorShapes& trace(std::size_t structure, std::size_t atoms_per_point);
-    TriangleBuffers& tube(std::size_t structure, std::size_t step);
-    void draw_tube(std::size_t structure, const ImpostorView& view);
-    void draw_shapes(std::size_t structure, MoleculeStyle style, ImpostorView view);
+    struct Bent {
+        std::vector<float> amplitude_m;
+        Structure atoms;
+        OfStructure made;
+        bool drawn = false;  // in this frame
+    };
+    // What is drawn of a body: its atoms, and what was made of them.
+    struct Source {
+        OfStructure& made;
+        const Structure& atoms;
+        std::span<const Bond> bonds;
+    };
+    Source source_of(const DrawnBody& body);
+    ImpostorShapes& shapes(const Source& source, MoleculeStyle style);
+    ImpostorShapes& trace(const Source& source, std::size_t atoms_per_point);
+    TriangleBuffers& tube(const Source& source, std::size_t step);
+    void draw_tube(const Source& source, const ImpostorView& view);
+    void draw_shapes(const Source& source, MoleculeStyle style, ImpostorView view);
     void count(std::size_t drawn, std::size_t most);
 
     std::shared_ptr<const SceneContent> content_;
     Programs& programs_;
     std::unique_ptr<ImpostorPrograms> impostors_;  // compiled at first use
     std::vector<OfStructure> structures_;
+    std::map<std::uint32_t, Bent> bent_;  // by id of the body
     MoleculeLook look_;
     std::map<std::uint32_t, MoleculeLook> look_of_;
     std::size_t shapes_max_ = kNoLimit, left_out_ = 0;

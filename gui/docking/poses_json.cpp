@@ -18,6 +18,9 @@ std::string poses_json(std::span<const PosedBody> bodies, const SceneContent& co
                         {"pos_model_a", {p_a.x(), p_a.y(), p_a.z()}},
                         {"quat_model_body_xyzw", {q.x(), q.y(), q.z(), q.w()}},
                         {"fixed", fixed}});
+        if (body.amplitude_m.empty()) continue;
+        nlohmann::ordered_json& bent = list.back()["mode_amplitudes_a"] = nlohmann::ordered_json::array();
+        for (const float a : body.amplitude_m) bent.push_back(static_cast<double>(a) / kAngstromM);
     }
     return nlohmann::ordered_json{{"bodies", list}}.dump(2, ' ', false,
                                                          nlohmann::ordered_json::error_handler_t::replace) +

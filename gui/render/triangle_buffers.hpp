@@ -11,6 +11,7 @@ public:
     void fill(const TubeMesh& mesh, GLenum usage);
     void draw();  // with a program of triangles in use
     [[nodiscard]] GLsizei indices() const { return count_; }
+    void clear() { count_ = 0; }  // must be filled again
 
 private:
     GlVertexArray array_;

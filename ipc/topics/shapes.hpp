@@ -6,6 +6,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <type_traits>
 
 #include "ipc/shm/topic.hpp"
@@ -34,5 +35,16 @@ struct alignas(64) ShapesTopic {
     std::uint8_t reserved[32];  // zero
 };
 static_assert(std::is_trivially_copyable_v<ShapesTopic> && sizeof(ShapesTopic) == 1408);
+
+// The amplitudes of a body, without zeros at the end; empty: it is straight.
+[[nodiscard]] inline std::span<const float> amplitudes_of(const ShapesTopic& topic, std::uint32_t id) {
+    for (const ShapeRow& row : topic.body) {
+        if (row.id != id) continue;
+        std::size_t count = kShapeModesMax;
+        while (count > 0 && row.amplitude_m[count - 1] == 0.0F) --count;
+        return {row.amplitude_m, count};
+    }
+    return {};
+}
 
 }  // namespace tact

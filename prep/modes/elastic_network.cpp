@@ -71,6 +71,7 @@ struct Points {
     std::vector<std::vector<std::uint32_t>> members;  // core nodes
     std::vector<Vec3> at_m;
     std::vector<double> mass;
+    std::vector<std::uint16_t> chain;
 };
 
 Points points_of(const Nodes& nodes) {
@@ -93,6 +94,7 @@ Points points_of(const Nodes& nodes) {
         }
         p.at_m.push_back(sum / mass);
         p.mass.push_back(std::max(mass, least));
+        p.chain.push_back(nodes.chain[members.front()]);
     }
     return p;
 }
@@ -156,9 +158,8 @@ struct Eigen3 {
 
 // The softest, rigid motions included, ascending.
 std::vector<Eigen3> softest(const Points& points, const std::string& name, std::size_t count) {
-    const Sparse h = weighted_hessian(
-        points,
-        make_springs(points.at_m, kCutoffM * std::cbrt(static_cast<double>(points.members.front().size()))));
+    const double scale = std::cbrt(static_cast<double>(points.members.front().size()));
+    const Sparse h = weighted_hessian(points, make_springs(points.at_m, points.chain, kCutoffM, scale));
     Inverse inverse(h);
     const auto size = h.rows();
     const auto wanted = static_cast<Eigen::Index>(std::min(count, static_cast<std::size_t>(size - 1)));

@@ -53,6 +53,18 @@ public:
         }
     }
 
+    // A gap in the chain ends what follows along it.
+    void along(const std::vector<std::uint16_t>& chain, double most_m) {
+        for (std::uint32_t i = 0; i < nodes_.size(); ++i) {
+            for (std::uint32_t n = 0; n < kChain.size(); ++n) {
+                const std::uint32_t j = i + n + 1;
+                if (j >= nodes_.size() || chain[j] != chain[i] || (nodes_[j] - nodes_[j - 1]).norm() > most_m)
+                    break;
+                add(i, j, kChain[n]);
+            }
+        }
+    }
+
     // From a node with few springs to its nearest nodes, whatever their distance.
     void hold_loose_nodes() {
         std::vector<std::size_t> count(nodes_.size(), 0);
@@ -121,9 +133,11 @@ private:
 
 }  // namespace
 
-std::vector<Spring> make_springs(const std::vector<Vec3>& nodes_m, double cutoff_m) {
+std::vector<Spring> make_springs(const std::vector<Vec3>& nodes_m, const std::vector<std::uint16_t>& chain,
+                                 double cutoff_m, double scale) {
     Springs springs(nodes_m);
-    springs.within(cutoff_m);
+    springs.within(scale * cutoff_m);
+    springs.along(chain, scale * kChainMostM);
     springs.hold_loose_nodes();
     if (!nodes_m.empty()) springs.join_parts();
     return springs.take();

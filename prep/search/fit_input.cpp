@@ -4,6 +4,7 @@
 
 #include "ipc/base/error.hpp"
 #include "ipc/base/units.hpp"
+#include "ipc/scene/density/normal_modes.hpp"
 #include "ipc/scene/density/subtracted_map.hpp"
 #include "ipc/scene/file/scene_meta.hpp"
 #include "ipc/scene/file/scene_peek.hpp"
@@ -74,7 +75,7 @@ FitData from_scene(const FitInput& input) {
     std::vector<PlacedBody> bodies;
     if (input.poses.empty()) {
         for (std::uint32_t i = 0; i < meta.body_count; ++i)
-            bodies.push_back({i + 1, i, read_structure(scene, i).home(), false});
+            bodies.push_back({i + 1, i, read_structure(scene, i).home(), false, {}});
     } else {
         const std::vector<char> json = read_whole_file(input.poses, kPosesBytesMax);
         bodies = read_poses({json.data(), json.size()}, input.poses, meta.body_count);
@@ -82,7 +83,8 @@ FitData from_scene(const FitInput& input) {
     for (const PlacedBody& body : bodies) {
         const bool wanted = input.body ? body.id == *input.body : !body.fixed;
         if (!wanted && !body.fixed) continue;
-        Structure s = read_structure(scene, body.structure);
+        const Structure straight = read_structure(scene, body.structure);
+        Structure s = bent_structure(straight, read_modes(scene, body.structure, straight), body.amplitude_m);
         const std::string name = s.name;
         (wanted ? data.models : data.fixed).push_back({name, std::move(s), body.T_model_body});
     }

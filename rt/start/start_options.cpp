@@ -68,6 +68,12 @@ void describe(CLI::App& app, StartOptions& o, StartOverrides& v) {
         ->excludes(offset)
         ->excludes(rotation)
         ->excludes(copies);
+    app.add_option(
+           "--flexible", o.flexible,
+           "on: the body in the hand bends along the normal modes of its structure; the scene must be "
+           "baked with --modes")
+        ->check(CLI::IsMember({"on", "off"}))
+        ->capture_default_str();
     app.add_option("--hand", v.hand, "Motion of the emulated hand")
         ->type_name("passive|wander|stroke|drill|surgeon|suction-tube");
     app.add_option("--hand2", v.hand2,

@@ -24,6 +24,7 @@ struct StartOptions {
     double start_offset_a = 0.0, start_rotation_deg = 0.0;
     std::uint64_t seed = 1;
     std::uint32_t copies = 1;
+    std::string flexible = "off";
     std::string poses;
     std::vector<std::string> levels;
     double tool_radius_mm = 0.0;

@@ -32,7 +32,8 @@ Model make_docking(const SystemInput& in, SharedScene* /*shared*/, std::uint32_t
     const StartOptions& o = in.options;
     DockingSettings s{.start_offset_m = o.start_offset_a * kAngstromM,
                       .start_rotation_rad = o.start_rotation_deg * kDegreeRad,
-                      .seed = o.seed};
+                      .seed = o.seed,
+                      .flexible = o.flexible == "on"};
     if (!o.poses.empty()) {
         std::vector<std::string> names;
         const SceneMeta meta = read_meta(in.scene);

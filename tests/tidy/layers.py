@@ -40,7 +40,8 @@ BELOW = {
     "hal": ["ipc/base", "ipc/shm", "ipc/version"],  # shm: mailboxes between a bus pump and the servo
     "rt/force": ["ipc/base", "ipc/scene"],
     # Force models do not include each other. Each includes the topic that it publishes and the commands that it accepts.
-    "rt/force/docking": ["ipc/base", "ipc/scene", "ipc/topics/bodies", "ipc/topics/command", "rt/force/force_model", "rt/force/force_fade"],
+    "rt/force/docking": ["ipc/base", "ipc/scene", "ipc/shm/latest", "ipc/topics/bodies", "ipc/topics/command", "ipc/topics/shapes",
+                         "rt/force/force_model", "rt/force/force_fade"],
     "rt/force/drilling": ["ipc/base", "ipc/scene", "ipc/shm/latest", "ipc/topics/drill", "ipc/topics/event", "ipc/topics/touch",
                           "rt/force/force_model", "rt/force/force_fade"],
     "rt/force/field": ["ipc/base", "ipc/scene", "rt/force/force_model", "rt/force/force_fade"],
@@ -72,7 +73,7 @@ BELOW = {
     # Systems do not include each other; they share readers, meshes and the console.
     "prep/console": ["ipc/base", "ipc/scene"],
     "prep/docking": ["ipc/base", "ipc/version", "ipc/scene", "prep/codebook", "prep/console", "prep/input", "prep/map", "prep/mesh",
-                     "prep/structure", "prep/synthetic"],
+                     "prep/modes", "prep/structure", "prep/synthetic"],
     "prep/search": ["ipc/base", "ipc/manual", "ipc/version", "ipc/scene", "prep/console", "prep/export", "prep/input", "prep/map",
                     "prep/structure"],
     "prep/surface": ["ipc/base", "ipc/version", "ipc/scene", "prep/console", "prep/mesh", "prep/mesh_file", "prep/synthetic"],

@@ -16,6 +16,24 @@ void write_scene_of_files(const std::filesystem::path& path) {
         .write(path);
 }
 
+TEST(PosesJson, a_bent_body_has_the_amplitudes_of_its_modes) {
+    BodiesTopic bodies{};
+    bodies.count = 2;
+    for (std::uint32_t i = 0; i < 2; ++i) {
+        bodies.body[i].id = i + 1;
+        bodies.body[i].quat_model_body_xyzw[3] = 1.0;
+    }
+    ShapesTopic shapes{};
+    shapes.body[0].id = 2;
+    shapes.body[0].amplitude_m[1] = -3e-10F;
+    const std::vector<Structure> structures{sample::structure()};
+    const nlohmann::json list = poses_json(bodies, &shapes, structures).at("bodies");
+    EXPECT_FALSE(list[0].contains("mode_amplitudes_a"));
+    ASSERT_EQ(list[1].at("mode_amplitudes_a").size(), 2U);
+    EXPECT_NEAR(list[1].at("mode_amplitudes_a")[1].get<double>(), -3.0, 1e-5);
+    EXPECT_FALSE(poses_json(bodies, nullptr, structures).at("bodies")[1].contains("mode_amplitudes_a"));
+}
+
 TEST_F(DeployRun, at_the_end_tact_prep_saves_the_last_poses) {
     write_scene_of_files(scene_);
     options_.gui = false;

@@ -88,13 +88,14 @@ TEST(NormalModes, those_of_a_compact_chain_are_the_softest_of_the_dense_problem)
     const NormalModes m = elastic_modes(s, 10);
     ASSERT_EQ(m.count(), 10U);
     expect_orthonormal(s, m);
-    // The same network, dense: every pair within 15 A. Nodes are so close that all have many springs.
+    // The same network, dense: every pair within 15 A, and the chain. Nodes are so close that all have many springs.
     Eigen::MatrixXd h = Eigen::MatrixXd::Zero(180, 180);
     for (int i = 0; i < 60; ++i) {
         for (int j = 0; j < i; ++j) {
             const Vec3 d = atom(s, static_cast<std::size_t>(i)) - atom(s, static_cast<std::size_t>(j));
-            if (d.norm() > 15.0 * kA) continue;
-            const double k = std::pow(7.0 * kA / std::max(d.norm(), kA), 6.0);
+            if (d.norm() > 15.0 * kA) continue;  // all of the chain are nearer
+            const double chain = i - j == 1 ? 200.0 : i - j == 2 ? 60.0 : i - j == 3 ? 20.0 : 0.0;
+            const double k = std::max(chain, std::pow(7.0 * kA / std::max(d.norm(), kA), 6.0));
             const Eigen::Matrix3d b = k * d.normalized() * d.normalized().transpose();
             h.block<3, 3>(3 * i, 3 * i) += b;
             h.block<3, 3>(3 * j, 3 * j) += b;

@@ -17,6 +17,8 @@ constexpr PassedOption kDockPrep[] = {
      "Resolution (angstrom) to which the force map is smoothed, so that it attracts a structure from farther "
      "away; default: not smoothed"},
     {"--vertices-max", "N", "Maximum number of vertices of the drawn surface; 0: no limit; default 1000000"},
+    {"--modes", "N",
+     "Normal modes of each structure, along which it can bend; 12 are a good start; default 0"},
 };
 
 constexpr PassedOption kDockController[] = {
@@ -25,6 +27,8 @@ constexpr PassedOption kDockController[] = {
     {"--start-rotation-deg", "DEG",
      "Start rotation of the first structure from the orientation in its file (degrees)"},
     {"--copies", "N", "Number of bodies of the first structure; the copies are placed around the map"},
+    {"--flexible", "on|off",
+     "on: the body in the hand bends along the normal modes of its structure; needs --modes in the bake"},
     {"--poses", "FILE.json", "Start poses of the bodies, from the report of an earlier run (JSON)"},
 };
 

@@ -1,16 +1,21 @@
 #include "deploy/tact/docking/places.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <span>
 
 #include "ipc/base/units.hpp"
 
 namespace tact::launch {
 
 Places::Places(const SceneFile& file) : meta_(read_meta(file)), grid_(read_grid(file)) {
-    for (std::uint32_t i = 0; i < meta_.body_count; ++i) structures_.push_back(read_structure(file, i));
+    for (std::uint32_t i = 0; i < meta_.body_count; ++i) {
+        structures_.push_back(read_structure(file, i));
+        modes_.push_back(read_modes(file, i, structures_.back()));
+    }
 }
 
-std::optional<std::vector<BodyAt>> Places::bodies(const BodiesTopic& topic) const {
+std::optional<std::vector<BodyAt>> Places::bodies(const BodiesTopic& topic, const ShapesTopic* shapes) const {
     if (topic.count > kBodiesMax) return std::nullopt;
     std::vector<BodyAt> all;
     for (std::uint32_t i = 0; i < topic.count; ++i) {
@@ -25,6 +30,13 @@ std::optional<std::vector<BodyAt>> Places::bodies(const BodiesTopic& topic) cons
             std::abs(q.norm() - 1.0) > 1e-3)
             return std::nullopt;
         q.normalize();
+        if (shapes != nullptr) {
+            const std::span<const float> bent = amplitudes_of(*shapes, b.id);
+            body.amplitude_m.assign(bent.begin(), bent.end());
+            const bool sound =
+                std::all_of(bent.begin(), bent.end(), [](float a) { return std::abs(a) < 1e-6F; });
+            if (!sound || bent.size() > modes_[b.structure].count()) return std::nullopt;
+        }
         all.push_back(body);
     }
     return all;
@@ -45,8 +57,11 @@ Offset Places::offset(const BodyAt& body) const {
 
 std::optional<FitMetrics> Places::fit(const std::vector<BodyAt>& bodies) const {
     if (!(meta_.resolution_m > 0.0)) return std::nullopt;
+    std::vector<Structure> shaped;
+    for (const BodyAt& b : bodies)
+        shaped.push_back(bent_structure(structures_.at(b.structure), modes_.at(b.structure), b.amplitude_m));
     std::vector<PlacedStructure> placed;
-    for (const BodyAt& b : bodies) placed.push_back({&structures_.at(b.structure), b.T_model_body});
+    for (std::size_t i = 0; i < bodies.size(); ++i) placed.push_back({&shaped[i], bodies[i].T_model_body});
     return fit_metrics(grid_, placed,
                        {.resolution_m = meta_.resolution_m,
                         .contour = meta_.contour,

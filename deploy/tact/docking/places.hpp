@@ -6,11 +6,13 @@
 #include <vector>
 
 #include "ipc/scene/density/density_map.hpp"
+#include "ipc/scene/density/normal_modes.hpp"
 #include "ipc/scene/density/structure.hpp"
 #include "ipc/scene/file/scene_file.hpp"
 #include "ipc/scene/file/scene_meta.hpp"
 #include "ipc/scene/fit/fit_metrics.hpp"
 #include "ipc/topics/bodies.hpp"
+#include "ipc/topics/shapes.hpp"
 
 namespace tact::launch {
 
@@ -25,6 +27,7 @@ struct BodyAt {
     std::uint32_t structure = 0;
     Pose T_model_body;
     bool fixed = false, in_hand = false;
+    std::vector<float> amplitude_m{};  // bent along its modes; empty: straight
 };
 
 // The map and the structures of a docking scene.
@@ -35,8 +38,9 @@ public:
     [[nodiscard]] const std::vector<Structure>& structures() const { return structures_; }
     [[nodiscard]] const DensityGrid& grid() const { return grid_; }
 
-    // Empty if the topic does not fit the scene or holds numbers that are not finite.
-    [[nodiscard]] std::optional<std::vector<BodyAt>> bodies(const BodiesTopic& topic) const;
+    // Empty if a topic does not fit the scene or holds numbers that are not finite. shapes: null if no body bends.
+    [[nodiscard]] std::optional<std::vector<BodyAt>> bodies(const BodiesTopic& topic,
+                                                            const ShapesTopic* shapes = nullptr) const;
     // One body per structure, at the position in its file.
     [[nodiscard]] std::vector<BodyAt> file_bodies() const;
     [[nodiscard]] Offset offset(const BodyAt& body) const;
@@ -47,6 +51,7 @@ private:
     SceneMeta meta_;
     DensityGrid grid_;
     std::vector<Structure> structures_;
+    std::vector<NormalModes> modes_;
 };
 
 }  // namespace tact::launch

@@ -32,7 +32,8 @@ json fit_numbers(const Places& places, const std::vector<BodyAt>& bodies, const 
 
 std::optional<std::vector<BodyAt>> bodies_of(const RtRegion& region, const Places& places) {
     const auto topic = newest(region.bodies);
-    return topic ? places.bodies(*topic) : std::nullopt;
+    const auto shapes = newest(region.shapes);
+    return topic ? places.bodies(*topic, shapes ? &*shapes : nullptr) : std::nullopt;
 }
 
 // The format that tact-rt --poses reads.
@@ -51,6 +52,14 @@ json bodies_report(const RtRegion& region, const Places& places) {
         j["quat_model_body_xyzw"] = {q.x(), q.y(), q.z(), q.w()};
         j["fixed"] = b.fixed;
         j["in_hand"] = b.in_hand;
+        if (!b.amplitude_m.empty()) {
+            j["mode_amplitudes_a"] = amplitudes_json(b.amplitude_m);
+            j["bent_rmsd_a"] = Eigen::Map<const Eigen::VectorXf>(
+                                   b.amplitude_m.data(), static_cast<Eigen::Index>(b.amplitude_m.size()))
+                                   .cast<double>()
+                                   .norm() /
+                               kAngstromM;
+        }
         all.push_back(j);
     }
     return all;
@@ -122,7 +131,9 @@ public:
     // Saves the last poses published by the controller, however it ended.
     void save(const RtRegion* region, const SaveRequest& request, Signals& signals) const override {
         const auto bodies = region != nullptr ? newest(region->bodies) : std::nullopt;
-        const json poses = bodies ? poses_json(*bodies, places_.structures()) : json::object();
+        const auto shapes = region != nullptr ? newest(region->shapes) : std::nullopt;
+        const json poses =
+            bodies ? poses_json(*bodies, shapes ? &*shapes : nullptr, places_.structures()) : json::object();
         if (!poses.contains("bodies") || poses["bodies"].empty())
             throw StartupError("saving to " + request.folder.string(),
                                "the controller did not publish poses of the bodies",

@@ -36,7 +36,14 @@ void check_save_folder(const std::filesystem::path& folder) {
     }
 }
 
-nlohmann::json poses_json(const BodiesTopic& bodies, const std::vector<Structure>& structures) {
+nlohmann::json amplitudes_json(std::span<const float> amplitude_m) {
+    nlohmann::json list = nlohmann::json::array();
+    for (const float a : amplitude_m) list.push_back(static_cast<double>(a) / kAngstromM);
+    return list;
+}
+
+nlohmann::json poses_json(const BodiesTopic& bodies, const ShapesTopic* shapes,
+                          const std::vector<Structure>& structures) {
     nlohmann::json list = nlohmann::json::array();
     for (std::size_t i = 0; i < std::min<std::size_t>(bodies.count, kBodiesMax); ++i) {
         const BodyPlace& b = bodies.body[i];
@@ -50,6 +57,9 @@ nlohmann::json poses_json(const BodiesTopic& bodies, const std::vector<Structure
                         {"name", structures[b.structure].name},
                         {"pos_model_a", {p[0] / kAngstromM, p[1] / kAngstromM, p[2] / kAngstromM}},
                         {"quat_model_body_xyzw", {q[0], q[1], q[2], q[3]}}});
+        if (shapes == nullptr) continue;
+        if (const auto bent = amplitudes_of(*shapes, b.id); !bent.empty())
+            list.back()["mode_amplitudes_a"] = amplitudes_json(bent);
     }
     return {{"bodies", list}};
 }

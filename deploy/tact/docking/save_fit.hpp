@@ -12,6 +12,7 @@
 #include "deploy/tact/system_run.hpp"
 #include "ipc/scene/file/scene_file.hpp"
 #include "ipc/topics/bodies.hpp"
+#include "ipc/topics/shapes.hpp"
 
 namespace tact::launch {
 
@@ -20,8 +21,11 @@ bool structures_have_sources(const SceneFile& scene);
 // Throws if the folder is not empty.
 void check_save_folder(const std::filesystem::path& folder);
 
-// The poses in the format of tact-prep export and --poses; omits invalid bodies.
-nlohmann::json poses_json(const BodiesTopic& bodies, const std::vector<Structure>& structures);
+// The poses in the format of tact-prep export and --poses; omits invalid bodies. shapes: null if no body bends.
+nlohmann::json poses_json(const BodiesTopic& bodies, const ShapesTopic* shapes,
+                          const std::vector<Structure>& structures);
+// Angstrom.
+nlohmann::json amplitudes_json(std::span<const float> amplitude_m);
 
 // Writes DIR/poses.json and runs tact-prep, which prints the files that it wrote. A signal during the save ends
 // tact-prep, which is an error; earlier signals were meant for the run.

@@ -9,6 +9,7 @@
 #include <cmath>
 #include <utility>
 
+#include "ipc/base/error.hpp"
 #include "rt/force/docking/reach.hpp"
 
 namespace tact {
@@ -35,6 +36,13 @@ DockingModel::DockingModel(const SceneMeta& meta, const DensityGrid& grid,
     clash_gains_.stiffness_n_m_max *= settings.force_scale;
     clash_gains_.torque_n_m_rad_max *= settings.force_scale;
     pull_scale_ = settings.force_scale;
+    if (settings.flexible) {
+        if (modes.empty() || std::none_of(parts_->flexible.begin(), parts_->flexible.end(),
+                                          [](const FlexibleParts& p) { return p.bends(); }))
+            throw StartupError("letting structures bend", "the scene has no normal modes",
+                               "bake it with them: --modes 12");
+        static_cast<void>(set_options(kDockingFlexible, true));
+    }
     error_scale_.fill(1.0);
     bends_scale_.fill({1.0, 1.0});
 }

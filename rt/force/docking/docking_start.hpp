@@ -22,6 +22,7 @@ struct DockingSettings {
     double start_rotation_rad = 0.0;
     std::uint64_t seed = 1;
     double force_scale = 1.0;  // times the scene's gain
+    bool flexible = false;     // starts with kDockingFlexible; the scene must have modes
     // Replaces the default of one body of each structure at home; offset and rotation above are then unused.
     std::vector<StartBody> bodies{};
     // Appended to the bodies above.
