@@ -102,8 +102,8 @@ void options(const Theme& theme, DashboardState& state, const FittingState& f) {
     ImGui::EndDisabled();
     if (f.bent_rmsd_m > 0.0) {
         ImGui::SameLine(theme.px(84.0F));
-        ImGui::TextDisabled("%s", format("bent by %.2f Å RMSD, strain %.0f of %.0f %%",
-                                         f.bent_rmsd_m / kAngstromM, 100.0 * f.strain, 100.0 * f.strain_most)
+        ImGui::TextDisabled("%s", format("bent %.1f Å, strain %.0f of %.0f %%", f.bent_rmsd_m / kAngstromM,
+                                         100.0 * f.strain, 100.0 * f.strain_most)
                                       .c_str());
     }
     ImGui::EndDisabled();
