@@ -9,6 +9,7 @@
 #include "ipc/scene/bone/bone_volume.hpp"
 #include "ipc/scene/bone/distance_field.hpp"
 #include "ipc/scene/density/density_map.hpp"
+#include "ipc/scene/density/normal_modes.hpp"
 #include "ipc/scene/density/structure.hpp"
 #include "ipc/scene/file/scene_file.hpp"
 #include "ipc/scene/file/scene_meta.hpp"
@@ -30,7 +31,8 @@ namespace {
 constexpr SectionTag kTags[] = {{'M', 'E', 'T', 'A'}, {'N', 'O', 'T', 'E'}, {'G', 'R', 'I', 'D'},
                                 {'B', 'O', 'D', 'Y'}, {'C', 'O', 'D', 'E'}, {'M', 'E', 'S', 'H'},
                                 {'S', 'U', 'R', 'F'}, {'F', 'R', 'S', 'T'}, {'T', 'O', 'O', 'L'},
-                                {'B', 'O', 'N', 'E'}, {'L', 'A', 'B', 'L'}, {'D', 'I', 'S', 'T'}};
+                                {'B', 'O', 'N', 'E'}, {'L', 'A', 'B', 'L'}, {'D', 'I', 'S', 'T'},
+                                {'M', 'O', 'D', 'E'}};
 
 template <class Read>
 std::size_t accepted(Read&& read) {
@@ -91,6 +93,14 @@ const std::vector<Input>& good_sections() {
         write_forest(scene, terrain().forest.data);
         write_touch_tool(scene, sample_tool(octahedron, {.points = 12}));
         write_bone(scene);
+        // All atoms by the same step: a mode as far as the reader can tell.
+        NormalModes modes;
+        modes.node = residue_nodes(sample::structure());
+        modes.stiffness = {1.0F, 2.0F};
+        modes.x.assign(2 * modes.nodes(), 0.6F);
+        modes.y.assign(2 * modes.nodes(), 0.0F);
+        modes.z.assign(2 * modes.nodes(), 0.8F);
+        write_modes(scene, 0, modes);
         const Input bytes = scene.to_bytes();
         const SceneFile file = SceneFile::from_bytes(bytes, "good.tact");
         std::vector<Input> good;
@@ -124,6 +134,13 @@ void use_codebook(const SceneFile& file) {
         require(level.weight.size() == level.size());
         for (const auto& edge : level.edges) require(edge[0] < level.size() && edge[1] < level.size());
     }
+}
+
+void use_modes(const SceneFile& file) {
+    const Structure s = read_structure(file, 0);
+    const NormalModes modes = read_modes(file, 0, s);
+    const float amplitude_m[] = {1e-10F, -1e-10F};
+    require(bent_structure(s, modes, amplitude_m).size() == s.size());
 }
 
 void use_mesh(const SceneFile& file) {
@@ -248,6 +265,7 @@ bool run(std::span<const std::byte> input) {
         sections += accepted([&] { use_bone(file); });
         sections += accepted([&] { use_labels(file); });
         sections += accepted([&] { use_distances(file); });
+        sections += accepted([&] { use_modes(file); });
     });
     return sections == std::size(kTags);
 }
