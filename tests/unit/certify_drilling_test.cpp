@@ -44,7 +44,7 @@ TEST(CertifyDrilling, keeps_every_promise_at_fine_and_coarse_voxels) {
         const std::vector<std::byte> bytes = porous_scene(voxel_m).to_bytes();
         const SceneFile scene = SceneFile::from_bytes(bytes, "porous");
         const reference::Promises promises = certify(scene, {.poses = 1500, .seed = 5, .progress = {}});
-        ASSERT_EQ(promises.size(), 6U);
+        ASSERT_EQ(promises.size(), 7U);
         for (const reference::Promise& p : promises) {
             EXPECT_GT(p.steps, 0U) << p.name;
             EXPECT_EQ(p.violations, 0U) << p.name << ": " << p.worst_ratio << " at " << p.worst_at;

@@ -177,6 +177,41 @@ TEST_F(Flexible, bending_only_lowers_the_energy) {
     EXPECT_GT(before, first + 0.2);
 }
 
+TEST_F(Flexible, a_turned_body_bends_downhill_too) {
+    ModelOrder place;
+    place.kind = ModelOrder::Kind::place;
+    place.body = 1;
+    place.T_model_body = {scene().straight.home_com_model_m, quat_from_rotation_vector(Vec3(0.9, -0.6, 1.2))};
+    ASSERT_TRUE(model_.order(place));
+    turn(true);
+    run(30);
+    double before = well_sigma(0.0);
+    const double first = before;
+    for (int i = 0; i < 10; ++i) {
+        run(100);
+        const double now = well_sigma(0.0);
+        EXPECT_GE(now, before - 0.01) << i;  // the springs are left out here
+        before = now;
+    }
+    EXPECT_GT(before, first + 0.2);
+}
+
+TEST_F(Flexible, it_bends_no_faster_than_stated) {
+    turn(true);
+    double fastest_m = 0.0;
+    BodyShape before = shape();
+    for (int i = 0; i < 1000; ++i) {
+        run(1);
+        double way_2 = 0.0;
+        for (std::size_t k = 0; k < kModesMax; ++k)
+            way_2 += std::pow(static_cast<double>(shape().amplitude_m[k] - before.amplitude_m[k]), 2);
+        fastest_m = std::max(fastest_m, std::sqrt(way_2));
+        before = shape();
+    }
+    EXPECT_LE(fastest_m, 1.01e-3 * FlexibleBody::kSpeedMost_m_s);
+    EXPECT_GT(fastest_m, 0.5e-3 * FlexibleBody::kSpeedMost_m_s);
+}
+
 TEST_F(Flexible, the_force_is_that_of_the_bent_atoms) {
     turn(true);
     run(1500);

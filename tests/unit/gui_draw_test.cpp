@@ -294,6 +294,43 @@ TEST_F(GuiDrawScene, each_style_draws_a_different_image) {
     EXPECT_EQ(pictures.size(), 8U);
 }
 
+TEST_F(GuiDrawScene, a_bent_body_is_drawn_as_its_bent_atoms_and_follows_each_change) {
+    auto& docking = const_cast<DockingContent&>(docking_of(*content_));  // this test's own scene
+    const Structure straight = docking.bodies[0];
+    NormalModes bow;
+    bow.node = residue_nodes(straight);
+    bow.stiffness = {1.0F};
+    for (std::size_t n = 0; n < bow.nodes(); ++n) {
+        const double along = static_cast<double>(n) / static_cast<double>(bow.nodes()) - 0.5;
+        bow.x.push_back(static_cast<float>(4.0 * along * along));
+        bow.y.push_back(0.0F);
+        bow.z.push_back(0.0F);
+    }
+    docking.modes = {bow};
+    for (const auto style :
+         {MoleculeStyle::trace, MoleculeStyle::tube, MoleculeStyle::sticks, MoleculeStyle::spheres}) {
+        begin_view();
+        layer_->molecules().set_look({style, Colouring::chain});
+        const Image before = picture(std::array{home_});
+        std::vector<Image> bent;
+        for (const float amplitude_m : {3e-10F, 6e-10F}) {
+            DrawnBody body = home_;
+            body.amplitude_m = {&amplitude_m, 1};
+            bent.push_back(picture(std::array{body}));
+        }
+        EXPECT_EQ(picture(std::array{home_}).rgb, before.rgb);
+        for (std::size_t i = 0; i < 2; ++i) {
+            const float amplitude_m = i == 0 ? 3e-10F : 6e-10F;
+            docking.bodies[0] = bent_structure(straight, bow, {&amplitude_m, 1});
+            begin_view();
+            layer_->molecules().set_look({style, Colouring::chain});
+            EXPECT_EQ(picture(std::array{home_}).rgb, bent[i].rgb) << static_cast<int>(style) << ", " << i;
+            EXPECT_NE(bent[i].rgb, before.rgb);
+        }
+        docking.bodies[0] = straight;
+    }
+}
+
 TEST_F(GuiDrawScene, copies_are_drawn_and_hidden_or_unknown_ones_are_not) {
     layer_->molecules().set_look({MoleculeStyle::spheres, Colouring::chain});
     const std::size_t one = drawn(picture(std::array{home_}));
