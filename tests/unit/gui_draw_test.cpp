@@ -309,8 +309,13 @@ TEST_F(GuiDrawScene, a_bent_body_is_drawn_as_its_bent_atoms_and_follows_each_cha
     docking.modes = {bow};
     for (const auto style :
          {MoleculeStyle::trace, MoleculeStyle::tube, MoleculeStyle::sticks, MoleculeStyle::spheres}) {
-        begin_view();
-        layer_->molecules().set_look({style, Colouring::chain});
+        const auto begin_layer = [&] {  // the view stays, with the haze of the straight scene
+            layer_.emplace(content_, *programs_);
+            view_->set_layer(&*layer_);
+            layer_->frame.codebook = layer_->frame.graph = false;
+            layer_->molecules().set_look({style, Colouring::chain});
+        };
+        begin_layer();
         const Image before = picture(std::array{home_});
         std::vector<Image> bent;
         for (const float amplitude_m : {3e-10F, 6e-10F}) {
@@ -322,8 +327,7 @@ TEST_F(GuiDrawScene, a_bent_body_is_drawn_as_its_bent_atoms_and_follows_each_cha
         for (std::size_t i = 0; i < 2; ++i) {
             const float amplitude_m = i == 0 ? 3e-10F : 6e-10F;
             docking.bodies[0] = bent_structure(straight, bow, {&amplitude_m, 1});
-            begin_view();
-            layer_->molecules().set_look({style, Colouring::chain});
+            begin_layer();
             EXPECT_EQ(picture(std::array{home_}).rgb, bent[i].rgb) << static_cast<int>(style) << ", " << i;
             EXPECT_NE(bent[i].rgb, before.rgb);
         }
