@@ -18,6 +18,7 @@
 #include "prep/structure/import_structure.hpp"
 #include "prep/synthetic/ring.hpp"
 #include "tests/reproduce/draw.hpp"
+#include "tests/reproduce/fitting_bend.hpp"
 #include "tests/reproduce/fitting_hand.hpp"
 #include "tests/reproduce/text.hpp"
 
@@ -26,7 +27,7 @@ namespace {
 
 namespace fs = std::filesystem;
 constexpr double kHandFarM = 30.0 * kAngstromM, kHandFarRad = 60.0 * kDegreeRad, kHandSeconds = 20.0;
-constexpr double kRightM = 3.0 * kAngstromM, kEqualScore = 0.01;
+constexpr double kRightM = 3.0 * kAngstromM, kBentRightM = 1.5 * kAngstromM, kEqualScore = 0.01;
 
 struct Pair {
     std::string name;
@@ -112,6 +113,7 @@ public:
             search_alone(p, i);
             refine_near(p, i, p.grid, "");
             led_by_hand(p, i);
+            bend(p, i);
             if (p.structures.size() < 2) continue;
             if (!does("refine")) continue;
             std::vector<PlacedStructure> others;
@@ -208,6 +210,31 @@ private:
                     return std::pair{end, refine_place(p.grid, s, p.settings, end).score};
                 });
         }
+    }
+    void bend(const Pair& p, std::size_t i) {
+        if (!does("bend")) return;
+        const Structure& s = p.structures[i];
+        FitRow row{p.name, s.name, text("bent by %.0f A, back in its map", kBentM / kAngstromM), 0, 0, 0,
+                   0.0,    0.0};
+        std::vector<double> seconds, left;
+        for (int k = 0; k < e_.starts; ++k) {
+            SeededRandom random(e_.seed + static_cast<std::uint64_t>(k));
+            const auto begin = std::chrono::steady_clock::now();
+            const double left_m = left_after_bending_m(s, random);
+            if (left_m < 0.0) return;  // too small to bend
+            seconds.push_back(
+                std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count());
+            left.push_back(left_m / kAngstromM);
+            ++row.starts;
+            row.right += left_m < kBentRightM ? 1 : 0;
+        }
+        row.seconds = median(seconds);
+        row.away_a = median(left);
+        std::printf("%-26s %-30s %-38s %3d right of %d; %.2f A left, at most %.2f; %.1f s\n",
+                    row.pair.c_str(), row.model.c_str(), row.test.c_str(), row.right, row.starts, row.away_a,
+                    *std::max_element(left.begin(), left.end()), row.seconds);
+        std::fflush(stdout);
+        rows_.push_back(row);
     }
     void together(const Pair& p) {
         if (!does("together")) return;

@@ -81,7 +81,7 @@ void add_fitting(CLI::App& reproduce, int& exit_code) {
         ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
         ->expected(1);
     command->add_option("--only", e->only, "Only this test")
-        ->check(CLI::IsMember({"search", "refine", "hand", "together"}));
+        ->check(CLI::IsMember({"search", "refine", "hand", "bend", "together"}));
     command->add_option("--starts", e->starts, "Number of random starts of each row")
         ->check(CLI::Range(1, 1000))
         ->capture_default_str();

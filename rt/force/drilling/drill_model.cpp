@@ -15,8 +15,9 @@ namespace {
 constexpr double kNoHandM = 1e3;  // no hand is there
 // Of the radius; with larger blocks the slope is off by up to 40 %.
 constexpr double kBlockStiffness = 0.5 * kBlockMost;
-constexpr double kStiffnessReach = 0.05;  // half of the way over which it is measured, in radii of the head
-constexpr double kTypicalForceN = 3.0;    // of a surgeon's hand
+// Half of the way over which it is measured, in radii of the head, and at least in voxels: below that a force shows the steps of its voxels.
+constexpr double kStiffnessReach = 0.05, kStiffnessReachVoxels = 0.25;
+constexpr double kTypicalForceN = 3.0;  // of a surgeon's hand
 // In the pocket that it has cut, a burr touches over this times the area of flat bone at the same force.
 constexpr double kPocketArea = 3.5;
 
@@ -268,7 +269,7 @@ Wrench DrillModel::still_wrench(const Pose& T_world_tool) const noexcept {
 
 void DrillModel::measure_stiffness(const Pose& T_world_tool) noexcept {
     if (!measured_.due()) return;
-    const double h_m = kStiffnessReach * head_radius_m_;
+    const double h_m = std::max(kStiffnessReach * head_radius_m_, kStiffnessReachVoxels * per_voxel_m_);
     measured_.note(still_wrench(measured_.moved(T_world_tool, h_m, lever_m_)),
                    still_wrench(measured_.moved(T_world_tool, -h_m, lever_m_)), h_m, lever_m_);
 }
