@@ -89,7 +89,8 @@ public:
             }
             std::sort(pairs.begin(), pairs.end());
             pairs.resize(std::min(pairs.size(), kNearest));
-            for (const auto& [length, i, j] : pairs) {
+            for (const auto& pair : pairs) {
+                const std::uint32_t i = std::get<1>(pair), j = std::get<2>(pair);
                 for (const std::uint32_t k :
                      nearest(j, [&](std::uint32_t n) { return part_of(n) == part_of(j); }))
                     joints_.emplace_back(i, k);

@@ -170,7 +170,7 @@ void FlexibleBody::move(BodyShape& shape, const FlexibleParts& parts, double bou
     };
     for (std::size_t k = 0; k < modes; ++k) {
         a[k] = static_cast<double>(shape.amplitude_m[k]);
-        const double spring = kSoftness * static_cast<double>(parts.modes.stiffness[k]);
+        const double spring = kSoftness * parts.spring[k];
         force[k] = drive_[k] - spring * bound * a[k];
         // The spring implicitly: stable however stiff it is.
         way[k] = step_s * kRatePerS / bound * force[k] / (1.0 + step_s * kRatePerS * spring);

@@ -1,7 +1,7 @@
 // Bends the body in the hand along its normal modes, driven by the same density as the force.
 //
 // Energy    of the bent body: U(pose, a) = -k_E (sum_i w_i rho(x_i(a)) - 1/2 B sum_k c_k a_k^2), the energy of the docking force with the
-//           points displaced by the modes, and a spring for each mode. c_k = kSoftness times its stiffness, B the level bound of the
+//           points displaced by the modes, and a spring for each mode. c_k = kSoftness times FlexibleParts::spring, B the level bound of the
 //           density's second derivatives (LevelMetrics::bends), so that a bend by a resolution's width is felt but possible
 // Motion    downhill without inertia: da/dt = kRatePerS / B * (-dU/da) / k_E, no faster than kSpeedMost. A step that would raise the
 //           energy is not made. So bending only takes energy out: whatever the hand does, it gets no more back than it put in

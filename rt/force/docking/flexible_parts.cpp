@@ -67,6 +67,8 @@ FlexibleParts make_flexible_parts(const Structure& s, const std::vector<PointSet
             most = std::max(most,
                             (m.unit_shift(k, link.b) - m.unit_shift(k, link.a)).norm() / link.rest_m.norm());
         parts.strain_per_m.push_back(most);
+        parts.spring.push_back(3.0 * static_cast<double>(m.stiffness[k]) /
+                               static_cast<double>(m.stiffness[m.count() / 2]));
     }
     // Of all amplitudes with the same RMSD, the one that moves a node farthest is in the direction of its row of displacements; the
     // norm of the row bounds it.

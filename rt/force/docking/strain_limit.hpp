@@ -20,7 +20,7 @@ namespace tact {
 
 class StrainLimit {
 public:
-    static constexpr double kMost = 0.3, kNear = 0.03, kSlack = 0.01;
+    static constexpr double kMost = 0.6, kNear = 0.06, kSlack = 0.01;
     static constexpr std::size_t kListMost = 16;
 
     // Another body, or another start of a pass.
