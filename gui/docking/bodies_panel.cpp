@@ -102,9 +102,11 @@ void options(const Theme& theme, DashboardState& state, const FittingState& f) {
     ImGui::EndDisabled();
     if (f.bent_rmsd_m > 0.0) {
         ImGui::SameLine(theme.px(84.0F));
-        ImGui::TextDisabled("%s", format("bent %.1f Å, strain %.0f of %.0f %%", f.bent_rmsd_m / kAngstromM,
-                                         100.0 * f.strain, 100.0 * f.strain_most)
-                                      .c_str());
+        const double bent_a = f.bent_rmsd_m / kAngstromM;
+        ImGui::TextDisabled("%s", f.bends ? format("bent %.1f Å, strain %.0f of %.0f %%", bent_a,
+                                                   100.0 * f.strain, 100.0 * f.strain_most)
+                                                .c_str()
+                                          : format("returns, still bent %.1f Å", bent_a).c_str());
     }
     ImGui::EndDisabled();
     if (f.building) text_small(theme, colour::kWatch, "preparing the density ...");

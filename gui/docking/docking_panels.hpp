@@ -76,6 +76,7 @@ struct FittingState {
     bool building = false;                                      // the controller prepares another density
     bool can_bend = false;                                      // the body in the hand has normal modes
     double bent_rmsd_m = 0.0, strain = 0.0, strain_most = 0.0;  // of the body in the hand
+    bool bends = false;  // it follows the density; if not, it returns to its own shape
     bool saving = false;
     SearchState search;
     bool resolution_estimated = false;  // of the map

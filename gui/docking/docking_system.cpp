@@ -147,6 +147,7 @@ void DockingSystem::describe_shape(const Controller& controller, FittingState& f
     const bool known = controller.attached() && controller.have_shapes && active;
     fitting.bent_rmsd_m = known ? static_cast<double>(controller.shapes.rmsd_m) : 0.0;
     fitting.strain = known ? static_cast<double>(controller.shapes.strain) : 0.0;
+    fitting.bends = known && controller.shapes.bends != 0;
     fitting.strain_most = known ? static_cast<double>(controller.shapes.strain_most) : 0.0;
 }
 

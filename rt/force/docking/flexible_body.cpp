@@ -72,7 +72,7 @@ void FlexibleBody::hold(std::uint32_t id, std::size_t structure, bool flexible) 
         bent_ = false;
         return;
     }
-    if (shape->id == 0) *shape = {.id = id, .structure = static_cast<std::uint32_t>(structure)};
+    shape->id = id;
     const bool bends = flexible || shape->rmsd_m() > 0.0;
     if (id != id_ || (bends && !bent_)) {
         slice_ = passes_ = 0;

@@ -31,7 +31,6 @@ namespace tact {
 // Amplitudes of a body, metres.
 struct BodyShape {
     std::uint32_t id = 0;  // of the body; 0: unused
-    std::uint32_t structure = 0;
     std::array<float, kModesMax> amplitude_m{};
 
     [[nodiscard]] double rmsd_m() const noexcept TACT_RT {
