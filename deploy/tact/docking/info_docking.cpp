@@ -34,6 +34,11 @@ constexpr const char* kDockingFormulas[] = {
     "option clash: U = F (sqrt(L^2 + D^2) - L) is added, D = world_per_model * depth of the overlap (soft "
     "maximum over atoms at the surface), F = 2 N, L = F / K, K such that seeded encounters stay below 300 "
     "N/m; F and K times the force scale",
+    "option flexible: r_i = c + q * (p_i + sum_k a_k u_k,i) with the displacements u_k,i of the normal modes "
+    "(section MODE), and U gets "
+    "energy_j_per_sigma * B / 2 * sum_k 0.01 s_k a_k^2, s_k = 3 * stiffness / stiffness of the middle mode, "
+    "B the largest second "
+    "derivative of C by position; da_k/dt = -20/s / (B energy_j_per_sigma) * dU/da_k, at most 10 angstrom/s",
     "the device gets F and Q after the output chain (limits, slew, ramp-in); tact eval gives them before it",
 };
 
@@ -58,6 +63,7 @@ json docking_info(const SceneFile& file) {
         bodies.push_back({{"name", s.name},
                           {"atoms", s.size()},
                           {"chains", s.chain_names.size()},
+                          {"normal_modes", places.modes()[i].count()},
                           {"mass_u", s.mass_u},
                           {"file_place_com_model_m", vec3(s.home_com_model_m)},
                           {"file_place_quat_xyzw", {0, 0, 0, 1}},

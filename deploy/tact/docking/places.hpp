@@ -36,6 +36,7 @@ public:
     explicit Places(const SceneFile& file);  // throws StartupError
     [[nodiscard]] const SceneMeta& meta() const { return meta_; }
     [[nodiscard]] const std::vector<Structure>& structures() const { return structures_; }
+    [[nodiscard]] const std::vector<NormalModes>& modes() const { return modes_; }  // one per structure
     [[nodiscard]] const DensityGrid& grid() const { return grid_; }
 
     // Empty if a topic does not fit the scene or holds numbers that are not finite. shapes: null if no body bends.
