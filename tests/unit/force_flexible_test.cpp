@@ -330,6 +330,26 @@ TEST_F(Flexible, a_fixed_body_keeps_its_shape_and_a_removed_one_is_forgotten) {
     EXPECT_EQ(shape().id, 0U);
 }
 
+TEST_F(Flexible, a_rigid_body_in_the_hand_leaves_the_shapes_of_others) {
+    DockingModel two{scene().meta,
+                     scene().grid,
+                     {scene().straight, scene().straight},
+                     {scene().codebook, scene().codebook},
+                     {},
+                     {scene().modes, {}}};
+    ASSERT_TRUE(two.set_options(kDockingFlexible, true));
+    two.reset(tool_);
+    for (int i = 0; i < 1000; ++i) static_cast<void>(two.step(tool_, budget_));
+    const BodyShape kept = two.flexible().shapes().front();
+    ASSERT_GT(kept.rmsd_m(), 1e-10);
+    ModelOrder select;
+    select.kind = ModelOrder::Kind::select;
+    select.body = 2;
+    ASSERT_TRUE(two.order(select));
+    for (int i = 0; i < 100; ++i) static_cast<void>(two.step(tool_, budget_));
+    EXPECT_EQ(two.flexible().shapes().front().amplitude_m, kept.amplitude_m);
+}
+
 TEST_F(Flexible, a_rebuilt_model_keeps_the_shape) {
     turn(true);
     run(2000);

@@ -151,7 +151,7 @@ bool DockingModel::is_flexible() const noexcept {
 
 void DockingModel::bend(const Pose& T_model_body, const Budget& budget, StepResult& result) noexcept {
     const Instant begin = Monotonic::now();
-    const bool on = is_flexible();
+    const bool on = (bodies_.list().options_asked & kDockingFlexible) != 0;
     flexible_.hold(bodies_.active_id(), bodies_.structure(), on);
     if (!flexible_.bent()) return;
     flexible_.step(blend(), T_model_body, budget, step_s(), on, !bodies_.active_fixed());

@@ -197,7 +197,7 @@ void FlexibleBody::straighten(BodyShape& shape, double step_s) noexcept {
 void FlexibleBody::step(const LevelBlend& blend, const Pose& T_model_body, const Budget& budget,
                         double step_s, bool flexible, bool free) noexcept {
     moved_ = false;
-    if (!bent_ || id_ == 0 || budget.deadline.passed()) return;
+    if (!bent_ || id_ == 0) return;
     BodyShape* const shape = shape_of(id_);
     if (shape == nullptr || shape->id != id_) return;
     const FlexibleParts& parts = parts_[structure_];

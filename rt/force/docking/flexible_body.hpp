@@ -9,6 +9,7 @@
 // Reach     RMSD at most kRmsdMost
 // Slices    a step bends an eighth of the points of each level, sums the forces of an eighth of those of the levels in use, and projects
 //           an eighth of the residues' forces on the modes. So the drive of the modes is at most two passes, 16 steps, old.
+//           No clock and no deadline, so that runs repeat exactly
 // Off       the body returns to its own shape within about a second
 // Frame     body, metres; gradients in sigma per model metre
 // Runs on   servo thread; no allocation after construction
