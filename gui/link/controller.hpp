@@ -24,8 +24,8 @@ public:
     News poll();
     // Reads every topic; a flag is true if the topic has a new record.
     struct Fresh {
-        bool tool = false, second = false, bodies = false, shapes = false, touch = false, drill = false, head = false,
-             tracker = false, devices = false, health = false, lateness = false, levels = false,
+        bool tool = false, second = false, bodies = false, shapes = false, touch = false, drill = false,
+             head = false, tracker = false, devices = false, health = false, lateness = false, levels = false,
              recorders = false;
     };
     Fresh read();
@@ -55,9 +55,9 @@ public:
         return region_.empty() ? 0 : region_->scene_checksum;
     }
 
-    bool have_tool = false, have_second = false, have_bodies = false, have_shapes = false, have_touch = false, have_drill = false,
-         have_head = false, have_tracker = false, have_devices = false, have_health = false,
-         have_lateness = false, have_levels = false, have_recorders = false;
+    bool have_tool = false, have_second = false, have_bodies = false, have_shapes = false, have_touch = false,
+         have_drill = false, have_head = false, have_tracker = false, have_devices = false,
+         have_health = false, have_lateness = false, have_levels = false, have_recorders = false;
     ToolTopic tool{}, second{};  // the first hand, and the second one if present
     BodiesTopic bodies{};
     ShapesTopic shapes{};
@@ -80,9 +80,9 @@ private:
     MappedBoneRegion bone_;
     std::string refusal_, bone_refusal_;
     RingCursor cursor_, trace_cursor_;
-    std::uint64_t seen_tool_ = 0, seen_second_ = 0, seen_bodies_ = 0, seen_shapes_ = 0, seen_touch_ = 0, seen_drill_ = 0,
-                  seen_head_ = 0, seen_tracker_ = 0, seen_devices_ = 0, seen_health_ = 0, seen_lateness_ = 0,
-                  seen_levels_ = 0, seen_recorders_ = 0;
+    std::uint64_t seen_tool_ = 0, seen_second_ = 0, seen_bodies_ = 0, seen_shapes_ = 0, seen_touch_ = 0,
+                  seen_drill_ = 0, seen_head_ = 0, seen_tracker_ = 0, seen_devices_ = 0, seen_health_ = 0,
+                  seen_lateness_ = 0, seen_levels_ = 0, seen_recorders_ = 0;
     std::uint64_t refused_ = 0;
 };
 

@@ -55,10 +55,10 @@ struct RtRegion {
     char scene_path[512];  // of the loaded scene, ends with 0; written before ready
     std::uint64_t scene_checksum;
     std::uint64_t reserved[7];  // zero
-    using Topics =
-        TopicList<ToolTopic, BodiesTopic, ShapesTopic, TouchTopic, DrillTopic, HeadTopic, TrackerTopic, DevicesTopic,
-                  HealthTopic, LatenessTopic, LevelsTopic, DisplayTopic, RecordersTopic, EventTopic,
-                  TraceTopic, StartTopic, CycleTopic, HandTopic, MailboxTopic, ReportTopic, RunText>;
+    using Topics = TopicList<ToolTopic, BodiesTopic, ShapesTopic, TouchTopic, DrillTopic, HeadTopic,
+                             TrackerTopic, DevicesTopic, HealthTopic, LatenessTopic, LevelsTopic,
+                             DisplayTopic, RecordersTopic, EventTopic, TraceTopic, StartTopic, CycleTopic,
+                             HandTopic, MailboxTopic, ReportTopic, RunText>;
 };
 
 struct GuiRegion {
