@@ -2,6 +2,7 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
+#include <filesystem>
 #include <span>
 #include <string>
 #include <vector>
@@ -13,7 +14,8 @@ namespace tact::launch {
 
 struct BakedRun {
     RunOptions run;
-    std::vector<std::string> prep;  // options for tact-prep, as typed
+    std::vector<std::string> prep;             // options for tact-prep, as typed
+    std::vector<std::filesystem::path> files;  // that they name
     bool bake_only = false;
 };
 
@@ -21,6 +23,6 @@ struct BakedRun {
 void add_baked_run_options(CLI::App& app, std::span<const PassedOption> prep, BakedRun& baked);
 
 // Returns the exit code.
-int bake_and_run(const BakeRequest& request, const BakedRun& baked);
+int bake_and_run(BakeRequest request, const BakedRun& baked);
 
 }  // namespace tact::launch

@@ -70,6 +70,11 @@ void show(const json& j, const std::string& indent) {
             show(value, indent + "  ");
             continue;
         }
+        constexpr std::size_t kRowsShown = 64;
+        if (value.size() > kRowsShown) {
+            std::printf("%s  %zu rows, in full with --json\n", indent.c_str(), value.size());
+            continue;
+        }
         for (const auto& row : value) {
             std::string line;
             if (!row.is_object()) {

@@ -49,6 +49,7 @@ struct RunOptions {
 // Passed on to tact-rt, tact-gui or tact-prep, which checks the value.
 struct PassedOption {
     const char *name, *type, *help;
+    bool file = false;  // of tact-prep: the scene depends on the content of the file; may be given repeatedly
 };
 
 void add_run_options(CLI::App& app, RunOptions& options);

@@ -20,37 +20,38 @@ std::array<float, 3> place_a(const Structure& s, std::size_t i) {
 
 Rgba8 opaque(const Rgb8& c) { return {c[0], c[1], c[2], 255}; }
 
-Stick stick(const Structure& s, std::size_t i, std::size_t j, float radius_a) {
-    return {place_a(s, i), radius_a, place_a(s, j), colours_of(s, i), colours_of(s, j)};
+Stick stick(const Structure& s, std::size_t i, std::size_t j, float radius_a, AtomPaint paint) {
+    return {place_a(s, i), radius_a, place_a(s, j), colours_of(s, i, paint), colours_of(s, j, paint)};
 }
 
 }  // namespace
 
-AtomColours colours_of(const Structure& s, std::size_t atom) {
+AtomColours colours_of(const Structure& s, std::size_t atom, AtomPaint paint) {
+    if (!paint.empty()) return {opaque(paint[atom]), opaque(paint[atom])};
     const Rgba8 chain = opaque(chain_colour(s.chain[atom]));
     return {s.element[atom] == kCarbon ? chain : opaque(element_colour(s.element[atom])), chain};
 }
 
-std::vector<Sphere> spheres_of(const Structure& s) {
+std::vector<Sphere> spheres_of(const Structure& s, AtomPaint paint) {
     std::vector<Sphere> spheres(s.size());
     for (std::size_t i = 0; i < s.size(); ++i)
-        spheres[i] = {place_a(s, i), vdw_radius_a(s.element[i]), colours_of(s, i)};
+        spheres[i] = {place_a(s, i), vdw_radius_a(s.element[i]), colours_of(s, i, paint)};
     return spheres;
 }
 
-std::vector<Stick> sticks_of(const Structure& s, std::span<const Bond> bonds) {
+std::vector<Stick> sticks_of(const Structure& s, std::span<const Bond> bonds, AtomPaint paint) {
     std::vector<Stick> sticks;
     std::vector<bool> alone(s.size(), true);
     for (const auto& [i, j] : bonds) {
-        sticks.push_back(stick(s, i, j, kStickRadiusA));
+        sticks.push_back(stick(s, i, j, kStickRadiusA, paint));
         alone[i] = alone[j] = false;
     }
     for (std::size_t i = 0; i < s.size(); ++i)
-        if (alone[i]) sticks.push_back(stick(s, i, i, 0.5F * vdw_radius_a(s.element[i])));
+        if (alone[i]) sticks.push_back(stick(s, i, i, 0.5F * vdw_radius_a(s.element[i]), paint));
     return sticks;
 }
 
-std::vector<Stick> trace_of(const Structure& s, std::size_t atoms_per_point) {
+std::vector<Stick> trace_of(const Structure& s, std::size_t atoms_per_point, AtomPaint paint) {
     std::vector<Stick> sticks;
     for (const auto& strand : strands_of(s)) {
         const auto points = thinned_strand_a(s, strand, atoms_per_point);
@@ -58,7 +59,7 @@ std::vector<Stick> trace_of(const Structure& s, std::size_t atoms_per_point) {
             const auto atom = [&](std::size_t point) {
                 return strand[point * strand.size() / points.size()];
             };
-            Stick made = stick(s, atom(k), atom(k + 1), kTraceRadiusA);
+            Stick made = stick(s, atom(k), atom(k + 1), kTraceRadiusA, paint);
             made.from_a = {points[k].x(), points[k].y(), points[k].z()};
             made.to_a = {points[k + 1].x(), points[k + 1].y(), points[k + 1].z()};
             // One colour per chain: the element of a trace atom carries no information.

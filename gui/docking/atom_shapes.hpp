@@ -8,6 +8,7 @@
 #include <span>
 #include <vector>
 
+#include "gui/render/elements.hpp"
 #include "ipc/scene/density/bonds.hpp"
 #include "ipc/scene/density/structure.hpp"
 
@@ -38,14 +39,19 @@ static_assert(sizeof(Stick) == 44);
 
 inline constexpr float kStickRadiusA = 0.25F, kTraceRadiusA = 0.35F;
 
+// Colours of the atoms in place of those of element and chain; empty: none.
+using AtomPaint = std::span<const Rgb8>;
+
 // By element, but carbon by chain, so that chains remain distinguishable.
-[[nodiscard]] AtomColours colours_of(const Structure& structure, std::size_t atom);
+[[nodiscard]] AtomColours colours_of(const Structure& structure, std::size_t atom, AtomPaint paint = {});
 // All atoms, at their van der Waals radii.
-[[nodiscard]] std::vector<Sphere> spheres_of(const Structure& structure);
+[[nodiscard]] std::vector<Sphere> spheres_of(const Structure& structure, AtomPaint paint = {});
 // One per bond. An atom without bonds (an ion) is a stick of zero length with half its van der Waals radius.
-[[nodiscard]] std::vector<Stick> sticks_of(const Structure& structure, std::span<const Bond> bonds);
+[[nodiscard]] std::vector<Stick> sticks_of(const Structure& structure, std::span<const Bond> bonds,
+                                           AtomPaint paint = {});
 // Straight sticks from trace atom to trace atom, or between means of as many successive ones.
-[[nodiscard]] std::vector<Stick> trace_of(const Structure& structure, std::size_t atoms_per_point = 1);
+[[nodiscard]] std::vector<Stick> trace_of(const Structure& structure, std::size_t atoms_per_point = 1,
+                                          AtomPaint paint = {});
 
 // For levels of detail, the order in which shapes are drawn: the first n of them represent all.
 // Spheres in random order, the same in every run.

@@ -100,8 +100,15 @@ void options(const Theme& theme, DashboardState& state, const FittingState& f) {
             ? "the held body bends along its normal modes into the density; off: it returns to its own shape"
             : "the held body has no normal modes: bake the scene with --modes 12");
     ImGui::EndDisabled();
+    ImGui::SameLine(theme.px(84.0F));
+    ImGui::BeginDisabled(f.copies == 0);
+    box("Together", kDockingTogether, CommandKind::set_together,
+        f.copies > 0 ? "copies of the held body that are not fixed move as it does, each in its own axes: "
+                       "copies related by a "
+                       "symmetry stay so"
+                     : "the held body has no copy that is not fixed");
+    ImGui::EndDisabled();
     if (f.bent_rmsd_m > 0.0) {
-        ImGui::SameLine(theme.px(84.0F));
         const double bent_a = f.bent_rmsd_m / kAngstromM;
         ImGui::TextDisabled("%s", f.bends ? format("bent %.1f Å, strain %.0f of %.0f %%", bent_a,
                                                    100.0 * f.strain, 100.0 * f.strain_most)

@@ -5,6 +5,8 @@
 #include <span>
 
 #include "gui/dashboard/widgets.hpp"
+#include "gui/docking/fit_colours.hpp"
+#include "gui/render/looks.hpp"
 #include "ipc/base/units.hpp"
 
 namespace tact {
@@ -13,8 +15,7 @@ namespace {
 void scene_rows(const Theme& theme, const DashboardState& state, const DockingSummary& s) {
     row(theme, "Contour", format("%.4g", s.contour), format("map units, %.2f σ", s.contour_sigma));
     row(theme, "Map", format("%u × %u × %u", s.voxels[0], s.voxels[1], s.voxels[2]),
-        s.resolution_m > 0.0 ? format("%.1f Å", s.resolution_m / kAngstromM)
-                             : std::string("resolution unknown"));
+        format("%.1f Å", s.resolution_m / kAngstromM));
     row(theme, "Structure", grouped(s.atoms),
         s.bodies == 1 ? std::string("atoms, 1 body") : format("atoms, %zu bodies", s.bodies));
     row(theme, "Surface", grouped(state.load.vertices_drawn),
@@ -25,7 +26,32 @@ void scene_rows(const Theme& theme, const DashboardState& state, const DockingSu
     }
 }
 
-void toggles(const Theme& theme, SceneToggles& t) {
+// What the colours of residues mean.
+void fit_legend(const Theme& theme, bool current, float from) {
+    ImGui::NewLine();
+    ImGui::SameLine(from);
+    text_small(theme, colour::kDim, format("%.1f", kPoorFit));
+    ImGui::SameLine();
+    const ImVec2 at = ImGui::GetCursorScreenPos();
+    constexpr int kSteps = 24;
+    const float width = theme.px(96.0F), height = theme.px(10.0F);
+    for (int i = 0; i < kSteps; ++i) {
+        const Rgb8 c = fit_colour(kPoorFit + (kGoodFit - kPoorFit) * (i + 0.5) / kSteps);
+        const float left = at.x + width * static_cast<float>(i) / kSteps, right = left + width / kSteps;
+        ImGui::GetWindowDrawList()->AddRectFilled({left, at.y + theme.px(2.0F)},
+                                                  {right, at.y + theme.px(2.0F) + height},
+                                                  IM_COL32(c[0], c[1], c[2], 255));
+    }
+    ImGui::Dummy({width, height});
+    if (ImGui::IsItemHovered())
+        ImGui::SetTooltip(
+            "%s",
+            "correlation about the mean of map and bodies, in windows of nine residues along the chain");
+    ImGui::SameLine();
+    text_small(theme, colour::kDim, format("%.1f%s", kGoodFit, current ? "" : "  computing"));
+}
+
+void toggles(const Theme& theme, SceneToggles& t, bool residues_current) {
     const float second = theme.px(104.0F), third = theme.px(196.0F);
     ImGui::Checkbox("Surface", &t.surface);
     ImGui::SameLine(second);
@@ -43,7 +69,7 @@ void toggles(const Theme& theme, SceneToggles& t) {
     ImGui::SameLine(third);
     ImGui::Checkbox("Smooth", &t.smooth_edges);
     static constexpr std::array<const char*, 4> kMolecule{"trace", "tube", "sticks", "spheres"};
-    static constexpr std::array<const char*, 3> kColouring{"by chain", "by element", "by body"};
+    static constexpr std::array<const char*, 4> kColouring{"chain", "element", "body", "fit"};
     static constexpr std::array<const char*, 3> kSurface{"glass", "solid", "wire"};
     const auto choice = [&](const char* what, std::span<const char* const> words, int& chosen) {
         text_coloured(colour::kDim, what);
@@ -53,7 +79,8 @@ void toggles(const Theme& theme, SceneToggles& t) {
         ImGui::PopID();
     };
     choice("Bodies as", kMolecule, t.molecule);
-    choice("Coloured", kColouring, t.colouring);
+    choice("Coloured by", kColouring, t.colouring);
+    if (t.colouring == static_cast<int>(Colouring::fit)) fit_legend(theme, residues_current, second);
     choice("Surface as", kSurface, t.style);
 }
 
@@ -72,7 +99,7 @@ void DockingPanels::draw_in_scene_card(const Theme& theme, DashboardState& state
         draw_contours_tab(theme, contours);
     } else {
         scene_rows(theme, state, scene);
-        toggles(theme, state.toggles);
+        toggles(theme, state.toggles, fit.residues_current);
     }
     ImGui::PopStyleVar();
 }

@@ -28,6 +28,7 @@ enum class FitAction : std::uint8_t {
     search,
     cancel,      // a search or a refinement
     take_place,  // moves the body that was looked for to a place found
+    place_copies,  // puts it and copies of it at all places of a search with a symmetry, and lets them move together
     keep_place,  // as a snapshot
     snapshot,
     restore,
@@ -55,7 +56,8 @@ struct FoundRow {
 };
 struct SearchState {
     // Chosen by the user.
-    int objective = 0;  // PlaceObjective
+    int objective = 0;                // PlaceObjective
+    std::array<char, 48> symmetry{};  // of copies, as tact search --symmetry; empty: none
     bool ghosts = true;
     bool pull = false;  // towards the places found
     // Progress and results.
@@ -65,21 +67,22 @@ struct SearchState {
     std::size_t subtracted = 0;                      // bodies that would be, for the body in the hand
     std::vector<FoundRow> found;                     // best first
     std::string found_name;
-    bool can_pull = false;    // the places are those of the body in the hand
-    double pull_n = 0.0;      // now
-    std::uint32_t place = 0;  // towards this one, from 1; 0: none
+    std::string found_symmetry;  // the places are copies by this symmetry; empty: they are alternatives
+    bool can_pull = false;       // the places are those of the body in the hand
+    double pull_n = 0.0;         // now
+    std::uint32_t place = 0;     // towards this one, from 1; 0: none
 };
 
 struct FittingState {
     std::vector<BodyState> bodies;
     std::uint32_t options = 0;                                  // DockingOption, currently in effect
     bool building = false;                                      // the controller prepares another density
+    std::size_t copies = 0;                                     // of the body in the hand, not fixed
     bool can_bend = false;                                      // the body in the hand has normal modes
     double bent_rmsd_m = 0.0, strain = 0.0, strain_most = 0.0;  // of the body in the hand
     bool bends = false;  // it follows the density; if not, it returns to its own shape
     bool saving = false;
     SearchState search;
-    bool resolution_estimated = false;  // of the map
     bool can_undo = false, can_redo = false;
     std::size_t gestures = 0;  // undoable
     std::vector<std::string> snapshots;
@@ -99,8 +102,8 @@ struct FitState {
     std::uint32_t body_id = 0;  // of the held body; 0: none
     FitMetrics body;
     double resolution_m = 0.0;
-    bool resolution_assumed = false;
-    double contour = 0.0;  // that "inside" refers to, in the map's unit
+    double contour = 0.0;           // that "inside" refers to, in the map's unit
+    bool residues_current = false;  // the colours by fit are of the places shown
     bool pose_known = false;
     double from_file_m = 0.0, from_file_rad = 0.0;
 };
@@ -135,7 +138,7 @@ struct ContourRowState {
 // The scene's map and structures, as loaded.
 struct DockingSummary {
     double contour = 0.0, contour_sigma = 0.0;  // that counts as inside, in the map's unit
-    double resolution_m = 0.0;                  // 0: unknown
+    double resolution_m = 0.0;
     std::array<std::uint32_t, 3> voxels{};
     std::size_t bodies = 0, atoms = 0;
 };

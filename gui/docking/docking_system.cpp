@@ -6,6 +6,7 @@
 #include <chrono>
 
 #include "gui/docking/contour_rows.hpp"
+#include "gui/docking/fit_colours.hpp"
 #include "gui/link/region_checks.hpp"
 
 namespace tact {
@@ -44,6 +45,7 @@ void DockingSystem::use(const std::shared_ptr<const SceneContent>& content, std:
     list_.start(homes);
     if (context.controller.have_bodies) list_.follow(context.controller.bodies);
     fit_controller_.use(content);
+    coloured_by_ = 0;
 }
 
 void DockingSystem::close() {
@@ -132,7 +134,8 @@ void DockingSystem::follow_bodies(std::int64_t now_ns, const SystemContext& cont
     fitting.hide_requests.clear();
     fitting.requests.clear();
     if (content_) count_contour();
-    fit_controller_.follow(list_, topic, panels_.scene.contour, commands);
+    const bool by_fit = context.state.toggles.colouring == static_cast<int>(Colouring::fit);
+    fit_controller_.follow(list_, topic, panels_.scene.contour, by_fit, commands);
     if (topic != nullptr)
         for (const Command& command : commands) context.commands.send(command, now_ns);
     fit_controller_.describe(list_, topic, fitting, panels_.fit);
@@ -169,8 +172,19 @@ void DockingSystem::prepare(std::int64_t now_ns, bool sharp, ViewFrame& frame, c
     layer_->frame = {t.backbone, t.codebook, t.graph, drawn_, force != nullptr ? force->items : 0};
     if (const PathLevel* const path = c.level(kMoleculesPath)) molecules_level_ = path->level;
     layer_->molecules().set_level(sharp ? 1.0F : molecules_level_);
+    colour_by_fit();
     layer_->molecules().set_look(
         {static_cast<MoleculeStyle>(t.molecule), static_cast<Colouring>(t.colouring)});
+}
+
+void DockingSystem::colour_by_fit() {
+    const FitOutcome& fit = fit_controller_.outcome();
+    if (fit.number == coloured_by_ || fit.residues.size() != fit.body.size()) return;
+    coloured_by_ = fit.number;
+    for (std::size_t i = 0; i < fit.body.size(); ++i)
+        layer_->molecules().set_fit_colours(
+            fit.body[i].id,
+            fit_colours(docking_of(*content_).bodies[fit.body[i].structure].size(), fit.residues[i]));
 }
 
 bool DockingSystem::add_to_key(ContentKey& key) const {
@@ -180,6 +194,7 @@ bool DockingSystem::add_to_key(ContentKey& key) const {
     const MoleculeLook look = layer_->molecules().look();
     key.add(look.style);
     key.add(look.colouring);
+    if (look.colouring == Colouring::fit) key.add(coloured_by_);
     for (const DrawnBody& body : f.bodies) {
         key.add(body.id);
         key.add(body.structure);

@@ -40,6 +40,7 @@ public:
 private:
     // What is shown as the contour, and what "inside" refers to: the first contour, as the person set it.
     void count_contour();
+    void colour_by_fit();
     void describe_shape(const Controller& controller, FittingState& fitting) const;
     void follow_bodies(std::int64_t now_ns, const SystemContext& context);
 
@@ -52,7 +53,8 @@ private:
     BodyList list_;
     std::vector<DrawnBody> drawn_;
     std::size_t left_out_ = 0;
-    float molecules_level_ = 1.0F;  // keeps the controller's newest value
+    std::uint64_t coloured_by_ = 0;  // number of the outcome
+    float molecules_level_ = 1.0F;   // keeps the controller's newest value
 };
 
 }  // namespace tact

@@ -74,7 +74,7 @@ void FitController::show(const std::optional<PlaceFinder::Message>& message) {
         report(message->grade, message->text);
 }
 
-void FitController::follow(const BodyList& list, const BodiesTopic* topic, double contour,
+void FitController::follow(const BodyList& list, const BodiesTopic* topic, double contour, bool residues,
                            std::vector<Command>& commands) {
     if (!content_) return;
     contour_ = contour;
@@ -86,7 +86,7 @@ void FitController::follow(const BodyList& list, const BodiesTopic* topic, doubl
     }
     if (topic != nullptr) history_.observe(places, {topic->grips, topic->placements, topic->active});
     if (fit_) {
-        fit_->request(bodies_, contour);
+        fit_->request(bodies_, contour, residues);
         static_cast<void>(fit_->take(outcome_));
     }
     show(finder_.follow(list, topic, commands));
@@ -143,6 +143,9 @@ void FitController::perform(const FitRequest& request, const BodyList& list, std
             if (const auto found = finder_.found(request.body, request.place); found && body != nullptr)
                 keep("body " + std::to_string(body->id) + ", place " + std::to_string(request.place + 1),
                      with(history_.places(), body->id, *found));
+            return;
+        case FitAction::place_copies:
+            if (body != nullptr) show(finder_.place_copies(*body, list, commands));
             return;
         case FitAction::snapshot:
             return keep(request.text, history_.places());
@@ -213,10 +216,12 @@ void FitController::describe(const BodyList& list, const BodiesTopic* topic, Fit
         f.colour = kBodyColours[b.id % kBodyColours.size()];
         state.bodies.push_back(std::move(f));
     }
+    state.copies = 0;
+    for (std::size_t i = 0; active && i < list.bodies().size(); ++i)
+        if (i != *active && is_free_copy(list.bodies()[i], list.bodies()[*active])) ++state.copies;
     state.options = topic != nullptr ? topic->options : 0;
     state.building = topic != nullptr && topic->building != 0;
     finder_.describe(list, topic, state.search);
-    state.resolution_estimated = outcome_.resolution_assumed;
     state.saving = saving_.running();
     state.gestures = history_.undoable();
     state.can_undo = state.gestures > 0;
@@ -242,8 +247,8 @@ void FitController::describe(const BodyList& list, const BodiesTopic* topic, Fit
     fit.status = outcome_.number == 0 ? "computing ..." : outcome_.error;
     fit.all = outcome_.all;
     fit.resolution_m = outcome_.resolution_m;
-    fit.resolution_assumed = outcome_.resolution_assumed;
     fit.contour = outcome_.contour;
+    fit.residues_current = outcome_.residues_current;
     fit.bodies = outcome_.body.size();
     for (std::size_t i = 0; i < outcome_.of.size(); ++i)
         if (outcome_.body[i].id == held) fit.body = outcome_.of[i], fit.body_id = held;

@@ -24,7 +24,8 @@ public:
     // Another scene, or none: resets everything.
     void use(std::shared_ptr<const SceneContent> content);
     // Call once a frame; topic: of the attached controller, or null; contour: that counts as inside. Adds commands that became due.
-    void follow(const BodyList& list, const BodiesTopic* topic, double contour,
+    // residues: their fit is wanted (outcome()).
+    void follow(const BodyList& list, const BodiesTopic* topic, double contour, bool residues,
                 std::vector<Command>& commands);
     void perform(const FitRequest& request, const BodyList& list, std::vector<Command>& commands);
     // At the end: waits for a save in progress, at most this long.
@@ -33,6 +34,7 @@ public:
     void describe(const BodyList& list, const BodiesTopic* topic, FittingState& state, FitState& fit);
 
     [[nodiscard]] const PlaceFinder& finder() const { return finder_; }
+    [[nodiscard]] const FitOutcome& outcome() const { return outcome_; }  // the newest
 
 private:
     void report(Grade grade, std::string text);

@@ -46,9 +46,8 @@ void DockingPanels::draw_card(const Theme& theme, const PixelRect& card) const {
         const FitMetrics& m = f.body_id != 0 ? f.body : f.all;
         if (f.bodies > 1) row(theme, "Clashes", grouped(m.clashes), "atom pairs with other bodies");
         text_small(theme, colour::kDim,
-                   format("Region: %s, %s voxels. Simulated at %.1f Å%s, Gaussians, weight Z.", kFitRegion,
-                          grouped(m.region_voxels).c_str(), f.resolution_m / kAngstromM,
-                          f.resolution_assumed ? " (estimated: 4 voxels)" : ""));
+                   format("Region: %s, %s voxels. Simulated at %.1f Å, Gaussians, weight Z.", kFitRegion,
+                          grouped(m.region_voxels).c_str(), f.resolution_m / kAngstromM));
     }
     if (!f.status.empty()) text_small(theme, colour::kDim, f.status);
     end_card();

@@ -17,6 +17,7 @@
 #include "gui/render/scene_content.hpp"
 #include "ipc/base/clock.hpp"
 #include "ipc/scene/fit/fit_metrics.hpp"
+#include "ipc/scene/fit/residue_fit.hpp"
 
 namespace tact {
 
@@ -35,15 +36,18 @@ struct FitOutcome {
     std::vector<FitBody> body;   // the measured bodies and their poses
     std::vector<FitMetrics> of;  // one per body
     double resolution_m = 0.0;
-    bool resolution_assumed = false;  // four voxels, because nobody gave it
     double compute_s = 0.0;
     double contour = 0.0;      // that the fractions inside refer to
     std::uint64_t number = 0;  // increases with every outcome
+    // One list per body once they were asked for; of older places while residues_current is false.
+    std::vector<std::vector<ResidueFit>> residues;
+    bool residues_current = false;
 };
 
 class FitWorker {
 public:
     static constexpr Duration kPause = std::chrono::seconds(1);
+    static constexpr int kResidueWindow = 9;
     // The content needs a map and bodies.
     explicit FitWorker(std::shared_ptr<const SceneContent> content, Duration pause = kPause);
     ~FitWorker();
@@ -51,13 +55,18 @@ public:
     FitWorker& operator=(const FitWorker&) = delete;
 
     // Ignores bodies of structures that the content does not have. contour: level that counts as inside; none: the scene's.
-    void request(std::span<const FitBody> bodies, std::optional<double> contour = {});
+    // residues: also the fit of each residue, which takes longer and comes in a second outcome.
+    void request(std::span<const FitBody> bodies, std::optional<double> contour = {}, bool residues = false);
     // Returns true if there is one newer than outcome.number.
     [[nodiscard]] bool take(FitOutcome& outcome);
 
 private:
     void work();
-    [[nodiscard]] FitOutcome compute(std::vector<FitBody> bodies, double contour) const;
+    struct Placed;
+    [[nodiscard]] FitSettings settings(double contour) const;
+    [[nodiscard]] FitOutcome compute(std::vector<FitBody> bodies, const Placed& placed, double contour) const;
+    [[nodiscard]] std::vector<std::vector<ResidueFit>> residues_of(const Placed& placed, double contour);
+    [[nodiscard]] bool stopping();
 
     const std::shared_ptr<const SceneContent> content_;
     const Duration pause_;
@@ -65,6 +74,7 @@ private:
     std::condition_variable changed_;
     std::vector<FitBody> requested_;
     double contour_ = 0.0;  // requested
+    bool residues_ = false;
     FitOutcome outcome_;
     bool stop_ = false;
     std::thread thread_;

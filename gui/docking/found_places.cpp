@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "ipc/base/error.hpp"
+#include "ipc/base/printable.hpp"
 #include "ipc/base/units.hpp"
 
 namespace tact {
@@ -60,6 +61,7 @@ std::vector<FoundPlace> read_found(std::string_view text, const Vec3& home_com_m
         f.score = number(place, nearby ? "score_after" : "score");
         if (nearby) {
             f.score_start = number(place, "score_before");
+            if (place.contains("z")) f.z = number(place, "z");
         } else {
             f.z = number(place, "z");
             f.clashes = static_cast<std::uint64_t>(std::clamp(number(place, "clashes"), 0.0, 1e15));
@@ -68,6 +70,14 @@ std::vector<FoundPlace> read_found(std::string_view text, const Vec3& home_com_m
     }
     if (nearby && found.empty()) refuse("the list is empty");
     return found;
+}
+
+std::string found_symmetry(std::string_view text) {
+    const nlohmann::json all = nlohmann::json::parse(text.begin(), text.end(), nullptr, false);
+    const nlohmann::json::json_pointer at("/searches/0/symmetry/name");
+    if (!all.is_object() || !all.contains(at) || !all[at].is_string()) return {};
+    constexpr std::size_t kLongest = 64;
+    return printable(all[at].get<std::string>().substr(0, kLongest));
 }
 
 }  // namespace tact

@@ -5,6 +5,7 @@
 #pragma once
 
 #include <cstdint>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -18,7 +19,7 @@ struct FoundPlace {
     Pose T_model_body;
     double score = 0.0;        // of the objective
     double score_start = 0.0;  // of a refinement: of the place that it was given
-    double z = 0.0;            // of a search: standard deviations above random places
+    double z = 0.0;            // standard deviations above random places; 0: not known
     std::uint64_t clashes = 0;
 };
 
@@ -26,5 +27,8 @@ struct FoundPlace {
 // which has exactly one place.
 [[nodiscard]] std::vector<FoundPlace> read_found(std::string_view json, const Vec3& home_com_model_m,
                                                  bool nearby);
+
+// The symmetry of copies that a search placed, such as "C7"; empty if it placed none.
+[[nodiscard]] std::string found_symmetry(std::string_view json);
 
 }  // namespace tact

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "gui/docking/docking_content.hpp"
+#include "gui/docking/fit_colours.hpp"
 #include "gui/render/scene_frame.hpp"
 #include "gui/render/tube.hpp"
 #include "ipc/base/units.hpp"
@@ -16,7 +17,10 @@ constexpr Rgb8 kGhost{150, 156, 168};
 }  // namespace
 
 Molecules::Molecules(std::shared_ptr<const SceneContent> content, Programs& programs)
-    : content_(std::move(content)), programs_(programs), structures_(docking_of(*content_).bodies.size()) {}
+    : content_(std::move(content)), programs_(programs), structures_(docking_of(*content_).bodies.size()) {
+    for (const Structure& s : docking_of(*content_).bodies)
+        grey_.push_back(std::make_shared<const std::vector<Rgb8>>(s.size(), kUnknownFit));
+}
 
 void Molecules::set_look(const MoleculeLook& look) {
     look_ = look;
@@ -37,29 +41,42 @@ void Molecules::OfStructure::clear() {
     spheres.clear();
 }
 
-Molecules::Source Molecules::source_of(const DrawnBody& body) {
+void Molecules::set_fit_colours(std::uint32_t id, std::vector<Rgb8> colours) {
+    fit_paint_[id] = std::make_shared<const std::vector<Rgb8>>(std::move(colours));
+}
+
+std::shared_ptr<const std::vector<Rgb8>> Molecules::fit_paint(const DrawnBody& body) const {
+    const auto at = fit_paint_.find(body.id);
+    const std::shared_ptr<const std::vector<Rgb8>>& grey = grey_[body.structure];
+    return at != fit_paint_.end() && at->second->size() == grey->size() ? at->second : grey;
+}
+
+Molecules::Source Molecules::source_of(const DrawnBody& body, Colouring colouring) {
     const DockingContent& docking = docking_of(*content_);
     const Structure& straight = docking.bodies[body.structure];
     const std::vector<Bond>& bonds = docking.bonds[body.structure];
     const NormalModes& modes = docking.modes_of(body.structure);
-    if (body.amplitude_m.empty() || modes.count() < body.amplitude_m.size())
-        return {structures_[body.structure], straight, bonds};
-    Bent& bent = bent_[body.id];
-    bent.drawn = true;
+    const bool bends = !body.amplitude_m.empty() && modes.count() >= body.amplitude_m.size();
+    if (!bends && colouring != Colouring::fit) return {structures_[body.structure], straight, bonds, {}};
+    Own& own = own_[body.id];
+    own.drawn = true;
+    const auto paint = colouring == Colouring::fit ? fit_paint(body) : nullptr;
+    const std::span<const float> amplitude_m = bends ? body.amplitude_m : std::span<const float>{};
     double apart_2 = 0.0;
-    for (std::size_t k = 0; k < body.amplitude_m.size(); ++k) {
-        const double before = k < bent.amplitude_m.size() ? static_cast<double>(bent.amplitude_m[k]) : 0.0;
-        apart_2 += std::pow(static_cast<double>(body.amplitude_m[k]) - before, 2);
+    for (std::size_t k = 0; k < amplitude_m.size(); ++k) {
+        const double before = k < own.amplitude_m.size() ? static_cast<double>(own.amplitude_m[k]) : 0.0;
+        apart_2 += std::pow(static_cast<double>(amplitude_m[k]) - before, 2);
     }
-    const bool same = bent.atoms.size() == straight.size() &&
-                      bent.amplitude_m.size() <= body.amplitude_m.size() &&
+    const bool same = own.atoms.size() == (bends ? straight.size() : 0) &&
+                      own.amplitude_m.size() <= amplitude_m.size() && own.paint == paint &&
                       apart_2 < std::pow(kSameShapeA * kAngstromM, 2);
     if (!same) {
-        bent.amplitude_m.assign(body.amplitude_m.begin(), body.amplitude_m.end());
-        bent.atoms = bent_structure(straight, modes, body.amplitude_m);
-        bent.made.clear();
+        own.amplitude_m.assign(amplitude_m.begin(), amplitude_m.end());
+        own.atoms = bends ? bent_structure(straight, modes, amplitude_m) : Structure{};
+        own.paint = paint;
+        own.made.clear();
     }
-    return {bent.made, bent.atoms, bonds};
+    return {own.made, bends ? own.atoms : straight, bonds, paint ? AtomPaint(*paint) : AtomPaint{}};
 }
 
 ImpostorShapes& Molecules::shapes(const Source& source, MoleculeStyle style) {
@@ -67,11 +84,11 @@ ImpostorShapes& Molecules::shapes(const Source& source, MoleculeStyle style) {
     ImpostorShapes& wanted = style == MoleculeStyle::spheres ? s.spheres : s.sticks;
     if (wanted.filled()) return wanted;
     if (style == MoleculeStyle::spheres) {
-        std::vector<Sphere> spheres = spheres_of(source.atoms);
+        std::vector<Sphere> spheres = spheres_of(source.atoms, source.paint);
         order_by_level(spheres);
         wanted.fill(spheres);
     } else {
-        std::vector<Stick> sticks = sticks_of(source.atoms, source.bonds);
+        std::vector<Stick> sticks = sticks_of(source.atoms, source.bonds, source.paint);
         s.sticks_always = order_by_level(sticks, source.atoms, source.bonds);
         wanted.fill(sticks);
     }
@@ -80,7 +97,7 @@ ImpostorShapes& Molecules::shapes(const Source& source, MoleculeStyle style) {
 
 ImpostorShapes& Molecules::trace(const Source& source, std::size_t atoms_per_point) {
     ImpostorShapes& wanted = source.made.trace[atoms_per_point - 1];
-    if (!wanted.filled()) wanted.fill(trace_of(source.atoms, atoms_per_point));
+    if (!wanted.filled()) wanted.fill(trace_of(source.atoms, atoms_per_point, source.paint));
     return wanted;
 }
 
@@ -91,7 +108,8 @@ TriangleBuffers& Molecules::tube(const Source& source, std::size_t step) {
     const std::size_t most = step == 0 ? kTubeVertices / structures_.size() : s.tube_vertices;
     const TubeMesh mesh = build_tubes(
         source.atoms,
-        static_cast<std::size_t>(static_cast<double>(kTubeLevels[step]) * static_cast<double>(most)));
+        static_cast<std::size_t>(static_cast<double>(kTubeLevels[step]) * static_cast<double>(most)),
+        source.paint);
     if (step == 0) s.tube_vertices = mesh.vertex.size();
     wanted.fill(mesh, GL_STATIC_DRAW);
     return wanted;
@@ -102,14 +120,14 @@ void Molecules::draw(std::span<const DrawnBody> bodies, const Eigen::Matrix4f& e
     left_out_ = 0;
     triangles_ = triangles_max_ = 0;
     std::size_t room = shapes_max_;
-    for (auto& [id, bent] : bent_) bent.drawn = false;
+    for (auto& [id, own] : own_) own.drawn = false;
     for (const DrawnBody& body : bodies) {
         if (body.hidden || body.structure >= structures_.size()) continue;
         const MoleculeLook l =
             body.ghost ? MoleculeLook{MoleculeStyle::trace, Colouring::body} : look(body.id);
         const ImpostorView view{eye_from_scene * scene_from_body(body.T_model_body, content_->centre_model_m),
                                 projection, haze, l.colouring, body.ghost ? kGhost : chain_colour(body.id)};
-        const Source source = source_of(body);
+        const Source source = source_of(body, l.colouring);
         if (l.style == MoleculeStyle::tube) {
             draw_tube(source, view);
             continue;
@@ -125,7 +143,7 @@ void Molecules::draw(std::span<const DrawnBody> bodies, const Eigen::Matrix4f& e
         room -= shapes_drawn;
         draw_shapes(source, l.style, view);
     }
-    std::erase_if(bent_, [](const auto& entry) { return !entry.second.drawn; });
+    std::erase_if(own_, [](const auto& entry) { return !entry.second.drawn; });
 }
 
 void Molecules::count(std::size_t drawn, std::size_t most) {

@@ -2,7 +2,8 @@
 //
 // Shared   the graphics data of a structure is created when a style is first drawn, once for all its copies; a
 //          body adds only its pose.
-// Bent     a body that is bent along its modes has graphics data of its own, made again when its shape has changed by kSameShapeA.
+// Own      a body that is bent along its modes, or coloured by its fit, has graphics data of its own, made again when its shape has
+//          changed by kSameShapeA or its colours have.
 // Cost     trace and tube are cheap anywhere. Sticks and spheres are impostors, one per bond or atom: cheap on a
 //          graphics card, expensive in software. A frame draws at most shapes_max of them (set_shapes_max);
 //          further bodies are drawn as tubes, and left_out() counts them.
@@ -49,6 +50,8 @@ public:
     [[nodiscard]] MoleculeLook look(std::uint32_t id) const;
     [[nodiscard]] MoleculeLook look() const { return look_; }  // of bodies without one of their own
     void set_shapes_max(std::size_t shapes) { shapes_max_ = shapes; }
+    // Colours of the atoms of a body while it is coloured by its fit; without them it is grey.
+    void set_fit_colours(std::uint32_t id, std::vector<Rgb8> colours);
     // In (0, 1], from the next draw() on.
     void set_level(float level) { level_ = level; }
 
@@ -74,9 +77,10 @@ private:
 
         void clear();
     };
-    struct Bent {
+    struct Own {
         std::vector<float> amplitude_m;
-        Structure atoms;
+        Structure atoms;                                 // if it is bent
+        std::shared_ptr<const std::vector<Rgb8>> paint;  // if it is coloured by its fit
         OfStructure made;
         bool drawn = false;  // in this frame
     };
@@ -85,8 +89,10 @@ private:
         OfStructure& made;
         const Structure& atoms;
         std::span<const Bond> bonds;
+        AtomPaint paint;
     };
-    Source source_of(const DrawnBody& body);
+    Source source_of(const DrawnBody& body, Colouring colouring);
+    std::shared_ptr<const std::vector<Rgb8>> fit_paint(const DrawnBody& body) const;
     ImpostorShapes& shapes(const Source& source, MoleculeStyle style);
     ImpostorShapes& trace(const Source& source, std::size_t atoms_per_point);
     TriangleBuffers& tube(const Source& source, std::size_t step);
@@ -98,7 +104,9 @@ private:
     Programs& programs_;
     std::unique_ptr<ImpostorPrograms> impostors_;  // compiled at first use
     std::vector<OfStructure> structures_;
-    std::map<std::uint32_t, Bent> bent_;  // by id of the body
+    std::map<std::uint32_t, Own> own_;  // by id of the body
+    std::map<std::uint32_t, std::shared_ptr<const std::vector<Rgb8>>> fit_paint_;
+    std::vector<std::shared_ptr<const std::vector<Rgb8>>> grey_;  // per structure
     MoleculeLook look_;
     std::map<std::uint32_t, MoleculeLook> look_of_;
     std::size_t shapes_max_ = kNoLimit, left_out_ = 0;

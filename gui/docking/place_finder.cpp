@@ -5,9 +5,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdio>
 
 #include "gui/docking/docking_content.hpp"
+#include "ipc/base/printed.hpp"
 #include "ipc/base/units.hpp"
 
 namespace tact {
@@ -21,13 +21,21 @@ std::string refined_text(const PlacementOutcome& o) {
     const FoundPlace& place = o.found.front();
     const double shift_a = (place.T_model_body.p_m - o.start.T_model_body.p_m).norm() / kAngstromM;
     const double turn_deg = place.T_model_body.q.angularDistance(o.start.T_model_body.q) / kDegreeRad;
-    char text[200];
-    std::snprintf(text, sizeof text, "refined body %u: %.2f Å, %.1f°; %.3f to %.3f%s", o.start.id, shift_a,
-                  turn_deg, place.score_start, place.score, kUnit[static_cast<std::size_t>(o.objective)]);
-    return text;
+    const std::string text =
+        printed("refined body %u: %.2f Å, %.1f°; %.3f to %.3f%s", o.start.id, shift_a, turn_deg,
+                place.score_start, place.score, kUnit[static_cast<std::size_t>(o.objective)]);
+    return place.z > 0.0 ? text + printed(", z %.1f", place.z) : text;
+}
+
+bool moves_along(const ShownBody& other, const ShownBody& body, std::uint32_t options) {
+    return (options & kDockingTogether) != 0 && is_free_copy(other, body);
 }
 
 }  // namespace
+
+bool is_free_copy(const ShownBody& other, const ShownBody& body) {
+    return other.id != body.id && other.structure == body.structure && (other.flags & kBodyFixed) == 0;
+}
 
 void PlaceFinder::use(std::shared_ptr<const SceneContent> content) {
     content_ = std::move(content);
@@ -62,16 +70,27 @@ PlaceFinder::Message PlaceFinder::take(PlacementOutcome done, const BodyList& li
         return {Grade::good, {}};  // the list tells it
     }
     if (topic == nullptr) return {Grade::watch, "refined, but there is no controller to move the body"};
-    if (list.find(id) == nullptr) return {Grade::watch, "refined, but the body was removed"};
-    commands.push_back({CommandKind::place_body, 0.0, {}, id, done.found.front().T_model_body});
+    const ShownBody* const body = list.find(id);
+    if (body == nullptr) return {Grade::watch, "refined, but the body was removed"};
+    const Pose& place = done.found.front().T_model_body;
+    commands.push_back({CommandKind::place_body, 0.0, {}, id, place});
+    if ((options_ & kDockingTogether) != 0) {
+        const Pose step = body->newest.inverse() * place;
+        for (const ShownBody& other : list.bodies())
+            if (is_free_copy(other, *body))
+                commands.push_back({CommandKind::place_body, 0.0, {}, other.id, other.newest * step});
+    }
     return {Grade::good, refined_text(done)};
 }
 
 // With Subtract on, the hand feels the map without all other bodies; otherwise those that are fixed are known.
 std::vector<FitBody> PlaceFinder::subtracted(std::uint32_t body, const BodyList& list) const {
     std::vector<FitBody> others;
+    const ShownBody* const looked_for = list.find(body);
+    if (looked_for == nullptr) return others;
     for (const ShownBody& b : list.bodies())
-        if (b.id != body && ((b.flags & kBodyFixed) != 0 || (options_ & kDockingSubtraction) != 0))
+        if (b.id != body && ((b.flags & kBodyFixed) != 0 || ((options_ & kDockingSubtraction) != 0 &&
+                                                             !moves_along(b, *looked_for, options_))))
             others.push_back({b.id, b.structure, b.newest});
     return others;
 }
@@ -80,7 +99,11 @@ std::optional<PlaceFinder::Message> PlaceFinder::look(const ShownBody& body, boo
                                                       const BodyList& list) {
     if (!job_ || job_->running()) return std::nullopt;
     try {
-        job_->start({{body.id, body.structure, body.newest}, subtracted(body.id, list), objective_, nearby});
+        job_->start({{body.id, body.structure, body.newest},
+                     subtracted(body.id, list),
+                     objective_,
+                     nearby,
+                     nearby ? std::string{} : symmetry_});
     } catch (const std::exception& e) {
         return Message{Grade::bad, e.what()};
     }
@@ -94,6 +117,28 @@ void PlaceFinder::cancel() {
 std::optional<Pose> PlaceFinder::found(std::uint32_t body, std::size_t place) const {
     if (body != found_.start.id || place >= found_.found.size()) return std::nullopt;
     return found_.found[place].T_model_body;
+}
+
+std::optional<PlaceFinder::Message> PlaceFinder::place_copies(const ShownBody& body, const BodyList& list,
+                                                              std::vector<Command>& commands) const {
+    if (found_.symmetry.empty() || body.id != found_.start.id) return std::nullopt;
+    std::vector<std::uint32_t> ids{body.id};
+    for (const ShownBody& other : list.bodies())
+        if (is_free_copy(other, body)) ids.push_back(other.id);
+    const std::size_t wanted = found_.found.size(), others = list.bodies().size() - ids.size();
+    if (wanted + others > kBodiesMax)
+        return Message{Grade::watch, std::to_string(wanted) + " copies and " + std::to_string(others) +
+                                         " other bodies are more than " + std::to_string(kBodiesMax)};
+    for (std::size_t i = 0; i < wanted; ++i) {
+        const Pose& place = found_.found[i].T_model_body;
+        if (i < ids.size())
+            commands.push_back({CommandKind::place_body, 0.0, {}, ids[i], place});
+        else
+            commands.push_back({CommandKind::add_body, 0.0, {}, body.structure, place});
+    }
+    commands.push_back({CommandKind::set_together, 1.0, {}});
+    return Message{Grade::good,
+                   std::to_string(wanted) + " copies by " + found_.symmetry + " placed; they move together"};
 }
 
 std::vector<DrawnBody> PlaceFinder::ghosts(const BodyList& list) const {
@@ -137,6 +182,7 @@ void PlaceFinder::send_pull(const BodiesTopic* topic, std::vector<Command>& comm
 
 void PlaceFinder::describe(const BodyList& list, const BodiesTopic* topic, SearchState& s) {
     objective_ = static_cast<PlaceObjective>(std::clamp(s.objective, 0, 2));
+    symmetry_ = s.symmetry.data();
     s.running = job_ && job_->running();
     if (s.running) {
         s.nearby = job_->pending().nearby;
@@ -148,6 +194,7 @@ void PlaceFinder::describe(const BodyList& list, const BodiesTopic* topic, Searc
     s.subtracted = active ? subtracted(held, list).size() : 0;
     s.found.clear();
     s.found_body = found_.start.id;
+    s.found_symmetry = found_.symmetry;
     if (!found_.found.empty()) s.found_name = docking_of(*content_).bodies[found_.start.structure].name;
     const ShownBody* const body = list.find(found_.start.id);
     const Vec3 here_m = (body != nullptr ? body->T_model_body : found_.start.T_model_body).p_m;

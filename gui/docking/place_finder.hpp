@@ -18,6 +18,9 @@
 
 namespace tact {
 
+// A copy of the body that the hand may move.
+[[nodiscard]] bool is_free_copy(const ShownBody& other, const ShownBody& body);
+
 class PlaceFinder {
 public:
     struct Message {
@@ -38,6 +41,9 @@ public:
 
     // A place found for this body; none: there is none.
     [[nodiscard]] std::optional<Pose> found(std::uint32_t body, std::size_t place) const;
+    // All places of a search with a symmetry: the body goes to the first, its free copies and new ones to the others.
+    std::optional<Message> place_copies(const ShownBody& body, const BodyList& list,
+                                        std::vector<Command>& commands) const;
     // Of the best places, those nearest to the body, at most three.
     [[nodiscard]] std::vector<DrawnBody> ghosts(const BodyList& list) const;
     // Fills the panel's state, and takes the user's choices from it.
@@ -56,6 +62,7 @@ private:
     PlacementOutcome found_;       // of the last search
     double found_radius_m_ = 0.0;  // radius of gyration of its structure
     PlaceObjective objective_ = PlaceObjective::laplacian;
+    std::string symmetry_;       // of the next search
     std::uint32_t options_ = 0;  // DockingOption, in effect
     bool pull_ = false;          // wanted by the user
     bool pull_asked_ = false;    // as the controller was asked last

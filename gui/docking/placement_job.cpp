@@ -39,6 +39,7 @@ void PlacementJob::start(const PlacementRequest& request) {
     outcome_.start = body;
     outcome_.nearby = request.nearby;
     outcome_.objective = request.objective;
+    outcome_.symmetry = request.symmetry;
     folder_ = std::make_unique<ScratchFolder>();
     const std::string poses = (folder_->path() / "poses.json").string();
     std::vector<PosedBody> bodies{{body, false}};
@@ -64,6 +65,7 @@ void PlacementJob::start(const PlacementRequest& request) {
     if (!request.nearby) {
         words.emplace_back("--hits");
         words.push_back(std::to_string(kFoundMax));
+        if (!request.symmetry.empty()) words.insert(words.end(), {"--symmetry=" + request.symmetry});
     }
     job_.start(request.nearby ? programs_.refine : programs_.search, words);
 }
@@ -101,8 +103,9 @@ void PlacementJob::finish(const ChildOutcome& ended) {
             return;
         }
         const Structure& s = docking_of(*content_).bodies.at(outcome_.start.structure);
-        outcome_.found =
-            read_found(text_of(folder_->path() / "found.json"), s.home_com_model_m, outcome_.nearby);
+        const std::string json = text_of(folder_->path() / "found.json");
+        outcome_.found = read_found(json, s.home_com_model_m, outcome_.nearby);
+        if (!outcome_.symmetry.empty()) outcome_.symmetry = found_symmetry(json);
     } catch (const std::exception& e) {
         outcome_.error = e.what();
     }

@@ -28,14 +28,16 @@ struct PlacementRequest {
     FitBody body;
     std::vector<FitBody> subtracted;  // bodies whose density is taken out of the map
     PlaceObjective objective = PlaceObjective::laplacian;
-    bool nearby = false;  // within 10 angstrom and 20 degrees; otherwise in the whole map
+    bool nearby = false;     // within 10 angstrom and 20 degrees; otherwise in the whole map
+    std::string symmetry{};  // of a search: places of copies by this symmetry; empty: of the body alone
 };
 
 struct PlacementOutcome {
     FitBody start;  // the body as it was
     PlaceObjective objective = PlaceObjective::laplacian;
     bool nearby = false;
-    std::vector<FoundPlace> found;  // best first; one if nearby
+    std::string symmetry;           // as found: "C7" for "find"
+    std::vector<FoundPlace> found;  // best first; one if nearby; the copies if there is a symmetry
     std::string error;              // not empty: failed
     bool cancelled = false;
 };

@@ -57,9 +57,21 @@ void start_row(const Theme& theme, const DashboardState& state, FittingState& f)
     if (ImGui::IsItemHovered())
         ImGui::SetTooltip("%s",
                           kObjectiveHelp[static_cast<std::size_t>(std::clamp(s.objective, 0, kMeanDensity))]);
-    if (f.resolution_estimated)
-        text_small(theme, colour::kWatch,
-                   "The resolution is an estimate; bake the scene with --resolution-a for reliable scores.");
+    text_coloured(colour::kDim, "copies");
+    ImGui::SameLine();
+    ImGui::SetNextItemWidth(theme.px(110.0F));
+    ImGui::InputTextWithHint("##symmetry", "none", s.symmetry.data(), s.symmetry.size());
+    if (ImGui::IsItemHovered())
+        ImGui::SetTooltip(
+            "%s",
+            "symmetry of copies to place, whose axis is found: C7, D3, helix:RISE,TWIST,COPIES in Å and "
+            "degrees, or find, to try C2 to C12 and D2 to D7");
+    if (!s.found_symmetry.empty() && !s.found.empty() && s.found_body == id) {
+        ImGui::SameLine();
+        if (button("Place copies", state.attached,
+                   "put the held body and copies of it at all these places; they move together then"))
+            f.requests.push_back({FitAction::place_copies, id, {}});
+    }
     if (s.subtracted > 0)
         text_small(theme, colour::kDim,
                    format("without the density of %zu other %s", s.subtracted,
@@ -70,11 +82,13 @@ void found_list(const Theme& theme, const DashboardState& state, FittingState& f
     const SearchState& s = f.search;
     const bool exists = std::any_of(f.bodies.begin(), f.bodies.end(),
                                     [&](const BodyState& b) { return b.id == s.found_body; });
-    text_small(theme, colour::kText,
-               s.place > 0
-                   ? format("Pull of %.2f N to place %u of body %u", s.pull_n, s.place, s.found_body)
-                   : format("%zu places of body %u, %s", s.found.size(), s.found_body, s.found_name.c_str()),
-               false);
+    text_small(
+        theme, colour::kText,
+        s.place > 0 ? format("Pull of %.2f N to place %u of body %u", s.pull_n, s.place, s.found_body)
+        : !s.found_symmetry.empty()
+            ? format("%zu copies of body %u by %s", s.found.size(), s.found_body, s.found_symmetry.c_str())
+            : format("%zu places of body %u, %s", s.found.size(), s.found_body, s.found_name.c_str()),
+        false);
     constexpr auto kFlags =
         ImGuiTableFlags_ScrollY | ImGuiTableFlags_RowBg | ImGuiTableFlags_SizingStretchProp;
     if (!ImGui::BeginTable("##places", 6, kFlags,

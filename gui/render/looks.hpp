@@ -14,6 +14,7 @@ enum class Colouring : int {
     chain,
     element,  // carbon by chain
     body,
+    fit,  // of each residue to the map
 };
 
 struct MoleculeLook {

@@ -23,7 +23,7 @@ constexpr TubeDetail kDetails[] = {{4, 8, 1}, {3, 6, 1}, {2, 6, 1}, {2, 5, 1}, {
 
 struct Strand {
     std::vector<Vector3f> point_a;
-    Rgb8 colour{};
+    std::vector<Rgb8> colour;  // of each point
 };
 
 Vector3f point_a(const Structure& s, std::size_t i) {
@@ -93,12 +93,13 @@ void add_strand(TubeMesh& mesh, const Strand& strand, int steps, int sides, floa
         if (u.norm() < 1e-3F) u = along.unitOrthogonal();
         u.normalize();
         const auto ring = static_cast<std::uint32_t>(mesh.vertex.size());
-        add_ring(mesh, curve[i], u, along.cross(u), radius_a, sides, strand.colour);
+        const auto steps_per_point = static_cast<std::size_t>(steps);
+        const Rgb8& colour = strand.colour[(i + steps_per_point / 2) / steps_per_point];
+        add_ring(mesh, curve[i], u, along.cross(u), radius_a, sides, colour);
         if (i > 0) join_rings(mesh, previous, ring, sides);
-        if (i == 0)
-            close_end(mesh, curve[i] - 0.6F * radius_a * along, -along, ring, sides, false, strand.colour);
+        if (i == 0) close_end(mesh, curve[i] - 0.6F * radius_a * along, -along, ring, sides, false, colour);
         if (i + 1 == curve.size())
-            close_end(mesh, curve[i] + 0.6F * radius_a * along, along, ring, sides, true, strand.colour);
+            close_end(mesh, curve[i] + 0.6F * radius_a * along, along, ring, sides, true, colour);
         previous = ring;
     }
 }
@@ -133,7 +134,7 @@ std::vector<Vector3f> thinned_strand_a(const Structure& s, const std::vector<std
     return points;
 }
 
-TubeMesh build_tubes(const Structure& structure, std::size_t vertices_max) {
+TubeMesh build_tubes(const Structure& structure, std::size_t vertices_max, std::span<const Rgb8> paint) {
     const auto strands = strands_of(structure);
     std::size_t points = 0;
     for (const auto& atoms : strands) points += atoms.size();
@@ -145,11 +146,14 @@ TubeMesh build_tubes(const Structure& structure, std::size_t vertices_max) {
     }
     TubeMesh mesh;
     mesh.strands = strands.size();
-    for (const auto& atoms : strands)
-        add_strand(
-            mesh,
-            {thinned_strand_a(structure, atoms, detail.atoms), chain_colour(structure.chain[atoms.front()])},
-            detail.steps, detail.sides, 0.75F);
+    for (const auto& atoms : strands) {
+        Strand strand{thinned_strand_a(structure, atoms, detail.atoms), {}};
+        const std::size_t count = strand.point_a.size();
+        for (std::size_t point = 0; point < count; ++point)
+            strand.colour.push_back(paint.empty() ? chain_colour(structure.chain[atoms.front()])
+                                                  : paint[atoms[point * atoms.size() / count]]);
+        add_strand(mesh, strand, detail.steps, detail.sides, 0.75F);
+    }
     return mesh;
 }
 

@@ -1,4 +1,4 @@
-// The backbone of a structure as smooth tubes, coloured by chain. Built once, on the CPU.
+// The backbone of a structure as smooth tubes, coloured by chain or as given. Built once, on the CPU.
 //
 // Curve    Catmull-Rom spline through the trace atoms; interrupted where the chain changes or two successive atoms
 //          are farther apart than a bond. Frame body, unit ångström.
@@ -9,6 +9,7 @@
 #include <Eigen/Core>
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "gui/render/elements.hpp"
@@ -39,6 +40,8 @@ inline constexpr double kTraceGapM = 8e-10;  // above the C-alpha (3.8 A) and ph
                                                             const std::vector<std::uint32_t>& atoms,
                                                             std::size_t atoms_per_point);
 
-[[nodiscard]] TubeMesh build_tubes(const Structure& structure, std::size_t vertices_max);
+// paint: the colour of each atom; empty: by chain.
+[[nodiscard]] TubeMesh build_tubes(const Structure& structure, std::size_t vertices_max,
+                                   std::span<const Rgb8> paint = {});
 
 }  // namespace tact

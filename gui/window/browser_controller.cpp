@@ -9,6 +9,7 @@
 #include "gui/window/import_progress.hpp"
 #include "ipc/base/error.hpp"
 #include "ipc/base/whole_file.hpp"
+#include "ipc/scene/file/scene_kinds.hpp"
 #include "ipc/scene/file/scene_switch.hpp"
 
 namespace tact {
@@ -97,7 +98,31 @@ void BrowserController::drop(const std::vector<std::string>& files, BrowserState
     Dropped meant = meaning_of(files);
     if (!meant.scene.empty()) return open_scene(meant.scene, state);
     if (meant.import.empty()) return say(state, Grade::watch, meant.trouble + "\n" + dropped_kinds_text());
+    import(std::move(meant), state);
+}
+
+void BrowserController::import(Dropped meant, BrowserState& state) {
+    for (const SceneKindRow& kind : scene_kinds()) {
+        if (meant.import[0] != kind.command || kind.question == nullptr) continue;
+        state.message.clear();
+        state.asked = {.import = meaning_text(meant), .question = kind.question};
+        asking_ = std::move(meant);
+        return;
+    }
     start_import(std::move(meant), state);
+}
+
+void BrowserController::follow_question(BrowserState& state) {
+    if (!state.asked) return;
+    AskedValue& asked = *state.asked;
+    if (asked.cancelled || !state.open) {
+        state.asked.reset();
+        return;
+    }
+    if (!std::exchange(asked.answered, false) || !value_of(asked) || import_.running()) return;
+    asking_.import.insert(asking_.import.end(), {asked.question->option, asked.answer.data()});
+    state.asked.reset();
+    start_import(std::move(asking_), state);
 }
 
 void BrowserController::start_import(Dropped meant, BrowserState& state) {
@@ -139,8 +164,8 @@ void BrowserController::follow_marks(BrowserState& state) {
     if (std::exchange(state.import_wanted, false) && !import_.running()) {
         Dropped meant = meaning_of(marked_);
         if (meant.import.empty()) return show_marks(state);
-        start_import(std::move(meant), state);
-        if (!import_.running()) return;
+        import(std::move(meant), state);
+        if (!import_.running() && !state.asked) return;
         marked_.clear();
         show_marks(state);
     }
@@ -184,6 +209,7 @@ void BrowserController::follow_import(BrowserState& state) {
 void BrowserController::follow(BrowserState& state) {
     follow_import(state);
     follow_marks(state);
+    follow_question(state);
     if (ready(keeping_))
         if (const std::string trouble = keeping_.get(); !trouble.empty()) {
             spdlog::warn("{}", trouble);

@@ -35,7 +35,10 @@ private:
     void follow_steps(BrowserState& state) const;
     void follow_marks(BrowserState& state);
     void show_marks(BrowserState& state) const;
+    // Asks first for what no file states.
+    void import(Dropped meant, BrowserState& state);
     void start_import(Dropped meant, BrowserState& state);
+    void follow_question(BrowserState& state);
     struct Read {
         std::vector<SceneRow> recent;
         std::string recent_trouble;
@@ -47,6 +50,7 @@ private:
     std::string current_;
     bool was_open_ = false, asked_ = false;
     std::vector<std::string> marked_;  // from any folder, at most one more than an import allows
+    Dropped asking_;                   // waits for the answer to BrowserState::asked
     ChildJob import_;
     std::string importing_;  // first file of the import
     Instant import_begun_{};

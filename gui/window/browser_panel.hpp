@@ -1,6 +1,7 @@
 // Contents of the scene list and the user's choices: plain data that the application fills and reads.
 #pragma once
 
+#include <array>
 #include <optional>
 #include <string>
 #include <vector>
@@ -8,6 +9,7 @@
 #include "gui/dashboard/pixel_rect.hpp"
 #include "gui/dashboard/status_text.hpp"
 #include "gui/dashboard/theme.hpp"
+#include "ipc/scene/file/scene_kinds.hpp"
 
 namespace tact {
 
@@ -21,6 +23,16 @@ struct SceneRow {
     bool raw = false, marked = false;  // raw data: a click marks them instead of opening
 };
 
+// A number that an import needs; drawn in place of the rows until it is answered or cancelled.
+struct AskedValue {
+    std::string import;  // "Dock 1abc.pdb into emd.mrc."
+    const ImportQuestion* question = nullptr;
+    std::array<char, 16> answer{};  // as typed
+    bool shown = false, answered = false, cancelled = false;
+};
+// The typed answer, if it is a number within the question's limits.
+[[nodiscard]] std::optional<double> value_of(const AskedValue& asked);
+
 struct BrowserState {
     bool open = false;
     int tab = 0;  // recently used, a folder
@@ -33,6 +45,7 @@ struct BrowserState {
     std::string
         marks_text;  // result of importing the marked rows, or why nothing can be imported; empty: no mark
     bool marks_import = false;
+    std::optional<AskedValue> asked;
     std::string message;
     Grade message_grade = Grade::unknown;
     // The user's choices; emptied by the application.

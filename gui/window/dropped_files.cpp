@@ -4,6 +4,7 @@
 #include <cctype>
 #include <filesystem>
 
+#include "ipc/base/printable.hpp"
 #include "ipc/scene/file/scene_kinds.hpp"
 
 namespace tact {
@@ -52,9 +53,7 @@ RawKind kind_of(const std::string& file) {
 // A file's name for a line of text: no control characters; a long name keeps its beginning and its ending.
 std::string shown_name(const std::string& file) {
     constexpr std::size_t kHead = 24, kTail = 12;
-    std::string name = std::filesystem::path(file).filename().string();
-    for (char& c : name)
-        if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) c = '?';
+    const std::string name = printable(std::filesystem::path(file).filename().string());
     if (name.size() <= kHead + 3 + kTail) return name;
     std::size_t head = kHead, tail = name.size() - kTail;  // whole characters of UTF-8
     const auto inside = [&](std::size_t at) {

@@ -73,9 +73,12 @@ bool parse_gui_options(int argc, const char* const* argv, GuiOptions& options, i
                                                  {"tube", MoleculeStyle::tube},
                                                  {"sticks", MoleculeStyle::sticks},
                                                  {"spheres", MoleculeStyle::spheres}}));
-    app.add_option("--colour", options.look.colouring, "Colour of bodies: by chain, element or body")
-        ->transform(CLI::CheckedTransformer(std::map<std::string, Colouring>{
-            {"chain", Colouring::chain}, {"element", Colouring::element}, {"body", Colouring::body}}));
+    app.add_option("--colour", options.look.colouring,
+                   "Colour of bodies: by chain, element, body, or the fit of their residues to the map")
+        ->transform(CLI::CheckedTransformer(std::map<std::string, Colouring>{{"chain", Colouring::chain},
+                                                                             {"element", Colouring::element},
+                                                                             {"body", Colouring::body},
+                                                                             {"fit", Colouring::fit}}));
     app.add_option(
            "--contour",
            "Isosurface as LEVEL[:RRGGBB][:OPACITY][:STYLE], up to four times; level in the map's unit, "

@@ -26,6 +26,7 @@ enum DockingOption : std::uint32_t {
     kDockingLaplacian = 1U << 2,    // uses the Laplacian-filtered map
     kDockingPull = 1U << 3,         // pulls towards places that a search found
     kDockingFlexible = 1U << 4,     // the body in the hand bends along its normal modes
+    kDockingTogether = 1U << 5,     // its copies that are not fixed move as it does, each in its own axes
 };
 
 struct BodyPlace {

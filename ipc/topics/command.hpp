@@ -36,8 +36,9 @@ enum class CommandKind : std::uint16_t {
     clear_found_places,
     set_pull,      // value: 1 on, 0 off
     set_flexible,  // value: 1 on, 0 off
+    set_together,  // value: 1 on, 0 off
 };
-inline constexpr CommandKind kLastCommand = CommandKind::set_flexible;
+inline constexpr CommandKind kLastCommand = CommandKind::set_together;
 // True for commands that the force model executes or refuses; all others concern the loop.
 [[nodiscard]] constexpr bool is_for_model(CommandKind kind) {
     return kind >= CommandKind::select_body && kind <= kLastCommand && kind != CommandKind::mark;

@@ -251,6 +251,8 @@ const char* command_kind_text(CommandKind kind) noexcept {
             return "pull to places found";
         case CommandKind::set_flexible:
             return "bending";
+        case CommandKind::set_together:
+            return "copies together";
     }
     return kUnknown;
 }

@@ -7,6 +7,7 @@
 #include "ipc/scene/file/scene_meta.hpp"
 #include "prep/export/export_bodies.hpp"
 #include "prep/input/read_file.hpp"
+#include "prep/map/import_map.hpp"
 
 namespace tact {
 namespace {
@@ -14,7 +15,7 @@ namespace {
 constexpr std::uint64_t kPosesBytesMax = std::uint64_t{64} << 20;  // a run report holds more than poses
 
 struct ExportRequest {
-    std::string scene, poses;
+    std::string scene, poses, local_resolution;
     ExportOptions options;
 };
 
@@ -26,8 +27,10 @@ void run_export(const ExportRequest& request) {
     const std::vector<char> json = read_whole_file(request.poses, kPosesBytesMax);
     const std::vector<PlacedBody> bodies =
         read_poses({json.data(), json.size()}, request.poses, read_meta(scene).body_count);
-    for (const auto& path : export_bodies(scene, bodies, request.options))
-        std::printf("wrote %s\n", path.c_str());
+    ExportOptions options = request.options;
+    if (!request.local_resolution.empty())
+        options.local_resolution = import_map(request.local_resolution).grid;
+    for (const auto& path : export_bodies(scene, bodies, options)) std::printf("wrote %s\n", path.c_str());
 }
 
 }  // namespace
@@ -56,6 +59,13 @@ void add_export(CLI::App& app) {
     command
         ->add_flag("--b-column", request->options.b_column,
                    "Write that correlation into the B column of the structures, to colour them by it")
+        ->needs(residues);
+    command
+        ->add_option("--local-resolution", request->local_resolution,
+                     "Map of local resolutions in angstrom, by a program that computes it from half-maps: "
+                     "adds its mean to "
+                     "the table of residues")
+        ->type_name("MAP")
         ->needs(residues);
     command->add_flag("--combined", request->options.combined,
                       "Also write all bodies to one file, with a unique id per chain");

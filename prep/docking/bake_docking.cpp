@@ -2,15 +2,16 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <cstring>
 
 #include "ipc/base/error.hpp"
+#include "ipc/base/printed.hpp"
 #include "ipc/base/units.hpp"
 #include "ipc/scene/density/docking_gain.hpp"
 #include "ipc/scene/density/isosurface.hpp"
 #include "prep/codebook/best_codebook.hpp"
 #include "prep/map/low_pass.hpp"
+#include "prep/map/map_resolution.hpp"
 #include "prep/map/map_statistics.hpp"
 #include "prep/mesh/progressive.hpp"
 #include "prep/modes/bake_modes.hpp"
@@ -19,14 +20,6 @@ namespace tact {
 namespace {
 
 constexpr double kHandExtentM = 0.16;
-constexpr double kVoxelsPerResolution = 4.0;
-
-template <class... Values>
-std::string printed(const char* format, Values... values) {
-    char text[512];
-    std::snprintf(text, sizeof text, format, values...);
-    return text;
-}
 
 // Mean position of the voxels above the contour, weighted by their height above it.
 Vec3 centre_of_density(const DensityGrid& grid, double contour) {
@@ -57,14 +50,6 @@ void set_title(SceneMeta& meta, const std::string& title) {
     }
 }
 
-void check_resolution(const std::optional<double>& resolution_m, const char* example) {
-    if (resolution_m && !(*resolution_m >= 0.5 * kAngstromM && *resolution_m <= 200.0 * kAngstromM)) {
-        throw StartupError("bake a docking scene",
-                           printed("the resolution %g Å is outside 0.5 to 200 Å", *resolution_m / kAngstromM),
-                           std::string("give the resolution in ångström: ") + example);
-    }
-}
-
 void check_input(const DockingInput& input) {
     if (input.structures.empty())
         throw StartupError("bake a docking scene", "no structure is given",
@@ -75,8 +60,9 @@ void check_input(const DockingInput& input) {
                                std::to_string(kSceneBodiesMax),
                            "join some structures into one file, or give fewer");
     }
-    check_resolution(input.resolution_m, "--resolution-a 10");
-    check_resolution(input.force_map_resolution_m, "--force-map-resolution-a 12");
+    check_resolution(input.resolution_m, "--resolution-a");
+    if (input.force_map_resolution_m)
+        check_resolution(*input.force_map_resolution_m, "--force-map-resolution-a");
 }
 
 // The hand reaches the map and a margin around it, but not a structure that starts farther away.
@@ -170,14 +156,8 @@ BakedDocking bake_docking(const DockingInput& input, SceneWriter& out, const Pro
                                    statistics.low, statistics.high),
                            "give a contour between them, or none");
     }
-    if (input.resolution_m) {
-        meta.resolution_m = *input.resolution_m;
-        say(printed("resolution: %.4g Å, as given", meta.resolution_m / kAngstromM));
-    } else {
-        meta.resolution_m = kVoxelsPerResolution * grid.spacing_m.maxCoeff();
-        say(printed("resolution: %.4g Å, ", meta.resolution_m / kAngstromM) +
-            std::string(kResolutionEstimated) + "; --resolution-a sets it");
-    }
+    meta.resolution_m = input.resolution_m;
+    say(printed("resolution: %.4g Å, %s", meta.resolution_m / kAngstromM, input.resolution_source.c_str()));
     const Vec3 extent_m =
         grid.spacing_m.cwiseProduct(Vec3(grid.size[0] - 1.0, grid.size[1] - 1.0, grid.size[2] - 1.0));
     meta.world_per_model = world_per_model_for(extent_m.maxCoeff());

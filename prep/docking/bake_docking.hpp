@@ -21,9 +21,10 @@ struct DockingInput {
     std::string title;
     DensityGrid grid;
     std::vector<Structure> structures;
-    std::vector<std::string> note;       // lines "key: value": sources of map and structures
-    std::optional<double> contour;       // in the map's unit; default: chosen from the histogram
-    std::optional<double> resolution_m;  // default: four voxels
+    std::vector<std::string> note;  // lines "key: value": sources of map and structures
+    std::optional<double> contour;  // in the map's unit; default: chosen from the histogram
+    double resolution_m = 0.0;      // of the map; never guessed
+    std::string resolution_source = "as given";
     std::optional<double>
         force_map_resolution_m;  // resolution of the smoothed force map; default: not smoothed
     std::uint32_t vertices_max = 1'000'000;

@@ -10,6 +10,7 @@
 #include <nlohmann/json.hpp>
 
 #include "ipc/base/parent_death.hpp"
+#include "ipc/base/printable.hpp"
 #include "ipc/base/units.hpp"
 #include "ipc/scene/density/normal_modes.hpp"
 #include "ipc/version/version.hpp"
@@ -20,7 +21,7 @@
 #include "prep/docking/bake_docking.hpp"
 #include "prep/docking/report_docking.hpp"
 #include "prep/input/read_file.hpp"
-#include "prep/map/import_map.hpp"
+#include "prep/map/read_map.hpp"
 #include "prep/structure/import_structure.hpp"
 #include "prep/synthetic/ring.hpp"
 
@@ -30,22 +31,15 @@ namespace {
 namespace fs = std::filesystem;
 
 struct DockSettings {
-    std::string map, scene, source;
+    MapRequest map;
+    std::string scene, source;
     std::vector<std::string> models;
-    std::optional<double> contour, resolution_a, force_map_resolution_a;
+    std::optional<double> contour, force_map_resolution_a;
     double level = 0.0;
     std::uint32_t vertices_max = 1'000'000, modes = 0;
     pid_t ends_with = 0;
     bool json = false;
 };
-
-// Lines of the note hold no control characters, whatever the name of a file.
-std::string dock_plain(std::string text) {
-    for (char& c : text) {
-        if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) c = '?';
-    }
-    return text;
-}
 
 std::string now_utc() {
     const std::time_t now = std::time(nullptr);
@@ -56,31 +50,22 @@ std::string now_utc() {
     return text;
 }
 
-std::string listed(const DensityGrid& grid) {
-    char text[160];
-    std::snprintf(text, sizeof text, "%u x %u x %u voxels of %.4g x %.4g x %.4g Å", grid.size[0],
-                  grid.size[1], grid.size[2], grid.spacing_m.x() / kAngstromM,
-                  grid.spacing_m.y() / kAngstromM, grid.spacing_m.z() / kAngstromM);
-    return text;
-}
-
 DockingInput from_files(const DockSettings& o, const Progress& progress) {
     DockingInput input;
     report(progress, 0.0, "reading the map");
-    ImportedMap map = import_map(o.map);
-    input.note.push_back("map: " + dock_plain(o.map));
-    input.note.push_back("map format: " + map.format + ", " + listed(map.grid));
-    input.note.push_back("map origin: " + map.origin_rule);
-    for (const std::string& line : map.notes) input.note.push_back("map note: " + line);
+    ReadMap map = read_map(o.map);
+    input.note = std::move(map.note);
     input.grid = std::move(map.grid);
-    input.title = dock_plain(fs::path(o.map).filename().string());
+    input.resolution_m = map.resolution_m;
+    input.resolution_source = map.resolution_source;
+    input.title = printable(fs::path(o.map.path).filename().string());
     const char* join = " and ";
     for (const std::string& path : o.models) {
         report(progress, 0.0, "reading structures");
         ImportedStructure model = import_structure(path);
-        input.note.push_back("structure: " + dock_plain(fs::absolute(path).string()));
+        input.note.push_back("structure: " + printable(fs::absolute(path).string()));
         input.note.push_back("structure check: " + file_mark(path));
-        input.note.push_back("structure content: " + dock_plain(model.summary));
+        input.note.push_back("structure content: " + printable(model.summary));
         input.title += join + model.structure.name;
         join = ", ";
         input.structures.push_back(std::move(model.structure));
@@ -94,18 +79,19 @@ DockingInput from_ring(const Progress& progress) {
     DockingInput input;
     input.title = "synthetic ring of six, one subunit free";
     input.note = {"map: made by tact-prep demo dock: six subunits, 12 Å, noise of 1 % of the highest density",
-                  "map format: synthetic, " + listed(ring.grid),
+                  "map format: synthetic, " + grid_text(ring.grid),
                   "map origin: chosen, the axis of the ring is z through (0, 0, 0)",
                   "structure: subunit A of the same ring, at its position in the map"};
     input.grid = std::move(ring.grid);
     input.structures.push_back(std::move(ring.subunits.front()));
     input.resolution_m = ring.resolution_m;
+    input.resolution_source = "of the Gaussians that the map is made of";
     return input;
 }
 
 void dock(const DockSettings& o, bool demo) {
     std::vector<std::string> inputs = o.models;
-    inputs.push_back(o.map);
+    for (const std::string& file : o.map.paths()) inputs.push_back(file);
     check_target("write scene", o.scene, inputs);
     const auto started = std::chrono::steady_clock::now();
     Console console;
@@ -114,7 +100,6 @@ void dock(const DockSettings& o, bool demo) {
     input.note.insert(input.note.begin(),
                       {"made by: " + program_version("tact-prep"), "made at: " + now_utc()});
     if (o.contour) input.contour = o.contour;
-    if (o.resolution_a) input.resolution_m = *o.resolution_a * kAngstromM;
     if (o.force_map_resolution_a) input.force_map_resolution_m = *o.force_map_resolution_a * kAngstromM;
     input.vertices_max = o.vertices_max;
     input.modes = o.modes;
@@ -161,8 +146,6 @@ void add_dock(CLI::App& app, CLI::App& demo) {
         sub->add_option(
             "--contour", o->contour,
             "Contour level of the drawn surface, in the map's unit; default: chosen from the histogram");
-        sub->add_option("--resolution-a", o->resolution_a,
-                        "Resolution of the map (angstrom); default: four voxels");
         sub->add_option(
             "--force-map-resolution-a", o->force_map_resolution_a,
             "Resolution (angstrom) to which the force map is smoothed, so that it attracts a structure from "
@@ -178,9 +161,10 @@ void add_dock(CLI::App& app, CLI::App& demo) {
     };
     CLI::App* const from_files =
         app.add_subcommand("dock", "Bake a docking scene from a density map and one or more structures");
-    from_files->add_option("map", o->map, "Density map: MRC, CCP4 or Situs, also .gz")->required();
+    from_files->add_option("map", o->map.path, "Density map: MRC, CCP4 or Situs, also .gz")->required();
     from_files->add_option("models", o->models, "Structures: PDB or mmCIF, also .gz; one body per file")
         ->required();
+    o->map.add_options(*from_files);
     both(from_files);
     from_files->callback([o] { dock(*o, false); });
     CLI::App* const made = demo.add_subcommand(

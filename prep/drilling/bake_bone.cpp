@@ -4,10 +4,10 @@
 #include <array>
 
 #include "ipc/base/error.hpp"
+#include "ipc/base/printed.hpp"
 #include "prep/drilling/approach.hpp"
 #include "prep/drilling/brick_rows.hpp"
 #include "prep/drilling/distance.hpp"
-#include "prep/drilling/note_line.hpp"
 
 namespace tact {
 namespace {
@@ -81,18 +81,18 @@ BakedBone bake_bone(BoneInput&& input, SceneWriter& out, const Progress& progres
     const double voxel_m3 = b.voxel_m * b.voxel_m * b.voxel_m;
     baked.bone_m3 = static_cast<double>(box.sum) / 255.0 * voxel_m3;
     for (const std::string& line : input.note) baked.note += line + '\n';
-    baked.note += note_line("volume: %u x %u x %u voxels of %.4g mm\n", b.size[0], b.size[1], b.size[2],
-                            1e3 * b.voxel_m);
     baked.note +=
-        note_line("bone: %.4g cm3, %.1f %% of the voxels are not empty\n", 1e6 * baked.bone_m3,
-                  100.0 * static_cast<double>(box.voxels) / (double{1} * b.size[0] * b.size[1] * b.size[2]));
+        printed("volume: %u x %u x %u voxels of %.4g mm\n", b.size[0], b.size[1], b.size[2], 1e3 * b.voxel_m);
     baked.note +=
-        note_line("hand: starts %.1f mm in front of the bone at (%.2f, %.2f, %.2f) mm in the model frame\n",
-                  1e3 * (baked.meta.centre_model_m[2] - place.surface_m.z()), 1e3 * place.surface_m.x(),
-                  1e3 * place.surface_m.y(), 1e3 * place.surface_m.z());
+        printed("bone: %.4g cm3, %.1f %% of the voxels are not empty\n", 1e6 * baked.bone_m3,
+                100.0 * static_cast<double>(box.voxels) / (double{1} * b.size[0] * b.size[1] * b.size[2]));
+    baked.note +=
+        printed("hand: starts %.1f mm in front of the bone at (%.2f, %.2f, %.2f) mm in the model frame\n",
+                1e3 * (baked.meta.centre_model_m[2] - place.surface_m.z()), 1e3 * place.surface_m.x(),
+                1e3 * place.surface_m.y(), 1e3 * place.surface_m.z());
     if (bone.view().has_hu())
-        baked.note += note_line("density: 0 at %g HU and below, 255 at %g HU and above\n",
-                                static_cast<double>(bone.hu_at_0), static_cast<double>(bone.hu_at_255));
+        baked.note += printed("density: 0 at %g HU and below, 255 at %g HU and above\n",
+                              static_cast<double>(bone.hu_at_0), static_cast<double>(bone.hu_at_255));
     write_bone_volume(out, bone.view());
     std::vector<std::uint8_t>().swap(bone.density);
     if (!bone.structure.empty()) {
@@ -113,12 +113,12 @@ BakedBone bake_bone(BoneInput&& input, SceneWriter& out, const Progress& progres
             spacing_m = built.field.spacing_m;
         }
         for (std::size_t i = 0; i < bone.structure.size(); ++i)
-            baked.note += note_line("structure: %s, %.4g mm3%s\n", bone.structure[i].name.c_str(),
-                                    1e9 * voxel_m3 * static_cast<double>(count[i + 1]),
-                                    bone.structure[i].critical ? ", critical" : "");
+            baked.note += printed("structure: %s, %.4g mm3%s\n", bone.structure[i].name.c_str(),
+                                  1e9 * voxel_m3 * static_cast<double>(count[i + 1]),
+                                  bone.structure[i].critical ? ", critical" : "");
         if (!critical.empty())
-            baked.note += note_line("distances: every %.3g mm, error at most %.2g mm\n", 1e3 * spacing_m,
-                                    1e3 * error_m);
+            baked.note +=
+                printed("distances: every %.3g mm, error at most %.2g mm\n", 1e3 * spacing_m, 1e3 * error_m);
         write_bone_labels(out, b, {bone.structure, bone.label});
     }
     write_meta(out, baked.meta, baked.note);

@@ -5,7 +5,8 @@
 #include <cstdio>
 
 #include "ipc/base/error.hpp"
-#include "prep/drilling/note_line.hpp"
+#include "ipc/base/printable.hpp"
+#include "ipc/base/printed.hpp"
 #include "prep/input/read_file.hpp"
 #include "prep/volume/dicom.hpp"
 #include "prep/volume/png_stack.hpp"
@@ -96,7 +97,7 @@ DensityRange choose_range(const Scan& scan, const BoneImport& o, const Progress&
     if (!(range.low < range.high) || std::abs(range.low) > 1e6 || std::abs(range.high) > 1e6)
         throw StartupError(
             "separate bone from other tissue",
-            note_line("the threshold %g is not below the value of solid bone, %g", range.low, range.high),
+            printed("the threshold %g is not below the value of solid bone, %g", range.low, range.high),
             "give a --solid-hu that is greater than --threshold-hu");
     return range;
 }
@@ -121,8 +122,7 @@ void put_structures(BoneData& bone, std::vector<ScanLabel> known, const BoneImpo
             if (!named->name.empty()) s.name = named->name;
             s.rgba = named->rgba;
         }
-        for (char& c : s.name)
-            if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) c = '?';
+        s.name = printable(s.name);
         std::size_t size = std::min(s.name.size(), BoneStructure::kNameBytesMax);
         while (size < s.name.size() && size > 0 &&
                (static_cast<unsigned char>(s.name[size]) & 0xC0U) == 0x80U)
@@ -161,8 +161,8 @@ void segmented(const Scan& scan, const SamplePlan& plan, const StackPalette& pal
     }
     if (bone_colour == 256)
         throw StartupError("separate bone from other tissue",
-                           note_line("no pixel has the colour of bone, %u,%u,%u", o.bone_colour[0],
-                                     o.bone_colour[1], o.bone_colour[2]),
+                           printed("no pixel has the colour of bone, %u,%u,%u", o.bone_colour[0],
+                                   o.bone_colour[1], o.bone_colour[2]),
                            "give the colour of bone with --bone-colour RED,GREEN,BLUE");
     // Label 0 means none: if the first palette colour is a structure, it gets an unused number.
     std::uint8_t first = 0;
@@ -206,8 +206,8 @@ BoneInput import_bone(const BoneImport& o, const Progress& whole) {
     };
     OpenedScan opened = open_scan(o.scan, o, progress);
     Scan& scan = opened.scan;
-    const std::string size = note_line("%u x %u x %zu voxels of %.4g x %.4g mm", scan.columns, scan.rows,
-                                       scan.slice.size(), scan.column_mm, scan.row_mm);
+    const std::string size = printed("%u x %u x %zu voxels of %.4g x %.4g mm", scan.columns, scan.rows,
+                                     scan.slice.size(), scan.column_mm, scan.row_mm);
     if (o.crop) crop_scan(scan, *o.crop);
     const SamplePlan plan = plan_samples(scan, o.voxel_mm, o.face);
     const bool labelled = opened.palette || !o.labels.empty();
@@ -238,7 +238,7 @@ BoneInput import_bone(const BoneImport& o, const Progress& whole) {
             bone.hu_at_255 = static_cast<float>(range.high);
         } else {
             input.note.push_back(
-                note_line("bone: values above %g, solid at %g and above", range.low, range.high));
+                printed("bone: values above %g, solid at %g and above", range.low, range.high));
         }
         const double labels_from = o.labels.empty() ? 1.0 : 0.5;
         bone.density = sample_density(scan, plan, range.low, range.high, part(progress, 0.0, labels_from));
@@ -268,8 +268,8 @@ BoneInput import_bone(const BoneImport& o, const Progress& whole) {
                                               plan.start_mm[1] + 0.5 * plan.voxel_mm * (plan.count[1] - 1.0),
                                               plan.start_mm[2] + 0.5 * plan.voxel_mm * (plan.count[2] - 1.0));
         input.note.push_back(
-            note_line("model (0, 0, 0): %.2f mm left, %.2f mm back, %.2f mm up from the scan's origin",
-                      middle.x(), middle.y(), middle.z()));
+            printed("model (0, 0, 0): %.2f mm left, %.2f mm back, %.2f mm up from the scan's origin",
+                    middle.x(), middle.y(), middle.z()));
     } else {
         scan.warning.emplace_back(
             "the file does not state the patient's left side: the bone may be mirrored");

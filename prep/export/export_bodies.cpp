@@ -241,7 +241,12 @@ std::vector<fs::path> export_bodies(const SceneFile& scene, const std::vector<Pl
         if (options.residues > 0) {
             const std::vector<ResidueFit> residues =
                 residues_of(grid, meta, structure_of_body, in_shape, i, options.residues);
-            residue_table = residue_csv(s, residues);
+            residue_table = residue_csv(
+                s, residues,
+                options.local_resolution
+                    ? local_resolutions(*options.local_resolution,
+                                        {&structure_of_body[i], in_shape[i].T_model_body}, residues)
+                    : std::vector<std::optional<double>>{});
             if (options.b_column) {
                 source.text = with_b_column(source.text, source.mmcif, source.path.string(), s, residues);
                 std::string window = "correlation about the mean, window in residues: ";

@@ -15,6 +15,7 @@
 #include <optional>
 #include <vector>
 
+#include "ipc/scene/density/density_map.hpp"
 #include "ipc/scene/file/scene_file.hpp"
 #include "prep/export/poses_file.hpp"
 
@@ -28,6 +29,8 @@ struct ExportOptions {
         contour{};     // that the fractions inside refer to, in the map's unit; none: the scene's
     int residues = 0;  // window of the correlation of residues, an odd number of them; 0: none is computed
     bool b_column = false;  // that correlation also replaces the B values
+    std::optional<DensityGrid>
+        local_resolution{};  // angstrom, by a program for it; its means are added to the table of residues
 };
 
 // Returns the files written, in order.

@@ -1,16 +1,8 @@
 #include "prep/export/fit_remarks.hpp"
-
-#include <cstdio>
+#include "ipc/base/printed.hpp"
 
 namespace tact {
 namespace {
-
-template <class... Values>
-std::string printed(const char* format, Values... values) {
-    char text[512];
-    std::snprintf(text, sizeof text, format, values...);
-    return text;
-}
 
 Eigen::AngleAxisd axis_of(const AtomMove& move) { return Eigen::AngleAxisd(Quat(move.turn).normalized()); }
 

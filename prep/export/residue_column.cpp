@@ -1,10 +1,13 @@
 #include "prep/export/residue_column.hpp"
 
+#include <cmath>
 #include <cstdio>
 #include <map>
 #include <utility>
 
 #include "ipc/base/error.hpp"
+#include "ipc/base/printed.hpp"
+#include "ipc/scene/fit/fit_sums.hpp"
 #include "prep/cif/cif_document.hpp"
 #include "prep/export/file_atoms.hpp"
 
@@ -70,9 +73,30 @@ std::string in_mmcif(std::string_view text, const std::string& name, const std::
 
 }  // namespace
 
-std::string residue_csv(const Structure& structure, const std::vector<ResidueFit>& fit) {
-    std::string out = "chain,residue,atoms,density_sigma,correlation\n";
+std::vector<std::optional<double>> local_resolutions(const DensityGrid& map, const PlacedStructure& placed,
+                                                     const std::vector<ResidueFit>& fit) {
+    std::vector<std::optional<double>> out;
     for (const ResidueFit& r : fit) {
+        double sum = 0.0;
+        std::size_t inside = 0;
+        for (std::size_t i = r.first_atom; i < r.first_atom + r.atoms; ++i) {
+            const double value = map_at(map, atom_in_voxels(map, placed, i), std::nan(""));
+            if (std::isnan(value)) continue;
+            sum += value;
+            ++inside;
+        }
+        out.push_back(inside > 0 ? std::optional(sum / static_cast<double>(inside)) : std::nullopt);
+    }
+    return out;
+}
+
+std::string residue_csv(const Structure& structure, const std::vector<ResidueFit>& fit,
+                        const std::vector<std::optional<double>>& local_resolution_a) {
+    const bool local = local_resolution_a.size() == fit.size() && !fit.empty();
+    std::string out = std::string("chain,residue,atoms,density_sigma,correlation") +
+                      (local ? ",local_resolution_a\n" : "\n");
+    for (std::size_t i = 0; i < fit.size(); ++i) {
+        const ResidueFit& r = fit[i];
         char line[128];
         std::snprintf(line, sizeof line, ",%d,%zu,%.4f,", r.residue, r.atoms, r.density_sigma);
         out += structure.chain_names[r.chain] + line;
@@ -80,6 +104,7 @@ std::string residue_csv(const Structure& structure, const std::vector<ResidueFit
             std::snprintf(line, sizeof line, "%.4f", *r.correlation);
             out += line;
         }
+        if (local) out += local_resolution_a[i] ? printed(",%.3f", *local_resolution_a[i]) : ",";
         out += '\n';
     }
     return out;

@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdio>
 #include <cstring>
 
 #include "ipc/base/error.hpp"
+#include "ipc/base/printed.hpp"
 #include "ipc/scene/density/isosurface.hpp"
 #include "prep/mesh/progressive.hpp"
 #include "prep/mesh/simplify.hpp"
@@ -128,13 +128,6 @@ TriangleMesh surfaces_of(const DensityGrid& grid, const Progress& progress) {
         }
     }
     return both;
-}
-
-template <class... Values>
-std::string printed(const char* format, Values... values) {
-    char text[256];
-    std::snprintf(text, sizeof text, format, values...);
-    return text;
 }
 
 }  // namespace

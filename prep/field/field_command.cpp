@@ -6,6 +6,7 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
+#include "ipc/base/printable.hpp"
 #include "ipc/version/version.hpp"
 #include "prep/console/console.hpp"
 #include "prep/console/scene_report.hpp"
@@ -42,9 +43,7 @@ FieldInput from_file(const FieldSettings& o) {
     input.note = {"field: " + fs::absolute(o.file).string(), "field format: " + in.format,
                   "field unit of length: " + o.unit};
     for (const std::string& line : in.notes) input.note.push_back("field: " + line);
-    for (std::string& line : input.note)
-        for (char& c : line)
-            if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) c = '?';
+    for (std::string& line : input.note) line = printable(line);
     return input;
 }
 

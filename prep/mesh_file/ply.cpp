@@ -1,5 +1,6 @@
 // PLY 1.0 (Turk). The header declares elements and their properties. Only x, y, z of "vertex" and the list
-// "vertex_indices" (or "vertex_index") of "face" are kept.
+// "vertex_indices" (or "vertex_index") of "face" are kept, or of "tristrips" (Stanford's triangle strips: each vertex makes a
+// triangle with the two before it, every other one turned; -1 begins anew).
 #include <bit>
 #include <limits>
 #include <vector>
@@ -24,7 +25,7 @@ constexpr std::size_t size_of(Type type) {
     return kSize[static_cast<std::size_t>(type)];
 }
 
-enum class Use : std::uint8_t { none, x, y, z, corners };
+enum class Use : std::uint8_t { none, x, y, z, corners, strip };
 struct Property {
     Type type = Type::u8, count = Type::u8;  // count: type of a list's length
     bool list = false;
@@ -112,8 +113,10 @@ private:
         if (element.name == "vertex" && !property.list && name.size() == 1 && name[0] >= 'x' &&
             name[0] <= 'z')
             property.use = static_cast<Use>(1 + name[0] - 'x');
-        if (element.name == "face" && property.list && (name == "vertex_indices" || name == "vertex_index"))
-            property.use = Use::corners;
+        if (property.list && (name == "vertex_indices" || name == "vertex_index")) {
+            if (element.name == "face") property.use = Use::corners;
+            if (element.name == "tristrips") property.use = Use::strip;
+        }
         element.property.push_back(property);
     }
 
@@ -204,6 +207,26 @@ void reserve_for_ply(const MeshSource& source, const Header& header, MeshBuilder
     builder.reserve(vertices, faces);
 }
 
+class Strip {
+public:
+    template <class Where>
+    void add(std::int64_t vertex, MeshBuilder& builder, const Where& where) {
+        if (vertex < 0) {
+            count_ = 0;
+            return;
+        }
+        const bool turned = count_ % 2 != 0;
+        if (count_ >= 2 && vertex != last_[0] && vertex != last_[1] && last_[0] != last_[1])
+            builder.face(std::array{last_[turned ? 1 : 0], last_[turned ? 0 : 1], vertex}, where);
+        last_ = {last_[1], vertex};
+        ++count_;
+    }
+
+private:
+    std::array<std::int64_t, 2> last_{};
+    std::uint64_t count_ = 0;  // of vertices since the strip began
+};
+
 template <class Body>
 TriangleMesh read_body(const MeshSource& source, const Header& header, Body&& body) {
     MeshBuilder builder(source);
@@ -236,11 +259,16 @@ TriangleMesh read_body(const MeshSource& source, const Header& header, Body&& bo
                     source.refuse(where() + ": the length of a list is negative or above 255",
                                   "divide the faces into triangles");
                 corner.clear();
+                Strip strip;
                 for (double i = 0.0; i < length; i += 1.0) {
                     const double value = next(property.type);
-                    if (!kept) continue;
+                    if (property.use == Use::none) continue;
                     if (!(std::abs(value) < 1e15)) source.refuse(where() + ": a corner is not a number");
-                    corner.push_back(static_cast<std::int64_t>(value));
+                    const auto vertex = static_cast<std::int64_t>(value);
+                    if (kept)
+                        corner.push_back(vertex);
+                    else
+                        strip.add(vertex, builder, where);
                 }
                 if (kept) builder.face(corner, where);
             }
@@ -259,8 +287,8 @@ void check_kept(const MeshSource& source, const Header& header) {
     }
     if (vertices != 1 || (found & 0b1110U) != 0b1110U)
         source.refuse("the header does not declare vertices with x, y and z");
-    if ((found & 0b10000U) == 0)
-        source.refuse("the file has no faces with vertex_indices", "export triangles, not strips or points");
+    if ((found & 0b110000U) == 0)
+        source.refuse("the file has no faces with vertex_indices", "export triangles, not points");
 }
 
 }  // namespace

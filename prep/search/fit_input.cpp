@@ -1,7 +1,5 @@
 #include "prep/search/fit_input.hpp"
 
-#include <cstdio>
-
 #include "ipc/base/error.hpp"
 #include "ipc/base/units.hpp"
 #include "ipc/scene/density/normal_modes.hpp"
@@ -10,7 +8,7 @@
 #include "ipc/scene/file/scene_peek.hpp"
 #include "prep/export/poses_file.hpp"
 #include "prep/input/read_file.hpp"
-#include "prep/map/import_map.hpp"
+#include "prep/map/map_resolution.hpp"
 #include "prep/map/map_statistics.hpp"
 #include "prep/structure/import_structure.hpp"
 
@@ -19,31 +17,20 @@ namespace {
 
 constexpr std::uint64_t kPosesBytesMax = 4 << 20;
 
-// known_m: as the file states it; 0: it does not.
-double resolution_m(const FitInput& input, const DensityGrid& grid, double known_m) {
-    if (input.resolution_a) return *input.resolution_a * kAngstromM;
-    if (known_m > 0.0) return known_m;
-    const double voxel_a = grid.spacing_m.maxCoeff() / kAngstromM;
-    char fix[160];
-    std::snprintf(fix, sizeof fix,
-                  "give it with --resolution-a; with voxels of %.2f Å it is probably between %.1f and %.1f",
-                  voxel_a, 2.0 * voxel_a, 5.0 * voxel_a);
-    throw StartupError("fitting into " + input.map, "the resolution of the map is unknown", fix);
-}
-
 FitData from_files(const FitInput& input) {
     const auto refuse = [&](const char* why, const char* fix) {
-        throw StartupError("fitting into " + input.map, why, fix);
+        throw StartupError("fitting into " + input.map.path, why, fix);
     };
     if (input.models.empty()) refuse("no structure is given", "name PDB or mmCIF files after the map");
     if (!input.poses.empty() || input.body)
         refuse("--poses and --body need a baked docking scene",
                "bake one with tact-prep dock, or leave them out");
     FitData data;
-    data.grid = import_map(input.map).grid;
+    ReadMap map = read_map(input.map);
+    data.grid = std::move(map.grid);
     const MapStatistics statistics = map_statistics(data.grid);
-    data.metrics = {resolution_m(input, data.grid, 0.0), choose_contour(data.grid, statistics).level,
-                    statistics.background, statistics.sigma};
+    data.metrics = {map.resolution_m, choose_contour(data.grid, statistics).level, statistics.background,
+                    statistics.sigma};
     const auto read = [](const std::vector<std::string>& paths, std::vector<StructureAt>& list) {
         for (const std::string& path : paths) {
             Structure s = import_structure(path).structure;
@@ -58,20 +45,25 @@ FitData from_files(const FitInput& input) {
 
 FitData from_scene(const FitInput& input) {
     const auto refuse = [&](const std::string& why, const std::string& fix) {
-        throw StartupError("fitting in the scene " + input.map, why, fix);
+        throw StartupError("fitting in the scene " + input.map.path, why, fix);
     };
+    if (!input.map.mask.empty() || !input.map.half_maps.empty())
+        refuse("a scene holds its map as it was masked when it was baked",
+               "bake it with --mask and --half-map");
     if (!input.models.empty() || !input.fixed.empty())
         refuse("a scene holds its structures; files beside it are not used",
                "leave them out, or give the map itself in place of the scene");
-    const SceneFile scene = SceneFile::open(input.map);
+    const SceneFile scene = SceneFile::open(input.map.path);
     const SceneMeta meta = read_meta(scene);
     if (meta.body_count == 0)
         refuse("it has no structures", "use a docking scene, baked with tact-prep dock");
     FitData data;
     data.grid = read_grid(scene);
-    data.metrics = {resolution_m(input, data.grid, meta.resolution_m), meta.contour, meta.map_background,
-                    meta.map_sigma};
-    data.resolution_estimated = !input.resolution_a && resolution_is_estimated(read_note(scene));
+    const double resolution_m =
+        input.map.resolution_a ? *input.map.resolution_a * kAngstromM : meta.resolution_m;
+    if (!(resolution_m > 0.0)) refuse_unknown_resolution(input.map.path, data.grid.spacing_m);
+    check_resolution(resolution_m, "--resolution-a");
+    data.metrics = {resolution_m, meta.contour, meta.map_background, meta.map_sigma};
     std::vector<PlacedBody> bodies;
     if (input.poses.empty()) {
         for (std::uint32_t i = 0; i < meta.body_count; ++i)
@@ -97,10 +89,9 @@ FitData from_scene(const FitInput& input) {
 }  // namespace
 
 void FitInput::add_to(CLI::App& command) {
-    command.add_option("map", map, "Density map: MRC, CCP4 or Situs, also .gz")->required();
+    command.add_option("map", map.path, "Density map: MRC, CCP4 or Situs, also .gz")->required();
     command.add_option("models", models, "Structures: PDB or mmCIF, also .gz");
-    command.add_option("--resolution-a", resolution_a, "Resolution of the map (angstrom)")
-        ->check(CLI::PositiveNumber);
+    map.add_options(command);
     command
         .add_option(
             "--fixed", fixed,
@@ -122,7 +113,7 @@ void FitInput::add_scene_to(CLI::App& command) {
 
 std::vector<std::string> FitInput::paths() const {
     std::vector<std::string> all = models;
-    all.push_back(map);
+    for (const std::string& file : map.paths()) all.push_back(file);
     all.insert(all.end(), fixed.begin(), fixed.end());
     if (!poses.empty()) all.push_back(poses);
     return all;
@@ -135,7 +126,7 @@ std::vector<PlacedStructure> FitData::placed() const {
 }
 
 FitData read_fit_input(const FitInput& input) {
-    FitData data = is_scene(input.map) ? from_scene(input) : from_files(input);
+    FitData data = is_scene(input.map.path) ? from_scene(input) : from_files(input);
     data.rest = data.fixed.empty() ? data.grid
                                    : subtract_placed(data.grid, data.metrics.background, data.placed(),
                                                      data.metrics.resolution_m)

@@ -11,13 +11,13 @@
 
 #include "ipc/scene/density/simulated_map.hpp"
 #include "ipc/scene/fit/fit_metrics.hpp"
+#include "prep/map/read_map.hpp"
 
 namespace tact {
 
 struct FitInput {
-    std::string map;  // a map, or a scene
+    MapRequest map;  // a map, or a scene
     std::vector<std::string> models, fixed;
-    std::optional<double> resolution_a;
     // With a scene:
     std::string poses;                  // of its bodies (prep/export/poses_file.hpp); none: as baked
     std::optional<std::uint32_t> body;  // the only one to look for; none: each body
@@ -35,9 +35,8 @@ struct StructureAt {
 };
 
 struct FitData {
-    DensityGrid grid, rest;             // the map as it is, and without the fixed structures
-    FitSettings metrics;                // resolution, background, sigma and contour of the map
-    bool resolution_estimated = false;  // of a scene that was baked without one
+    DensityGrid grid, rest;  // the map as it is, and without the fixed structures
+    FitSettings metrics;     // resolution, background, sigma and contour of the map
     std::vector<StructureAt> models, fixed;
     [[nodiscard]] std::vector<PlacedStructure> placed() const;  // the fixed ones
 };

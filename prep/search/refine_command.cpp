@@ -4,6 +4,7 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
+#include "ipc/base/printed.hpp"
 #include "ipc/base/units.hpp"
 #include "ipc/base/whole_file.hpp"
 #include "ipc/scene/fit/refine.hpp"
@@ -11,10 +12,12 @@
 #include "prep/console/target.hpp"
 #include "prep/search/fit_input.hpp"
 #include "prep/search/fit_program.hpp"
-#include "prep/search/search.hpp"
+#include "prep/search/place_scorer.hpp"
 
 namespace tact {
 namespace {
+
+constexpr std::size_t kRandomPlaces = 300;
 
 struct RefineRequest {
     FitInput input;
@@ -37,14 +40,22 @@ const char* ended(RefineEnd end) {
     return "";
 }
 
+bool by_correlation(const RefineRequest& request) {
+    return request.objective == "laplacian" || request.objective == "correlation-mean";
+}
+
+SearchSettings settings_of(const FitData& data, const RefineRequest& request) {
+    return {.resolution_m = data.metrics.resolution_m,
+            .background = data.metrics.background,
+            .laplacian = request.objective == "laplacian",
+            .hits_max = 1};
+}
+
 // The best place within the range, or the nearest optimum.
 RefineResult by_search(const FitData& data, const StructureAt& model, const RefineRequest& request,
                        const Progress& progress) {
     const auto& [name, structure, start] = model;
-    SearchSettings settings{.resolution_m = data.metrics.resolution_m,
-                            .background = data.metrics.background,
-                            .laplacian = request.objective == "laplacian",
-                            .hits_max = 1};
+    SearchSettings settings = settings_of(data, request);
     if (!(request.range_a > 0.0)) return refine_place(data.rest, structure, settings, start);
     settings.near = SearchNear{start, request.range_a * kAngstromM, request.range_deg * kDegreeRad};
     RefineResult result;
@@ -58,8 +69,7 @@ RefineResult by_search(const FitData& data, const StructureAt& model, const Refi
 
 RefineResult refined(const FitData& data, const StructureAt& model, const RefineRequest& request,
                      const Progress& progress) {
-    if (request.objective == "laplacian" || request.objective == "correlation-mean")
-        return by_search(data, model, request, progress);
+    if (by_correlation(request)) return by_search(data, model, request, progress);
     RefineSettings settings;
     settings.goal = request.objective == "density" ? RefineGoal::mean_density : RefineGoal::correlation_zero;
     settings.resolution_m = data.metrics.resolution_m;
@@ -76,9 +86,8 @@ void run_refine(const RefineRequest& request) {
     const Progress progress = console.progress();
     report(progress, 0.0, "reading the map");
     const FitData data = read_fit_input(request.input);
-    nlohmann::ordered_json json{{"map", request.input.map},
+    nlohmann::ordered_json json{{"map", request.input.map.path},
                                 {"resolution_a", data.metrics.resolution_m / kAngstromM},
-                                {"resolution_estimated", data.resolution_estimated},
                                 {"objective", request.objective},
                                 {"fixed", request.input.fixed},
                                 {"bodies", nlohmann::ordered_json::array()}};
@@ -91,18 +100,31 @@ void run_refine(const RefineRequest& request) {
                     part(progress, static_cast<double>(i) / count, static_cast<double>(i + 1) / count));
         const double moved_a = (r.T_model_body.p_m - m.T_model_body.p_m).norm() / kAngstromM,
                      turned_deg = r.T_model_body.q.angularDistance(m.T_model_body.q) / kDegreeRad;
-        json["bodies"].push_back({{"model", m.name},
-                                  {"score_before", r.score_start},
-                                  {"score_after", r.score},
-                                  {"moved_a", moved_a},
-                                  {"turned_deg", turned_deg},
-                                  {"end", ended(r.end)},
-                                  {"matrix", matrix_of(m.structure, r.T_model_body)}});
-        char line[400];
-        std::snprintf(line, sizeof line, "%s: %s %.4f to %.4f, moved %.2f Å, turned %.2f degrees, %s\n",
-                      m.name.c_str(), request.objective.c_str(), r.score_start, r.score, moved_a, turned_deg,
-                      ended(r.end));
-        table += line;
+        nlohmann::ordered_json body{{"model", m.name},
+                                    {"score_before", r.score_start},
+                                    {"score_after", r.score},
+                                    {"moved_a", moved_a},
+                                    {"turned_deg", turned_deg},
+                                    {"end", ended(r.end)},
+                                    {"matrix", matrix_of(m.structure, r.T_model_body)}};
+        table +=
+            printed("%s: %s %.4f to %.4f, moved %.2f Å, turned %.2f degrees, %s\n", m.name.c_str(),
+                    request.objective.c_str(), r.score_start, r.score, moved_a, turned_deg, ended(r.end));
+        if (by_correlation(request)) {
+            const RandomScores random =
+                PlaceScorer(data.rest, m.structure, settings_of(data, request), data.metrics.resolution_m)
+                    .random_scores(kRandomPlaces);
+            body["z"] = random.z_of(r.score);
+            body["random"] = {{"places", random.places},
+                              {"mean", random.mean},
+                              {"deviation", random.deviation},
+                              {"best", random.best}};
+            table += printed(
+                "  z %.1f: standard deviations above %zu random places in the density, of which the best has "
+                "%.4f\n",
+                random.z_of(r.score), random.places, random.best);
+        }
+        json["bodies"].push_back(std::move(body));
     }
     console.clear();
     const std::string text = json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";

@@ -10,6 +10,7 @@
 
 #include "ipc/base/error.hpp"
 #include "ipc/scene/fit/refine.hpp"
+#include "prep/search/place_scorer.hpp"
 #include "prep/search/rotation_set.hpp"
 #include "prep/search/translation_search.hpp"
 
@@ -20,7 +21,6 @@ constexpr double kCoverShare = 0.5;
 constexpr std::size_t kRotationsLeast = 500, kPeaksPerRotation = 6;
 constexpr std::size_t kCoarseMost = 600, kFineMost = 100;
 constexpr double kCoarseApart = 0.4, kFineApart = 0.15;  // resolutions
-constexpr double kBeadsPerResolution = 5.0, kFineVoxelsPerResolution = 5.0;
 
 // Mean square distances of the atoms between two poses.
 class Spread {
@@ -102,35 +102,7 @@ struct Sums {
     double n = 0.0, sum = 0.0, sum_2 = 0.0;
 };
 
-// The score between places: with more voxels per resolution than in the search of positions, so that it depends less on
-// where the voxels are.
-class Refinement {
-public:
-    Refinement(const DensityGrid& map, const Structure& structure, const SearchSettings& settings,
-               double search_m)
-        : map_(search_map(map, settings.background, settings.resolution_m, search_m, settings.laplacian,
-                          kFineVoxelsPerResolution)),
-          beads_(coarse_structure(structure, map_.resolution_m / kBeadsPerResolution)),
-          density_(map_.grid, 0.0, 1.0),
-          points_(search_points(beads_, map_)) {}
-
-    [[nodiscard]] RefineResult from(const Pose& start, const RefineProgress& progress = {}) const {
-        RefineSettings by;
-        by.goal = RefineGoal::correlation_mean;
-        by.points = &points_;
-        by.step_m_max = 0.2 * map_.resolution_m;
-        by.iterations_max = 100;
-        return refine(density_, beads_, start, by, progress);
-    }
-
-private:
-    SearchMap map_;
-    Structure beads_;
-    DensityMap density_;
-    CorrelationPoints points_;
-};
-
-void refine_all(std::vector<SearchHit>& hits, const Refinement& refinement, unsigned threads,
+void refine_all(std::vector<SearchHit>& hits, const PlaceScorer& refinement, unsigned threads,
                 const Progress& progress) {
     for_all(hits.size(), threads, progress, "refining", [&](std::size_t i, unsigned) {
         const RefineResult r = refinement.from(hits[i].T_model_body);
@@ -200,14 +172,14 @@ SearchResult search(const DensityGrid& map, const Structure& structure, const Se
         std::sqrt(std::max(all.sum_2 / std::max(all.n, 1.0) - result.random_mean * result.random_mean, 0.0));
     found = thinned(std::move(found), spread, kCoarseApart * coarse.resolution_m, kCoarseMost);
 
-    const auto refined = [&](const Refinement& refinement, double resolution_m, const Progress& part_of) {
+    const auto refined = [&](const PlaceScorer& refinement, double resolution_m, const Progress& part_of) {
         refine_all(found, refinement, threads, part_of);
         found = thinned(std::move(found), spread, kFineApart * resolution_m, kFineMost);
     };
     if (result.search_resolution_m > 1.05 * settings.resolution_m)
-        refined(Refinement(map, structure, settings, result.search_resolution_m), result.search_resolution_m,
+        refined(PlaceScorer(map, structure, settings, result.search_resolution_m), result.search_resolution_m,
                 part(progress, 0.7, 0.85));
-    const Refinement fine(map, structure, settings, settings.resolution_m);
+    const PlaceScorer fine(map, structure, settings, settings.resolution_m);
     if (settings.near) {
         // Uphill at the resolution of the map, so that nothing worse than the given place comes first.
         const RefineResult r = fine.from(settings.near->place);
@@ -222,14 +194,12 @@ SearchResult search(const DensityGrid& map, const Structure& structure, const Se
 
 RefineResult refine_place(const DensityGrid& map, const Structure& structure, const SearchSettings& settings,
                           const Pose& start, const RefineProgress& progress) {
-    return Refinement(map, structure, settings, settings.resolution_m).from(start, progress);
+    return PlaceScorer(map, structure, settings, settings.resolution_m).from(start, progress);
 }
 
 double place_score(const DensityGrid& map, const Structure& structure, const SearchSettings& settings,
                    const Pose& place) {
-    return Refinement(map, structure, settings, settings.resolution_m)
-        .from(place, [](std::uint32_t, double) { return false; })
-        .score_start;
+    return PlaceScorer(map, structure, settings, settings.resolution_m).score(place);
 }
 
 }  // namespace tact

@@ -56,9 +56,11 @@ SearchReport search_files(const SearchRequest& request, const Progress& progress
                                   .rotations_max = request.rotations_max,
                                   .hits_max = request.hits_max,
                                   .threads = request.threads};
-    SearchReport out{
-        request.input.map, request.objective, settings.resolution_m / kAngstromM, request.input.fixed, {}};
-    out.resolution_estimated = data.resolution_estimated;
+    SearchReport out{request.input.map.path,
+                     request.objective,
+                     settings.resolution_m / kAngstromM,
+                     request.input.fixed,
+                     {}};
     const std::size_t models = data.models.size();
     for (std::size_t i = 0; i < models; ++i) {
         SearchedModel& m = out.models.emplace_back();

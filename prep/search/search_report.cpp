@@ -1,23 +1,11 @@
 #include "prep/search/search_report.hpp"
 
-#include <cstdarg>
-#include <cstdio>
-
+#include "ipc/base/printed.hpp"
 #include "ipc/base/units.hpp"
 #include "prep/search/fit_input.hpp"
 
 namespace tact {
 namespace {
-
-std::string text(const char* format, ...) __attribute__((format(printf, 1, 2)));
-std::string text(const char* format, ...) {
-    char line[400];
-    va_list values;
-    va_start(values, format);
-    std::vsnprintf(line, sizeof line, format, values);
-    va_end(values);
-    return line;
-}
 
 struct Axis {
     Vec3 direction, through_a;
@@ -37,17 +25,14 @@ std::string quoted(const std::string& field) {
 
 std::string as_table(const SearchReport& r) {
     std::string out;
-    if (r.resolution_estimated)
-        out += text("the resolution of %.1f Å is an estimate, four voxels: give it with --resolution-a\n",
-                    r.resolution_a);
     for (const SearchedModel& m : r.models) {
         out += m.model + ": " +
-               text("%zu atoms, %zu orientations, within %.1f degrees, searched at %.1f Å, %.1f s\n",
-                    m.structure.size(), m.found.rotations, m.found.cover_rad / kDegreeRad,
-                    m.found.search_resolution_m / kAngstromM, m.seconds);
+               printed("%zu atoms, %zu orientations, within %.1f degrees, searched at %.1f Å, %.1f s\n",
+                       m.structure.size(), m.found.rotations, m.found.cover_rad / kDegreeRad,
+                       m.found.search_resolution_m / kAngstromM, m.seconds);
         if (m.copies) {
             const auto [axis, through_a] = axis_of(m.copies->place);
-            out += text(
+            out += printed(
                 "  %zu copies by %s, axis %.4f %.4f %.4f through %.1f %.1f %.1f Å; together: correlation "
                 "%.4f; "
                 "refined without symmetry their atoms are %.2f Å away\n",
@@ -58,26 +43,25 @@ std::string as_table(const SearchReport& r) {
         if (m.found.hits.empty())
             out += "  no place found\n";
         else
-            out += text("%5s %8s %7s %14s %8s   %s\n", m.copies ? "copy" : "rank", "score", "z",
-                        "cc about mean", "clashes", "centre, Å");
+            out += printed("%5s %8s %7s %14s %8s   %s\n", m.copies ? "copy" : "rank", "score", "z",
+                           "cc about mean", "clashes", "centre, Å");
         for (std::size_t i = 0; i < m.found.hits.size(); ++i) {
             const SearchHit& hit = m.found.hits[i];
             const Vec3 at_a = hit.T_model_body.p_m / kAngstromM;
-            out += text("%5zu %8.4f %7.2f %14.4f %8llu   %.1f %.1f %.1f\n", i + 1, hit.score, hit.z,
-                        m.cc_about_mean[i], static_cast<unsigned long long>(m.clashes[i]), at_a.x(), at_a.y(),
-                        at_a.z());
+            out += printed("%5zu %8.4f %7.2f %14.4f %8llu   %.1f %.1f %.1f\n", i + 1, hit.score, hit.z,
+                           m.cc_about_mean[i], static_cast<unsigned long long>(m.clashes[i]), at_a.x(),
+                           at_a.y(), at_a.z());
         }
     }
     if (r.together_correlation)
-        out +=
-            text("all together: correlation about zero %.4f, over the whole map\n", *r.together_correlation);
+        out += printed("all together: correlation about zero %.4f, over the whole map\n",
+                       *r.together_correlation);
     return out;
 }
 
 nlohmann::ordered_json as_json(const SearchReport& r) {
     nlohmann::ordered_json json{{"map", r.map},
                                 {"resolution_a", r.resolution_a},
-                                {"resolution_estimated", r.resolution_estimated},
                                 {"objective", r.objective},
                                 {"fixed", r.fixed},
                                 {"hits", nlohmann::ordered_json::array()},
@@ -120,15 +104,15 @@ std::string as_csv(const SearchReport& r) {
     for (int i = 0; i < 12; ++i) out += ",m" + std::to_string(i);
     out += "\n";
     for (const SearchedModel& m : r.models) {
-        out += quoted(r.map) + "," + quoted(m.model) + text(",%g,", r.resolution_a) + r.objective;
+        out += quoted(r.map) + "," + quoted(m.model) + printed(",%g,", r.resolution_a) + r.objective;
         if (m.found.hits.empty()) {
-            out += text(",,,,,%.2f,,,,,,,,,,,,\n", m.seconds);
+            out += printed(",,,,,%.2f,,,,,,,,,,,,\n", m.seconds);
             continue;
         }
         const SearchHit& hit = m.found.hits.front();
-        out += text(",%.6f,%.4f,%.6f,%llu,%.2f", hit.score, hit.z, m.cc_about_mean[0],
-                    static_cast<unsigned long long>(m.clashes[0]), m.seconds);
-        for (const double v : matrix_of(m.structure, hit.T_model_body)) out += text(",%.8g", v);
+        out += printed(",%.6f,%.4f,%.6f,%llu,%.2f", hit.score, hit.z, m.cc_about_mean[0],
+                       static_cast<unsigned long long>(m.clashes[0]), m.seconds);
+        for (const double v : matrix_of(m.structure, hit.T_model_body)) out += printed(",%.8g", v);
         out += "\n";
     }
     return out;

@@ -30,7 +30,6 @@ struct SearchReport {
     double resolution_a = 0.0;
     std::vector<std::string> fixed;
     std::vector<SearchedModel> models;
-    bool resolution_estimated = false;
     std::optional<double> together_correlation{};  // of all models together (joint_fit.hpp)
 };
 

@@ -13,7 +13,7 @@
 #include "ipc/scene/density/density_map.hpp"
 #include "ipc/scene/density/structure.hpp"
 #include "ipc/scene/fit/refine.hpp"
-#include "prep/search/fft_volume.hpp"
+#include "prep/map/fft_volume.hpp"
 
 namespace tact {
 
@@ -38,6 +38,7 @@ struct SearchMap {
 // The values that such a map would have in the region of the structure, on a grid of the structure.
 [[nodiscard]] CorrelationPoints search_points(const Structure& structure, const SearchMap& map);
 
+inline constexpr double kBeadsPerResolution = 5.0;  // cubes along the resolution of the search
 // At most one atom per cube of cell_m, with the weight of the atoms that it stands for.
 [[nodiscard]] Structure coarse_structure(const Structure& structure, double cell_m);
 [[nodiscard]] double radius_m(const Structure& structure);  // about the origin

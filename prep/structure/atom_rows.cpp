@@ -36,7 +36,7 @@ std::optional<double> number(std::string_view text) {
 }
 
 // Keeps only printable characters of a malicious file in messages.
-std::string printable(std::string_view text, std::size_t longest) {
+std::string shortly(std::string_view text, std::size_t longest) {
     std::string out(text.substr(0, longest));
     for (char& c : out) {
         if (static_cast<unsigned char>(c) < 0x20 || static_cast<unsigned char>(c) >= 0x7f) c = '?';
@@ -47,7 +47,7 @@ std::string printable(std::string_view text, std::size_t longest) {
 double coordinate(std::string_view text, const char* axis, const std::string& name,
                   const std::string& where) {
     const std::optional<double> value = number(trimmed(text));
-    const std::string shown = std::string(axis) + " '" + printable(trimmed(text), 16) + "'";
+    const std::string shown = std::string(axis) + " '" + shortly(trimmed(text), 16) + "'";
     if (!value || !std::isfinite(*value))
         throw StartupError("read structure " + name, where + ": " + shown + " is not a number", kFixFile);
     if (std::abs(*value) > kFarthestA) {
@@ -108,7 +108,7 @@ std::vector<AtomRow> pdb_rows(std::string_view text, const std::string& name) {
     try {
         structure = gemmi::read_pdb_from_memory(atoms.data(), atoms.size(), name);
     } catch (const std::exception& error) {
-        throw StartupError("read structure " + name, printable(error.what(), 200), kFixFile);
+        throw StartupError("read structure " + name, shortly(error.what(), 200), kFixFile);
     }
     if (structure.models.empty()) return rows;
     rows.reserve(rows_seen);
@@ -116,7 +116,7 @@ std::vector<AtomRow> pdb_rows(std::string_view text, const std::string& name) {
         for (const gemmi::Residue& residue : chain.residues) {
             for (const gemmi::Atom& atom : residue.atoms) {
                 AtomRow row;
-                row.chain = printable(chain.name, 8);
+                row.chain = shortly(chain.name, 8);
                 row.residue_name = residue.name;
                 row.atom_name = atom.name;
                 row.residue = residue.seqid.num.has_value() ? *residue.seqid.num : 0;
@@ -137,7 +137,7 @@ std::vector<AtomRow> mmcif_rows(std::string_view text, const std::string& name) 
     try {
         document = CifDocument::read(text, name);
     } catch (const std::exception& error) {
-        throw StartupError("read structure " + name, printable(error.what(), 200), kFixFile);
+        throw StartupError("read structure " + name, shortly(error.what(), 200), kFixFile);
     }
     std::vector<AtomRow> rows;
     for (std::size_t block = 0; block < document->blocks(); ++block) {
@@ -181,7 +181,7 @@ std::vector<AtomRow> mmcif_rows(std::string_view text, const std::string& name) 
             row.position_a = Vec3(coordinate(table.raw(index, x), "Cartn_x", name, where),
                                   coordinate(table.raw(index, y), "Cartn_y", name, where),
                                   coordinate(table.raw(index, z), "Cartn_z", name, where));
-            row.chain = printable(either(auth_chain, label_chain), 8);
+            row.chain = shortly(either(auth_chain, label_chain), 8);
             row.residue_name = either(auth_name, residue_name);
             row.atom_name = either(auth_atom, label_atom);
             const std::string sequence = either(auth_seq, label_seq);
@@ -190,8 +190,7 @@ std::vector<AtomRow> mmcif_rows(std::string_view text, const std::string& name) 
                 if (!value || !(std::abs(*value) <= 1e9))
                     throw StartupError(
                         "read structure " + name,
-                        where + ": residue number '" + printable(sequence, 16) + "' is not a number",
-                        kFixFile);
+                        where + ": residue number '" + shortly(sequence, 16) + "' is not a number", kFixFile);
                 row.residue = static_cast<std::int32_t>(*value);
             }
             const std::string icode = text_of(insertion), altloc = text_of(alternate),

@@ -3,6 +3,7 @@
 #include <unordered_map>
 
 #include "ipc/base/error.hpp"
+#include "ipc/base/printable.hpp"
 #include "ipc/base/units.hpp"
 #include "prep/structure/atom_rows.hpp"
 
@@ -13,11 +14,7 @@ constexpr double kWidestA = 2e4;  // two micrometres; BODY sections allow ten
 
 // File names may contain control characters; text in sections may not.
 std::string plain_name(const std::string& name) {
-    std::string out = std::filesystem::path(name).filename().string().substr(0, 255);
-    for (char& c : out) {
-        if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) c = '?';
-    }
-    return out;
+    return printable(std::filesystem::path(name).filename().string().substr(0, 255));
 }
 
 }  // namespace

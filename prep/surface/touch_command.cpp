@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "ipc/base/error.hpp"
+#include "ipc/base/printable.hpp"
 #include "ipc/version/version.hpp"
 #include "prep/console/console.hpp"
 #include "prep/console/scene_report.hpp"
@@ -39,13 +40,6 @@ struct TouchSettings {
     bool no_picture = false, no_forest = false, compare_locality = false, json = false;
 };
 
-std::string shown_plain(std::string text) {
-    for (char& c : text) {
-        if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) c = '?';
-    }
-    return text;
-}
-
 // Converts from the file's unit to metres, y up.
 void to_metres(TriangleMesh& mesh, const std::string& name, const std::string& up) {
     const auto unit =
@@ -75,7 +69,7 @@ void add_tool(const TouchSettings& o, SurfaceInput& input, const Progress& progr
         to_metres(in.mesh, o.tool_unit, o.tool_up);
         input.tool = std::move(in.mesh);
         input.tool_sampling.grip_in_middle = o.tool_grip == "middle";
-        input.note.push_back("tool mesh: " + shown_plain(fs::absolute(o.tool).string()));
+        input.note.push_back("tool mesh: " + printable(fs::absolute(o.tool).string()));
         input.note.push_back("tool unit: " + o.tool_unit + ", " + o.tool_up +
                              " up, grip point: " + o.tool_grip);
         input.note.push_back("tool repairs: " + (cleaned.changed() ? cleaned.words() : std::string("none")));
@@ -97,10 +91,10 @@ SurfaceInput touch_file(const TouchSettings& o, const Progress& progress) {
     });
     const CleanReport cleaned = clean_mesh(in.mesh, 0.0, part(progress, 0.5, 1.0));
     to_metres(in.mesh, o.unit, o.up);
-    input.note = {"mesh: " + shown_plain(fs::absolute(o.mesh).string()), "mesh format: " + in.format,
+    input.note = {"mesh: " + printable(fs::absolute(o.mesh).string()), "mesh format: " + in.format,
                   "mesh unit: " + o.unit + ", " + o.up + " up",
                   "mesh repairs: " + (cleaned.changed() ? cleaned.words() : std::string("none"))};
-    input.title = shown_plain(fs::path(o.mesh).filename().string());
+    input.title = printable(fs::path(o.mesh).filename().string());
     input.mesh = std::move(in.mesh);
     return input;
 }

@@ -85,14 +85,13 @@ ExperimentScene make_experiment_scene(const std::filesystem::path& folder, const
         write_whole(folder / "fine.mrc", map_file_bytes(finer(grid, meta, scale.map_finer)));
         write_whole(folder / "one.pdb", pdb_of(structure));
         bake({"dock", (folder / "fine.mrc").string(), (folder / "one.pdb").string(), "--contour",
-              std::to_string(meta.contour)},
+              std::to_string(meta.contour), "--resolution-a", "12"},
              fine_path);
     }
     const SceneFile fine = SceneFile::open(fine_path);
 
     ExperimentScene made;
     made.path = folder / "experiment.tact";
-    meta.resolution_m = 0.0;
     SceneWriter out;
     write_meta(out, meta,
                "made by: tact reproduce governor\nscale: map x " + std::to_string(scale.map_finer) +

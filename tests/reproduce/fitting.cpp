@@ -77,6 +77,37 @@ double rmsd_m(const Structure& s, const Pose& a, const Pose& b) {
     return std::sqrt(sum / static_cast<double>(s.size()));
 }
 
+// The same where equal chains may have changed places, as in a ring of copies that is turned by one: each chain at `a` against the
+// nearest one at `b` with as many atoms; large unless that pairs them all.
+double rmsd_of_equal_m(const Structure& s, const Pose& a, const Pose& b) {
+    std::vector<std::pair<std::size_t, std::size_t>> chains;  // first atom, atoms
+    for (std::size_t i = 0; i < s.size(); ++i) {
+        if (i == 0 || s.chain[i] != s.chain[i - 1]) chains.emplace_back(i, 0);
+        ++chains.back().second;
+    }
+    const auto at = [&](std::size_t i) {
+        return Vec3(static_cast<double>(s.x_m[i]), static_cast<double>(s.y_m[i]),
+                    static_cast<double>(s.z_m[i]));
+    };
+    std::vector<bool> taken(chains.size(), false);
+    double sum = 0.0;
+    for (const auto& [first, atoms] : chains) {
+        double least = 1.0;
+        std::size_t with = chains.size();
+        for (std::size_t k = 0; k < chains.size(); ++k) {
+            if (taken[k] || chains[k].second != atoms) continue;
+            double squares = 0.0;
+            for (std::size_t i = 0; i < atoms; ++i)
+                squares += (a * at(first + i) - b * at(chains[k].first + i)).squaredNorm();
+            if (squares < least) least = squares, with = k;
+        }
+        if (with == chains.size()) return 1.0;
+        taken[with] = true;
+        sum += least;
+    }
+    return std::sqrt(sum / static_cast<double>(s.size()));
+}
+
 // A structure whose atoms are turned; its place in the map is then the inverse rotation. So a search has no advantage from
 // the orientation of the file.
 Structure turned(const Structure& s, const Quat& by) {
@@ -145,7 +176,8 @@ private:
             if (off_m < kRightM) {
                 ++row.right;
                 away.push_back(rmsd_m(s, place, s.home()) / kAngstromM);
-            } else if (std::abs(score - answer.score) < kEqualScore) {
+            } else if (rmsd_of_equal_m(s, place, answer.T_model_body) < kRightM ||
+                       std::abs(score - answer.score) < kEqualScore) {
                 ++row.equal;
             }
         }

@@ -62,10 +62,10 @@ TEST(PosesCsv, names_the_invalid_line) {
 }
 
 // A Gaussian blob and a body of four atoms.
-void write_scene(const std::filesystem::path& path) {
+void write_scene(const std::filesystem::path& path, std::uint32_t bodies = 1) {
     SceneMeta meta{};
     meta.kind = SceneKind::docking;
-    meta.body_count = 1;
+    meta.body_count = bodies;
     meta.world_per_model = 1e7;
     for (double& c : meta.centre_model_m) c = 30e-10;
     meta.energy_j_per_sigma = 0.02;
@@ -101,8 +101,13 @@ void write_scene(const std::filesystem::path& path) {
     SceneWriter out;
     write_meta(out, meta, "test: yes");
     write_grid(out, grid);
-    write_structure(out, 0, body);
-    write_codebook(out, 0, Codebook{});
+    for (std::uint32_t i = 0; i < bodies; ++i) {
+        write_structure(out, i, body);
+        write_codebook(out, i, Codebook{});
+        body.name = "beside";
+        body.home_com_model_m.x() += 8e-10;
+        for (float& y : body.y_m) y *= 1.5F;
+    }
     out.write(path);
 }
 
@@ -124,7 +129,7 @@ TEST(Eval, writes_the_force_of_the_servos_model_for_every_pose) {
     write_scene(scene);
     std::ofstream(poses)
         << kHeader << "0,0,0,0,0,0,0,1\n0.1,0.01,0,0,0,0,0,1\n0.2,0.01,-0.004,0.003,0.1,0.2,0.3,0.927\n";
-    const EvalSummary summary = run_eval(scene, poses, out, 1.0);
+    const EvalSummary summary = run_eval({scene, poses, out, 1.0});
     EXPECT_EQ(summary.poses, 3U);
     EXPECT_EQ(summary.not_ok, 0U);
     const auto table = rows(out);
@@ -150,17 +155,51 @@ TEST(Eval, writes_the_force_of_the_servos_model_for_every_pose) {
     }
 }
 
+// Each option and each body, against a model that is set up by orders.
+TEST(Eval, takes_every_body_and_option) {
+    const ScratchFolder folder;
+    const auto scene = folder.path() / "scene.tact", poses = folder.path() / "in.csv",
+               out = folder.path() / "out.csv";
+    write_scene(scene, 2);
+    std::ofstream(poses) << kHeader << "0,0.006,0.001,0,0.1,0.2,0.3,0.927\n";
+    const std::vector<TimedPose> given = read_poses_csv(poses);
+    std::vector<double> seen;
+    for (const std::uint32_t id : {1U, 2U})
+        for (const std::uint32_t options :
+             {0U, static_cast<std::uint32_t>(kDockingClash), static_cast<std::uint32_t>(kDockingSubtraction),
+              static_cast<std::uint32_t>(kDockingLaplacian)}) {
+            EXPECT_EQ(run_eval({scene, poses, out, 1.0, id, options}).not_ok, 0U);
+            const double force_n = std::stod(rows(out)[1][1]);
+            for (const double other : seen)
+                EXPECT_GT(std::abs(force_n - other), 1e-6) << id << " " << options;
+            seen.push_back(force_n);
+            auto model = load_docking_model(SceneFile::open(scene), {});
+            ModelOrder select;
+            select.body = id;
+            ASSERT_TRUE(model->order(select));
+            EXPECT_TRUE(options == 0 || model->set_options(options, true));
+            const auto made = model->rebuild(model->bodies());
+            ASSERT_TRUE(made->adopt(*model));
+            const Pose body{model->meta().to_model(given[0].T_world_tool.p_m), given[0].T_world_tool.q};
+            const double expected_n =
+                dynamic_cast<DockingModel&>(*made).evaluate(body, Budget{}).wrench_world.force_n.x();
+            EXPECT_NEAR(force_n, expected_n, 1e-8 * (1.0 + std::abs(expected_n)));
+        }
+    EXPECT_THROW(run_eval({scene, poses, out, 1.0, 3}), StartupError);
+    EXPECT_THROW(run_eval({scene, poses, out, 1.0, 0}), StartupError);
+}
+
 TEST(Eval, fails_with_a_message_and_leaves_no_partial_file) {
     const ScratchFolder folder;
     const auto scene = folder.path() / "scene.tact", poses = folder.path() / "in.csv",
                out = folder.path() / "out.csv";
     write_scene(scene);
     std::ofstream(poses) << kHeader << "0,0,0,0,0,0,0,1\n0,0,0,0,0,0,0,what\n";
-    EXPECT_THROW(run_eval(scene, poses, out, 1.0), StartupError);
+    EXPECT_THROW(run_eval({scene, poses, out, 1.0}), StartupError);
     std::ofstream(poses) << kHeader << "0,0,0,0,0,0,0,1\n";
-    EXPECT_THROW(run_eval(folder.path() / "none.tact", poses, out, 1.0), StartupError);
-    EXPECT_THROW(run_eval(scene, poses, out, 1.5), StartupError);
-    EXPECT_THROW(run_eval(scene, poses, out, std::nan("")), StartupError);
+    EXPECT_THROW(run_eval({folder.path() / "none.tact", poses, out, 1.0}), StartupError);
+    EXPECT_THROW(run_eval({scene, poses, out, 1.5}), StartupError);
+    EXPECT_THROW(run_eval({scene, poses, out, std::nan("")}), StartupError);
     EXPECT_FALSE(std::filesystem::exists(out));
 }
 

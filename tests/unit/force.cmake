@@ -2,7 +2,7 @@
 tact_tests(force_docking_tests SOURCES
         unit/force_fade_test.cpp unit/force_docking_levels_test.cpp unit/force_docking_stiffness_test.cpp
         unit/force_partial_sums_test.cpp unit/force_clash_test.cpp unit/force_docking_options_test.cpp
-        unit/force_basin_pull_test.cpp
+        unit/force_basin_pull_test.cpp unit/force_together_test.cpp
     USES force scene reference SYSTEM rapidcheck)
 tact_test(unit/force_flexible_test.cpp USES force scene prep_codebook prep_modes prep_synthetic)
 tact_test(unit/force_docking_test.cpp USES force)

@@ -347,7 +347,8 @@ TEST(DockingOptions, a_command_turns_its_option_on_and_off) {
                                           std::pair(CommandKind::set_subtraction, kDockingSubtraction),
                                           std::pair(CommandKind::set_laplacian, kDockingLaplacian),
                                           std::pair(CommandKind::set_pull, kDockingPull),
-                                          std::pair(CommandKind::set_flexible, kDockingFlexible)}) {
+                                          std::pair(CommandKind::set_flexible, kDockingFlexible),
+                                          std::pair(CommandKind::set_together, kDockingTogether)}) {
         order.command = static_cast<std::uint8_t>(command);
         order.on = true;
         ASSERT_TRUE(model->order(order));

@@ -388,6 +388,39 @@ TEST_F(GuiDrawScene, a_second_hand_is_drawn_with_its_force_and_the_wall_it_touch
     EXPECT_EQ(force(Vec3::Constant(std::nan("")), true), alone);
 }
 
+TEST_F(GuiDrawScene, a_body_coloured_by_its_fit_has_the_given_colours_and_is_grey_without) {
+    const std::size_t atoms = docking_of(*content_).bodies[0].size();
+    std::vector<Rgb8> halves(atoms, Rgb8{255, 0, 0});
+    std::fill(halves.begin() + static_cast<std::ptrdiff_t>(atoms / 2), halves.end(), Rgb8{0, 0, 255});
+    // Pixels in which one channel exceeds the others by far.
+    const auto strong = [](const Image& image, std::size_t channel) {
+        std::size_t count = 0;
+        for (std::size_t i = 0; i + 2 < image.rgb.size(); i += 3) {
+            const int own = image.rgb[i + channel];
+            if (own > 60 + std::max<int>(image.rgb[i + (channel + 1) % 3], image.rgb[i + (channel + 2) % 3]))
+                ++count;
+        }
+        return count;
+    };
+    for (const auto style :
+         {MoleculeStyle::trace, MoleculeStyle::tube, MoleculeStyle::sticks, MoleculeStyle::spheres}) {
+        layer_.emplace(content_, *programs_);
+        view_->set_layer(&*layer_);
+        layer_->frame.codebook = layer_->frame.graph = false;
+        layer_->molecules().set_look({style, Colouring::fit});
+        const Image grey = picture(std::array{home_});
+        EXPECT_LT(strong(grey, 0) + strong(grey, 2), 5U);
+        layer_->molecules().set_fit_colours(home_.id, halves);
+        const Image painted = picture(std::array{home_});
+        EXPECT_GT(strong(painted, 0), 30U) << static_cast<int>(style);
+        EXPECT_GT(strong(painted, 2), 30U) << static_cast<int>(style);
+        layer_->molecules().set_fit_colours(home_.id, {Rgb8{255, 0, 0}});  // of another structure
+        EXPECT_EQ(picture(std::array{home_}).rgb, grey.rgb);
+        layer_->molecules().set_look({style, Colouring::chain});
+        EXPECT_NE(picture(std::array{home_}).rgb, grey.rgb);
+    }
+}
+
 TEST_F(GuiDrawScene, a_style_applies_to_one_body_and_a_limit_turns_spheres_into_tubes) {
     DrawnBody copy = home_;
     copy.id = 2;

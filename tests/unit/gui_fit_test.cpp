@@ -4,6 +4,7 @@
 #include <thread>
 
 #include "gui/docking/docking_content.hpp"
+#include "gui/docking/fit_colours.hpp"
 #include "gui/docking/fit_worker.hpp"
 #include "tests/unit/gui_fake.hpp"
 
@@ -43,7 +44,6 @@ TEST(FitWorker, gives_the_metrics_of_the_newest_pose) {
         c->grid, placed, {.resolution_m = 12e-10, .contour = 0.5, .background = 0.0, .sigma = 1.0});
     EXPECT_DOUBLE_EQ(first.all.cc_zero, direct.cc_zero);
     EXPECT_DOUBLE_EQ(first.all.cc_mean, direct.cc_mean);
-    EXPECT_FALSE(first.resolution_assumed);
 
     std::vector<FitBody> away = home;
     away[0].T_model_body.p_m.x() += 8e-10;
@@ -98,26 +98,6 @@ TEST(FitWorker, does_no_work_without_motion) {
     EXPECT_FALSE(worker.take(outcome));
 }
 
-TEST(FitWorker, reports_an_assumed_resolution) {
-    const auto c = content();
-    c->meta.resolution_m = 0.0;
-    FitWorker worker(c, Duration(0));
-    worker.request(at_home(*c));
-    const FitOutcome outcome = next(worker, {});
-    EXPECT_TRUE(outcome.resolution_assumed);
-    EXPECT_NEAR(outcome.resolution_m, 4.0 * 40.0 / 23.0 * 1e-10, 1e-15);
-}
-
-TEST(FitWorker, reports_a_resolution_that_the_bake_estimated) {
-    const auto c = content();
-    c->note = "map: x\nresolution: 12 Å, " + std::string(kResolutionEstimated) + "; --resolution-a sets it\n";
-    FitWorker worker(c, Duration(0));
-    worker.request(at_home(*c));
-    const FitOutcome outcome = next(worker, {});
-    EXPECT_TRUE(outcome.resolution_assumed);
-    EXPECT_EQ(outcome.resolution_m, 12e-10);
-}
-
 TEST(FitWorker, ends_at_once_without_a_request) { const FitWorker worker(content()); }
 
 TEST(Moved, ignores_motion_below_the_displayed_precision) {
@@ -135,6 +115,53 @@ TEST(Moved, ignores_motion_below_the_displayed_precision) {
     b = a;
     b[0].structure = 1;
     EXPECT_TRUE(moved(a, b));
+}
+
+TEST(FitWorker, residues_come_in_a_second_outcome_and_are_those_of_each_body_with_all_others) {
+    const auto c = content();
+    FitWorker worker(c, Duration(0));
+    std::vector<FitBody> bodies = at_home(*c);
+    bodies.push_back(bodies[0]);
+    bodies[1].id = 77;
+    bodies[1].T_model_body.p_m.x() += 9e-10;
+    worker.request(bodies, {}, true);
+    FitOutcome outcome = next(worker, {});
+    EXPECT_TRUE(outcome.good);
+    while (!outcome.residues_current) outcome = next(worker, outcome);
+    ASSERT_EQ(outcome.residues.size(), 2U);
+    const Structure& s = docking_of(*c).bodies[0];
+    for (std::size_t i = 0; i < 2; ++i) {
+        const PlacedStructure placed[] = {{&s, bodies[i].T_model_body}, {&s, bodies[1 - i].T_model_body}};
+        const std::vector<ResidueFit> direct = residue_fit(
+            c->grid, placed, {.resolution_m = 12e-10, .contour = 0.5, .background = 0.0, .sigma = 1.0}, 9);
+        ASSERT_EQ(outcome.residues[i].size(), direct.size());
+        ASSERT_FALSE(direct.empty());
+        for (std::size_t r = 0; r < direct.size(); ++r) {
+            EXPECT_EQ(outcome.residues[i][r].residue, direct[r].residue);
+            EXPECT_EQ(outcome.residues[i][r].correlation, direct[r].correlation);
+        }
+    }
+    bodies[0].T_model_body.p_m.y() += 5e-10;
+    worker.request(bodies, {}, true);
+    FitOutcome later = next(worker, outcome);
+    EXPECT_EQ(later.residues.size(), 2U) << "those of the old places stay until there are new ones";
+    while (!later.residues_current || later.residues[0][0].correlation == outcome.residues[0][0].correlation)
+        later = next(worker, later);
+}
+
+TEST(FitColours, go_from_red_to_blue_and_are_grey_where_nothing_is_known) {
+    EXPECT_EQ(fit_colour({}), kUnknownFit);
+    EXPECT_EQ(fit_colour(-1.0), fit_colour(kPoorFit));
+    EXPECT_EQ(fit_colour(kGoodFit), fit_colour(1.1));
+    EXPECT_GT(fit_colour(kPoorFit)[0], fit_colour(kPoorFit)[2] + 100);
+    EXPECT_GT(fit_colour(kGoodFit)[2], fit_colour(kGoodFit)[0] + 100);
+    const std::vector<ResidueFit> residues{{0, 5, 1, 2, 0.0, 1.0}, {0, 6, 3, 9, 0.0, std::nullopt}};
+    const std::vector<Rgb8> colours = fit_colours(5, residues);  // fewer atoms than the residues claim
+    ASSERT_EQ(colours.size(), 5U);
+    EXPECT_EQ(colours[0], kUnknownFit);
+    EXPECT_EQ(colours[1], fit_colour(1.0));
+    EXPECT_EQ(colours[2], fit_colour(1.0));
+    EXPECT_EQ(colours[4], kUnknownFit);
 }
 
 }  // namespace

@@ -102,6 +102,39 @@ TEST_F(Import, clicked_rows_are_marked_and_imported_together) {
     EXPECT_TRUE(state_.marks_text.empty());
 }
 
+TEST_F(Import, a_map_is_imported_only_after_its_resolution_is_typed) {
+    const std::string map = (folder_ / "map.mrc").string(), model = (folder_ / "a.pdb").string();
+    std::ofstream(map) << "no map";
+    std::ofstream(model) << "no structure";
+    BrowserController dashboard({});
+    const auto type = [&](const char* words) {
+        std::snprintf(state_.asked->answer.data(), state_.asked->answer.size(), "%s", words);
+        state_.asked->answered = true;
+        dashboard.follow(state_);
+    };
+    dashboard.drop({map, model}, state_);
+    dashboard.follow(state_);
+    ASSERT_TRUE(state_.asked);
+    EXPECT_FALSE(state_.importing);
+    EXPECT_EQ(state_.asked->import, "Dock a.pdb into map.mrc.");
+    EXPECT_STREQ(state_.asked->question->label, "Resolution of the map");
+    for (const char* const wrong : {"", "0", "-7", "1e9", "seven", "7 ", "nan", "inf"}) {
+        type(wrong);
+        ASSERT_TRUE(state_.asked) << wrong;
+        EXPECT_FALSE(value_of(*state_.asked)) << wrong;
+    }
+    state_.asked->cancelled = true;
+    dashboard.follow(state_);
+    EXPECT_FALSE(state_.asked);
+    dashboard.drop({map, model}, state_);
+    type("7.5");
+    EXPECT_FALSE(state_.asked);
+    until_done(dashboard);
+    // Beyond the resolution: the map itself is wrong.
+    EXPECT_NE(state_.message.find("map.mrc"), std::string::npos) << state_.message;
+    EXPECT_EQ(state_.message.find("resolution"), std::string::npos) << state_.message;
+}
+
 TEST_F(Import, an_unknown_file_type_is_answered_with_the_known_ones) {
     BrowserController dashboard({});
     dashboard.drop({"/a/notes.txt"}, state_);

@@ -8,6 +8,7 @@
 #include <thread>
 
 #include "gui/docking/docking_content.hpp"
+#include "gui/docking/place_finder.hpp"
 #include "gui/docking/placement_job.hpp"
 #include "gui/docking/poses_json.hpp"
 #include "gui/window/load_scene.hpp"
@@ -162,6 +163,103 @@ TEST_F(Placement, a_program_that_fails_is_reported_in_its_words) {
     EXPECT_NE(error("head -c 3000000 /dev/zero > \"$7\"\n").find("megabyte"), std::string::npos);
 }
 
+// As the controller publishes it: bodies of the first structure, the first of them in the hand.
+BodiesTopic topic_of(const std::vector<Pose>& places, std::uint32_t options) {
+    BodiesTopic topic{};
+    topic.count = static_cast<std::uint32_t>(places.size());
+    topic.options = options;
+    for (std::size_t i = 0; i < places.size(); ++i) {
+        BodyPlace& b = topic.body[i];
+        b.id = static_cast<std::uint32_t>(i + 1);
+        Eigen::Map<Vec3>(b.pos_model_m) = places[i].p_m;
+        Eigen::Map<Eigen::Vector4d>(b.quat_model_body_xyzw) = places[i].q.coeffs();
+    }
+    return topic;
+}
+
+class Finder : public Placement {
+protected:
+    void begin(const std::string& found_json, const std::vector<Pose>& places, std::uint32_t options) {
+        const std::string program = script("cat > \"$7\" <<'END'\n" + found_json + "\nEND\n");
+        finder_.emplace(PlacementPrograms{program, program});
+        finder_->use(content_);
+        topic_ = topic_of(places, options);
+        const std::vector<Pose> homes{structure().home()};
+        list_.start(homes);
+        list_.follow(topic_);
+    }
+    PlaceFinder::Message look(bool nearby) {
+        static_cast<void>(finder_->follow(list_, &topic_, commands_));
+        EXPECT_TRUE(finder_->look(list_.bodies()[0], nearby, list_));
+        for (int i = 0; i < 10'000; ++i) {
+            if (auto message = finder_->follow(list_, &topic_, commands_)) return *message;
+            std::this_thread::sleep_for(std::chrono::milliseconds(2));
+        }
+        ADD_FAILURE() << "timed out";
+        return {};
+    }
+    std::optional<PlaceFinder> finder_;
+    BodiesTopic topic_{};
+    BodyList list_;
+    std::vector<Command> commands_;
+};
+
+TEST_F(Finder, copies_of_a_symmetry_are_placed_with_new_bodies_and_move_together) {
+    std::string hits;
+    for (int i = 0; i < 3; ++i)
+        hits.append(i > 0 ? "," : "")
+            .append(R"({"score": 0.9, "z": 5, "clashes": 0, "matrix": [1,0,0,)")
+            .append(std::to_string(10 * i))
+            .append(",0,1,0,0,0,0,1,0]}");
+    begin(R"({"hits": [)" + hits + R"(], "searches": [{"symmetry": {"name": "C3"}}]})",
+          {structure().home(), structure().home()}, 0);
+    SearchState state;
+    std::snprintf(state.symmetry.data(), state.symmetry.size(), "find");
+    finder_->describe(list_, &topic_, state);
+    EXPECT_EQ(look(false).text, "");
+    finder_->describe(list_, &topic_, state);
+    EXPECT_EQ(state.found_symmetry, "C3") << "the one that was found, not the word that was typed";
+    commands_.clear();
+    const auto message = finder_->place_copies(list_.bodies()[0], list_, commands_);
+    ASSERT_TRUE(message);
+    EXPECT_EQ(message->grade, Grade::good);
+    ASSERT_EQ(commands_.size(), 4U);
+    EXPECT_EQ(commands_[0].kind, CommandKind::place_body);
+    EXPECT_EQ(commands_[0].body, 1U);
+    EXPECT_EQ(commands_[1].kind, CommandKind::place_body);
+    EXPECT_EQ(commands_[1].body, 2U) << "the copy that is there";
+    EXPECT_EQ(commands_[2].kind, CommandKind::add_body);
+    EXPECT_NEAR((commands_[2].T_model_body.p_m - structure().home_com_model_m).x(), 20e-10, 1e-16);
+    EXPECT_EQ(commands_[3].kind, CommandKind::set_together);
+    EXPECT_FALSE(finder_->place_copies(list_.bodies()[1], list_, commands_))
+        << "not the body that was looked for";
+}
+
+TEST_F(Finder, without_a_symmetry_the_places_are_alternatives) {
+    begin(R"({"hits": [{"score": 0.9, "z": 5, "clashes": 0, "matrix": [1,0,0,5,0,1,0,0,0,0,1,0]}]})",
+          {structure().home()}, 0);
+    EXPECT_EQ(look(false).text, "");
+    EXPECT_FALSE(finder_->place_copies(list_.bodies()[0], list_, commands_));
+}
+
+TEST_F(Finder, refining_moves_the_copies_that_move_together) {
+    const Quat half_turn(0, 0, 0, 1);
+    const Pose home = structure().home(), copy{half_turn * home.p_m, half_turn * home.q};
+    const std::string refined =
+        R"({"bodies": [{"score_before": 0.5, "score_after": 0.7, "matrix": [1,0,0,3,0,1,0,0,0,0,1,0]}]})";
+    begin(refined, {home, copy}, kDockingTogether);
+    EXPECT_EQ(look(true).grade, Grade::good);
+    ASSERT_EQ(commands_.size(), 2U);
+    EXPECT_EQ(commands_[1].body, 2U);
+    // 3 angstrom along x for the one is 3 angstrom against x for the other.
+    EXPECT_NEAR((commands_[0].T_model_body.p_m - home.p_m).x(), 3e-10, 1e-16);
+    EXPECT_NEAR((commands_[1].T_model_body.p_m - copy.p_m).x(), -3e-10, 1e-16);
+    commands_.clear();
+    begin(refined, {home, copy}, 0);
+    EXPECT_EQ(look(true).grade, Grade::good);
+    EXPECT_EQ(commands_.size(), 1U);
+}
+
 TEST(FoundPlaces, what_is_not_a_place_is_refused) {
     const auto error = [](const std::string& json) {
         return sample::error_of([&] { (void)read_found(json, Vec3::Zero(), false); });
@@ -182,6 +280,11 @@ TEST(FoundPlaces, what_is_not_a_place_is_refused) {
     EXPECT_NE(error("[]"), "");
     EXPECT_NE(error(""), "");
     EXPECT_NE(sample::error_of([] { (void)read_found(R"({"bodies": []})", Vec3::Zero(), true); }), "");
+    for (const char* const none :
+         {"", "[]", "{}", R"({"searches": []})", R"({"searches": [{"symmetry": 3}]})",
+          R"({"searches": [{"symmetry": {"name": 7}}]})"})
+        EXPECT_EQ(found_symmetry(none), "") << none;
+    EXPECT_EQ(found_symmetry(R"({"searches": [{"symmetry": {"name": "C\n3"}}]})"), "C?3");
 }
 
 }  // namespace

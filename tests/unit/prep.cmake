@@ -1,6 +1,6 @@
 # Tests of prep.
 tact_tests(prep_docking_tests SOURCES
-        unit/prep_map_test.cpp unit/prep_structure_test.cpp unit/prep_real_files_test.cpp unit/prep_neural_gas_test.cpp
+        unit/prep_map_test.cpp unit/prep_read_map_test.cpp unit/prep_structure_test.cpp unit/prep_real_files_test.cpp unit/prep_neural_gas_test.cpp
         unit/prep_synthetic_test.cpp unit/prep_bake_test.cpp unit/prep_modes_test.cpp
     USES prep_map prep_structure prep_codebook prep_synthetic prep_docking SYSTEM ZLIB::ZLIB)
 tact_tests(prep_search_tests SOURCES

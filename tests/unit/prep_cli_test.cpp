@@ -150,7 +150,7 @@ TEST_F(Program, bad_input_is_refused_with_name_place_reason_and_fix) {
                       model = write("good.pdb", sample::pdb_atom(" CA ", "ALA", 'A', 1, 5.0, 5.0, 5.0)),
                       out = folder_ / "s.tact";
     const auto dock = [&](const std::string& m, const std::string& s) {
-        return std::vector<std::string>{"dock", m, s, "-o", out};
+        return std::vector<std::string>{"dock", m, s, "-o", out, "--resolution-a", "8"};
     };
     expect_refused(dock(folder_ / "absent.mrc", model), {"absent.mrc", "No such file"});
     expect_refused(dock(map, folder_ / "absent.pdb"), {"absent.pdb", "No such file"});
@@ -175,9 +175,14 @@ TEST_F(Program, bad_input_is_refused_with_name_place_reason_and_fix) {
         dock(map, write("bad.pdb",
                         sample::pdb_atom(" CA ", "ALA", 'A', 1, 5.0, 5.0, 5.0).replace(30, 8, "   x.xxx"))),
         {"bad.pdb", "line 1", "x 'x.xxx'"});
-    expect_refused({"dock", map, model, "-o", folder_ / "absent" / "s.tact"}, {"absent", "does not exist"});
-    expect_refused({"dock", map, model, "-o", map}, {"good.mrc", "one of the input files"});
-    expect_refused({"dock", map, model, "-o", out, "--contour", "1e9"},
+    expect_refused({"dock", map, model, "--resolution-a", "8", "-o", folder_ / "absent" / "s.tact"},
+                   {"absent", "does not exist"});
+    expect_refused({"dock", map, model, "--resolution-a", "8", "-o", map},
+                   {"good.mrc", "one of the input files"});
+    expect_refused({"dock", map, model, "-o", out},
+                   {"good.mrc", "resolution is unknown", "--resolution-a", "--half-map"});
+    expect_refused({"dock", map, model, "-o", out, "--half-map", map}, {"half-maps", "1 given"});
+    expect_refused({"dock", map, model, "-o", out, "--resolution-a", "8", "--contour", "1e9"},
                    {"contour", "outside the map's values"});
     std::vector<char> flipped;
     {

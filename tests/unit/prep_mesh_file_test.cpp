@@ -5,6 +5,7 @@
 #include <bit>
 #include <filesystem>
 #include <fstream>
+#include <set>
 
 #include "ipc/base/error.hpp"
 #include "prep/mesh/mesh_folds.hpp"
@@ -57,6 +58,13 @@ std::string ply_ascii() {
 }
 
 // Contains ignored data: an element before, a list at the vertices, other types and another order.
+// A tetrahedron of one strip; then the same triangle twice, in strips that begin anew, with a repeated vertex that makes none.
+std::string ply_strips() {
+    return "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\n"
+           "element tristrips 2\nproperty list int int vertex_indices\nend_header\n"
+           "0 0 0\n1 0 0\n0 1 0\n0 0 1\n6 0 1 2 3 0 1\n9 0 1 2 -1 1 1 0 2 -1\n";
+}
+
 std::string ply_binary(bool big) {
     std::string s =
         std::string("ply\nformat binary_") + (big ? "big" : "little") +
@@ -149,6 +157,25 @@ TEST(MeshFile, every_format_gives_the_same_tetrahedron) {
     }
     EXPECT_EQ(read(ply_binary(true), ".ply").format, "PLY binary big endian");
     EXPECT_EQ(read(stl_binary(), ".stl").format, "STL binary");
+}
+
+TEST(MeshFile, triangle_strips_of_ply_turn_every_other_triangle) {
+    const ImportedMesh mesh = read(ply_strips(), ".ply");
+    const std::vector<std::uint32_t> expected{0, 1, 2, 2, 1, 3, 2, 3, 0, 0, 3, 1, 0, 1, 2, 1, 0, 2};
+    // The last strip is 1 1 0 2: its first triangle has no area, its second is turned: 0 1 2 again.
+    std::vector<std::uint32_t> wanted = expected;
+    wanted.erase(wanted.end() - 3, wanted.end());
+    wanted.insert(wanted.end(), {0, 1, 2});
+    EXPECT_EQ(mesh.mesh.triangle, wanted);
+    // Each edge of the tetrahedron is crossed once in either direction.
+    std::set<std::pair<std::uint32_t, std::uint32_t>> edges;
+    for (std::size_t t = 0; t < 12; t += 3)
+        for (std::size_t c = 0; c < 3; ++c)
+            EXPECT_TRUE(edges.insert({wanted[t + c], wanted[t + (c + 1) % 3]}).second);
+    for (const auto& [a, b] : edges) EXPECT_TRUE(edges.contains({b, a}));
+    std::string wrong = ply_strips();
+    wrong.replace(wrong.find("6 0 1 2 3"), 9, "6 0 1 2 9");
+    EXPECT_NE(refusal(wrong, ".ply").find("refers to vertex 9"), std::string::npos);
 }
 
 TEST(MeshFile, faces_with_more_corners_become_fans) {

@@ -1,6 +1,8 @@
 // The whole search in the ring of six: a subunit has six right places there.
 #include <gtest/gtest.h>
 
+#include "ipc/scene/fit/fit_metrics.hpp"
+#include "prep/search/place_scorer.hpp"
 #include "prep/search/place_symmetric.hpp"
 #include "prep/search/place_together.hpp"
 #include "tests/unit/prep_search_fixture.hpp"
@@ -148,6 +150,44 @@ TEST(Search, a_search_nearby_at_a_coarser_resolution_gives_nothing_worse_than_th
         EXPECT_GE(search(ring().grid, s, by).hits.at(0).score, place_score(ring().grid, s, by, start) - 1e-9)
             << k;
     }
+}
+
+// Against places drawn here and correlated by the metrics of a fit, which share no code with the search.
+TEST(Search, the_right_place_stands_out_from_random_ones_scored_elsewhere_alike) {
+    const Structure& s = ring().subunits.front();
+    SearchSettings by = settings();
+    by.laplacian = false;
+    const PlaceScorer scorer(ring().grid, s, by, by.resolution_m);
+    const RandomScores found = scorer.random_scores(200);
+    EXPECT_EQ(found.places, 200U);
+    const auto [mean, sigma] = [&] {
+        double sum = 0.0, sum_2 = 0.0;
+        for (const float v : ring().grid.values)
+            sum += static_cast<double>(v), sum_2 += std::pow(static_cast<double>(v), 2);
+        const auto n = static_cast<double>(ring().grid.values.size());
+        return std::pair{sum / n, std::sqrt(sum_2 / n - sum * sum / (n * n))};
+    }();
+    SeededRandom random(77);
+    double sum = 0.0, sum_2 = 0.0;
+    int n = 0;
+    while (n < 150) {
+        const auto i =
+            static_cast<std::size_t>(random.uniform() * static_cast<double>(ring().grid.values.size()));
+        if (static_cast<double>(ring().grid.values[i]) < mean + sigma) continue;
+        const std::size_t x = i % ring().grid.size[0], y = i / ring().grid.size[0] % ring().grid.size[1],
+                          z = i / ring().grid.size[0] / ring().grid.size[1];
+        const Vec3 at = Vec3(static_cast<double>(x), static_cast<double>(y), static_cast<double>(z));
+        const PlacedStructure placed{
+            &s, {ring().grid.origin_m + ring().grid.spacing_m.cwiseProduct(at), random.rotation()}};
+        const double cc =
+            fit_metrics(ring().grid, {&placed, 1}, {by.resolution_m, 1.0, by.background, 1.0}).cc_mean;
+        sum += cc, sum_2 += cc * cc, ++n;
+    }
+    const double own_mean = sum / n, own_deviation = std::sqrt(sum_2 / n - own_mean * own_mean);
+    EXPECT_NEAR(found.mean, own_mean, 0.07);
+    EXPECT_NEAR(found.deviation / own_deviation, 1.0, 0.3);
+    EXPECT_GT(found.z_of(scorer.score(s.home())), 3.0);
+    EXPECT_LT(found.best, scorer.score(s.home()));
 }
 
 }  // namespace

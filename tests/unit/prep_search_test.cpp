@@ -123,12 +123,12 @@ TEST(FitInput, a_map_without_a_resolution_is_refused_with_a_range_from_its_voxel
     std::ofstream(map, std::ios::binary).write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
     const std::string error = sample::error_of([&] {
         FitInput input;
-        input.map = map.string();
+        input.map.path = map.string();
         input.models = {"none.pdb"};
         (void)read_fit_input(input);
     });
     std::filesystem::remove(map);
-    EXPECT_NE(error.find("--resolution-a; with voxels of 4.00 Å it is probably between 8.0 and 20.0"),
+    EXPECT_NE(error.find("--resolution-a A; with voxels of 4.00 Å it is probably between 8.0 and 20.0"),
               std::string::npos)
         << error;
 }
@@ -210,6 +210,7 @@ protected:
         baked.grid = ring().grid;
         baked.structures = ring().subunits;
         baked.structures.resize(2);
+        baked.resolution_m = ring().resolution_m;
         baked.vertices_max = 2000;
         SceneWriter out;
         bake_docking(baked, out);
@@ -224,7 +225,7 @@ protected:
                             << fixed << R"(},
             {"id": 7, "structure": 1, "pos_model_a": [4, 5, 6], "quat_model_body_xyzw": [1, 0, 0, 0]}]})";
         FitInput input;
-        input.map = scene();
+        input.map.path = scene();
         input.poses = path;
         return input;
     }
@@ -233,17 +234,15 @@ protected:
 
 TEST_F(FitInScene, a_scene_gives_its_bodies_and_subtracts_the_fixed_ones) {
     FitInput input;
-    input.map = scene();
+    input.map.path = scene();
     const FitData as_baked = read_fit_input(input);
     ASSERT_EQ(as_baked.models.size(), 2U);
-    EXPECT_TRUE(as_baked.resolution_estimated);  // nobody gave one
     EXPECT_EQ(as_baked.rest.values, as_baked.grid.values);
     EXPECT_EQ(as_baked.models[1].T_model_body.p_m, ring().subunits[1].home_com_model_m);
 
     input = with_poses("true");
-    input.resolution_a = 12.0;
+    input.map.resolution_a = 12.0;
     const FitData posed = read_fit_input(input);
-    EXPECT_FALSE(posed.resolution_estimated);
     ASSERT_EQ(posed.models.size(), 1U);
     EXPECT_NEAR(posed.models[0].T_model_body.p_m.z(), 6e-10, 1e-20);
     EXPECT_EQ(posed.models[0].T_model_body.q.x(), 1.0);
@@ -275,7 +274,7 @@ TEST_F(FitInScene, what_does_not_fit_is_refused_with_a_reason) {
     input.models = {"a.pdb"};
     EXPECT_NE(error(input).find("a scene holds its structures"), std::string::npos);
     input = {};
-    input.map = "/dev/null";
+    input.map.path = "/dev/null";
     EXPECT_NE(error(input).find("no structure is given"), std::string::npos);
     input.models = {"a.pdb"};
     input.poses = "x";

@@ -73,7 +73,7 @@ TEST(Housekeeping, passes_orders_to_bodies_with_valid_poses) {
     EXPECT_EQ(check_command(add, kPaths).result, CommandResult::none);
     for (const CommandKind kind :
          {CommandKind::set_clash, CommandKind::set_subtraction, CommandKind::set_laplacian,
-          CommandKind::set_pull, CommandKind::set_flexible})
+          CommandKind::set_pull, CommandKind::set_flexible, CommandKind::set_together})
         EXPECT_EQ(check_command(command(kind, 1.0), kPaths).result, CommandResult::none);
     CommandTopic filter = command(CommandKind::set_detail_filter, 2.0);
     filter.body = 1;

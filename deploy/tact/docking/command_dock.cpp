@@ -12,7 +12,14 @@ namespace {
 constexpr PassedOption kDockPrep[] = {
     {"--contour", "LEVEL",
      "Contour level of the drawn surface, in the map's unit; default: chosen from the histogram"},
-    {"--resolution-a", "A", "Resolution of the map (angstrom); default: four voxels"},
+    {"--resolution-a", "A",
+     "Resolution of the map (angstrom), as published with it; required unless half-maps are given"},
+    {"--half-map", "FILE",
+     "One of the two half-maps, given twice: the resolution is where their Fourier shell correlation falls "
+     "to "
+     "0.143",
+     true},
+    {"--mask", "FILE", "Map that is 1 inside and 0 outside: density outside becomes background", true},
     {"--force-map-resolution-a", "A",
      "Resolution (angstrom) to which the force map is smoothed, so that it attracts a structure from farther "
      "away; default: not smoothed"},

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -27,14 +28,30 @@ const char* name_of(StepStatus status) {
 
 }  // namespace
 
-EvalSummary run_eval(const std::filesystem::path& scene, const std::filesystem::path& poses_csv,
-                     const std::filesystem::path& out_csv, double fidelity) {
-    if (!(fidelity >= 0.0 && fidelity <= 1.0)) {
-        throw StartupError("evaluating '" + scene.string() + "'", "the fidelity is outside 0 to 1",
-                           "give a --fidelity from 0 (smallest codebook) to 1 (all atoms)");
+EvalSummary run_eval(const EvalRequest& request) {
+    const auto refuse = [&](const std::string& why, const std::string& fix) {
+        throw StartupError("evaluating '" + request.scene.string() + "'", why, fix);
+    };
+    const double fidelity = request.fidelity;
+    if (!(fidelity >= 0.0 && fidelity <= 1.0))
+        refuse("the fidelity is outside 0 to 1",
+               "give a --fidelity from 0 (smallest codebook) to 1 (all atoms)");
+    const std::vector<TimedPose> poses = read_poses_csv(request.poses_csv);
+    std::unique_ptr<ForceModel> loaded =
+        load_docking_model(SceneFile::open(request.scene), DockingSettings{});
+    ModelOrder select;
+    select.body = request.body;
+    if (!loaded->order(select))
+        refuse("it has no body " + std::to_string(request.body),
+               "give a --body from 1 to " + std::to_string(loaded->bodies().count));
+    if (request.options != 0) {
+        if (!dynamic_cast<DockingModel&>(*loaded).set_options(request.options, true))
+            refuse("the options are unknown", "report this message");
+        std::unique_ptr<ForceModel> next = loaded->rebuild(loaded->bodies());
+        static_cast<void>(next->adopt(*loaded));
+        loaded = std::move(next);
     }
-    const std::vector<TimedPose> poses = read_poses_csv(poses_csv);
-    const auto model = load_docking_model(SceneFile::open(scene), DockingSettings{});
+    const auto* const model = dynamic_cast<const DockingModel*>(loaded.get());
     Budget budget;
     budget.fidelity = static_cast<float>(fidelity);
     EvalSummary summary;
@@ -59,7 +76,7 @@ EvalSummary run_eval(const std::filesystem::path& scene, const std::filesystem::
     std::sort(costs_us.begin(), costs_us.end());
     summary.cost_us_p50 = costs_us[costs_us.size() / 2];
     summary.cost_us_max = costs_us.back();
-    write_whole(out_csv, text);
+    write_whole(request.out_csv, text);
     return summary;
 }
 

@@ -4,6 +4,7 @@
 #include "deploy/tact/docking/docking.hpp"
 #include "deploy/tact/docking/places.hpp"
 #include "ipc/base/units.hpp"
+#include "ipc/scene/density/level_maps.hpp"
 
 namespace tact::launch {
 namespace {
@@ -18,8 +19,11 @@ constexpr const char* kDockingFormulas[] = {
     "the spline interpolates the map's values at the voxels and is twice continuously differentiable",
     "a body at (c, q) has its points at r_i = c + q * p_i; at the position in the file q is 1, c is "
     "file_place_com_model_m",
-    "points: all atoms at level 1 (w_i their mass fractions), codebook vectors below; between two levels "
-    "both are blended",
+    "points: atom_points at fidelity 1 (w_i mass fractions), those of a codebook level at its fidelity; "
+    "between two levels "
+    "the forces of both are blended linearly",
+    "rho of a codebook level is that of the map smoothed by the discrete Gaussian of standard deviation "
+    "map_smoothing_a",
     "reduced correlation C = sum_i w_i rho(r_i), in sigma; the weights sum to 1",
     "force on the hand, world, N: F = energy_j_per_sigma / world_per_model * sum_i w_i grad rho(r_i), grad "
     "in sigma per model metre",
@@ -42,6 +46,21 @@ constexpr const char* kDockingFormulas[] = {
     "the device gets F and Q after the output chain (limits, slew, ramp-in); tact eval gives them before it",
 };
 
+// What the force sums at each level: {x, y, z, weight}, metres from the centre of mass.
+json points_of(const PointsView& points) {
+    json rows = json::array();
+    for (std::size_t i = 0; i < points.size(); ++i)
+        rows.push_back({points.x[i], points.y[i], points.z[i], points.weight[i]});
+    return rows;
+}
+
+// The smoothed maps that the controller sums the levels in.
+LevelMaps level_maps_of(const SceneFile& file, const Places& places, const std::vector<Codebook>& books) {
+    const SceneMeta& m = places.meta();
+    return make_level_maps(read_force_map_grid(file), m.map_background, m.map_sigma, m.resolution_m,
+                           level_smoothings_m(places.structures(), books, m.resolution_m));
+}
+
 json vec3(const Vec3& v) { return {v.x(), v.y(), v.z()}; }
 json vec_a(const Vec3& v) { return vec3(v / kAngstromM); }
 
@@ -52,14 +71,22 @@ json docking_info(const SceneFile& file) {
     const SceneMeta& m = places.meta();
     const DensityGrid& g = places.grid();
     json bodies = json::array();
+    std::vector<Codebook> books;
+    for (std::uint32_t i = 0; i < m.body_count; ++i) books.push_back(read_codebook(file, i));
+    const LevelMaps maps = level_maps_of(file, places, books);
     for (std::uint32_t i = 0; i < m.body_count; ++i) {
         const Structure& s = places.structures()[i];
-        const Codebook book = read_codebook(file, i);
         json levels = json::array();
-        for (const auto& l : book.levels)
-            levels.push_back({{"vectors", l.size()},
-                              {"edges", l.edges.size()},
-                              {"rms_error_a", l.rms_error_m / kAngstromM}});
+        for (std::size_t l = 0; l < books[i].levels.size(); ++l) {
+            const Codebook::Level& level = books[i].levels[l];
+            levels.push_back(
+                {{"vectors", level.size()},
+                 {"edges", level.edges.size()},
+                 {"rms_error_a", level.rms_error_m / kAngstromM},
+                 {"fidelity", static_cast<double>(l) / static_cast<double>(books[i].levels.size())},
+                 {"map_smoothing_a", maps.smoothing_m[maps.map_of[i][l]] / kAngstromM},
+                 {"points", points_of(level.view())}});
+        }
         bodies.push_back({{"name", s.name},
                           {"atoms", s.size()},
                           {"chains", s.chain_names.size()},
@@ -67,7 +94,8 @@ json docking_info(const SceneFile& file) {
                           {"mass_u", s.mass_u},
                           {"file_place_com_model_m", vec3(s.home_com_model_m)},
                           {"file_place_quat_xyzw", {0, 0, 0, 1}},
-                          {"codebook", levels}});
+                          {"codebook", levels},
+                          {"atom_points", points_of({s.x_m, s.y_m, s.z_m, s.mass_fraction})}});
     }
     return {{"world_per_model", m.world_per_model},
             {"centre_model_m", {m.centre_model_m[0], m.centre_model_m[1], m.centre_model_m[2]}},

@@ -174,10 +174,6 @@ std::string docking_summary(const json& r) {
                 "%.4f; %s)\n",
                 number(f["cc_zero"]), number(f["cc_mean"]), number(f["at_file_place"]["cc_zero"]),
                 number(f["at_file_place"]["cc_mean"]), kFitRegion);
-        else
-            text +=
-                "fit: not computed, because the resolution of the map is unknown (tact dock "
-                "--resolution-a)\n";
     }
     return text;
 }

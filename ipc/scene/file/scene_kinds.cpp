@@ -7,7 +7,7 @@ namespace tact {
 namespace {
 
 constexpr std::uint32_t kAnyNumber = std::numeric_limits<std::uint32_t>::max();
-constexpr MetaLimits kNoMap{1.0, 0.0, 0.0, 0, kAnyNumber};
+constexpr MetaLimits kNoMap{0.0, 1.0, 0.0, 0.0, 0, kAnyNumber};
 
 constexpr SectionTag kDockingSections[] = {{'G', 'R', 'I', 'D'}, {'B', 'O', 'D', 'Y'}};
 constexpr SectionTag kSurfaceSections[] = {{'S', 'U', 'R', 'F'}};
@@ -28,6 +28,13 @@ constexpr RawFileType kDockingRaw[] = {
     {"structure", "its structures", kStructureEndings, nullptr, kSceneBodiesMax,
      "A map needs a structure to dock into it: give both together."},
 };
+constexpr ImportQuestion kMapResolution{
+    "--resolution-a",
+    "Resolution of the map",
+    "Å",
+    "As published with the map. The structure is simulated at it, so a guess would rank wrong places first.",
+    0.5,
+    200.0};
 constexpr RawFileType kSurfaceRaw[] = {{"mesh", "a mesh", kMeshEndings, nullptr, 1, nullptr}};
 constexpr RawFileType kDrillingRaw[] = {
     {"scan", "a scan", kScanEndings, "DICOM files or images", 1, nullptr}};
@@ -40,11 +47,12 @@ constexpr SceneKindRow kKinds[] = {
      "dock",
      "Dock",
      kDockingSections,
-     {1e-7, 1e-12, 1e-30, 1, kSceneBodiesMax},
-     kDockingRaw},
-    {SceneKind::surface, "surface", "touch", "Touch", kSurfaceSections, kNoMap, kSurfaceRaw},
-    {SceneKind::drilling, "drilling", "drill", "Drill", kDrillingSections, kNoMap, kDrillingRaw},
-    {SceneKind::field, "field", "field", "Feel", kFieldSections, kNoMap, kFieldRaw},
+     {0.5e-10, 1e-7, 1e-12, 1e-30, 1, kSceneBodiesMax},
+     kDockingRaw,
+     &kMapResolution},
+    {SceneKind::surface, "surface", "touch", "Touch", kSurfaceSections, kNoMap, kSurfaceRaw, nullptr},
+    {SceneKind::drilling, "drilling", "drill", "Drill", kDrillingSections, kNoMap, kDrillingRaw, nullptr},
+    {SceneKind::field, "field", "field", "Feel", kFieldSections, kNoMap, kFieldRaw, nullptr},
 };
 
 }  // namespace

@@ -49,7 +49,7 @@ SceneMeta read_meta(const SceneFile& file) {
     within("world_per_model", meta.world_per_model, 1e-9, 1e12);
     for (const double c : meta.centre_model_m) within("centre_model_m", c, -1e6, 1e6);
     const MetaLimits& limits = row->limits;
-    within("resolution_m", meta.resolution_m, 0.0, limits.resolution_max_m);
+    within("resolution_m", meta.resolution_m, limits.resolution_min_m, limits.resolution_max_m);
     within("energy_j_per_sigma", meta.energy_j_per_sigma, limits.energy_min_j, 1e6);
     within("map_sigma", meta.map_sigma, limits.map_sigma_min, 1e30);
     if (meta.body_count < limits.bodies_min || meta.body_count > limits.bodies_max) {

@@ -28,7 +28,7 @@ struct SceneMeta {
     double map_sigma;
     double map_background;  // value of the map outside its box
     double contour;         // isosurface level, in the map's unit
-    double resolution_m;    // 0: unknown
+    double resolution_m;    // of a docking scene; 0 in others
     char title[128];        // UTF-8, ends with 0
 
     [[nodiscard]] Vec3 to_world(const Vec3& model_m) const {
@@ -45,10 +45,5 @@ void write_meta(SceneWriter& out, const SceneMeta& meta, const std::string& note
 SceneMeta read_meta(const SceneFile& file);
 // Provenance as lines "key: value": source files, the origin rule applied, sizes, times.
 std::string read_note(const SceneFile& file);
-// In the note's line on the resolution, if nobody gave one. Programs that judge places by it must say so.
-inline constexpr std::string_view kResolutionEstimated = "estimated as four voxels";
-[[nodiscard]] inline bool resolution_is_estimated(std::string_view note) {
-    return note.find(kResolutionEstimated) != std::string_view::npos;
-}
 
 }  // namespace tact

@@ -81,10 +81,22 @@ ClashResult clash_force(const ClashBody& active, std::span<const ClashBody> othe
         const Slope mine = sum_in(*other.field, *active.field, there.inverse() * here);
         const Slope theirs = sum_in(*active.field, *other.field, T_active_model * there);
         result.points += mine.points + theirs.points;
-        s += mine.value + theirs.value;
         const Vec3 pulled = here.q * theirs.gradient;
-        gradient += there.q * mine.gradient - pulled;
-        moment += there.q * mine.moment - (here.q * theirs.moment + apart.cross(pulled));
+        Vec3 by_shift = there.q * mine.gradient - pulled;
+        Vec3 by_turn = there.q * mine.moment - (here.q * theirs.moment + apart.cross(pulled));
+        double share = 1.0;
+        if (other.moves_along) {
+            // The other body's derivatives, by the active one's motion: its own is that one, turned from the active body's axes
+            // to its own.
+            const Quat back = here.q * there.q.conjugate();
+            const Vec3 other_turn = apart.cross(by_shift) - by_turn;
+            by_shift -= back * by_shift;
+            by_turn += back * other_turn;
+            share = 0.5;
+        }
+        s += share * (mine.value + theirs.value);
+        gradient += share * by_shift;
+        moment += share * by_turn;
     }
     if (!(s > 0.0)) return result;
     const double root = std::sqrt(s + kStart);

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "ipc/topics/bodies.hpp"
+
 namespace tact {
 
 DockingBodies::DockingBodies(const std::vector<StartBody>& start, std::uint32_t structures) noexcept
@@ -46,6 +48,18 @@ DockingBodies::Change DockingBodies::remove(std::uint32_t index) noexcept {
     return held ? Change::taken : Change::others;
 }
 
+bool moves_along_with_active(const ModelBodies& list, std::uint32_t index) noexcept {
+    return (list.options_asked & kDockingTogether) != 0 && list.active < list.count && index != list.active &&
+           list.structure[index] == list.structure[list.active] &&
+           (list.flags[index] & ModelBodies::kFixed) == 0;
+}
+
+void DockingBodies::follow(const Pose& T_model_before) noexcept {
+    const Pose step = T_model_before.inverse() * list_.T_model_body[list_.active];
+    for (std::uint32_t i = 0; i < list_.count; ++i)
+        if (moves_along_with_active(list_, i)) list_.T_model_body[i] = list_.T_model_body[i] * step;
+}
+
 DockingBodies::Change DockingBodies::order(const ModelOrder& order) noexcept {
     using Kind = ModelOrder::Kind;
     if (order.kind == Kind::add) {
@@ -70,6 +84,8 @@ DockingBodies::Change DockingBodies::order(const ModelOrder& order) noexcept {
             return Change::taken;
         case Kind::fix:
             list_.flags[i] = order.on ? ModelBodies::kFixed : std::uint16_t{0};
+            // Another body is subtracted now, or one less.
+            if ((list_.options_asked & kDockingTogether) != 0) ++list_.others;
             return Change::none;
         case Kind::place:
             list_.T_model_body[i] = order.T_model_body;

@@ -20,6 +20,9 @@ struct StartBody {
     bool in_hand = false;  // the first marked body starts in the hand; without one, the first of all
 };
 
+// With kDockingTogether: the body is a copy of the one in the hand, and not fixed.
+[[nodiscard]] bool moves_along_with_active(const ModelBodies& list, std::uint32_t index) noexcept TACT_RT;
+
 class DockingBodies {
 public:
     enum class Change : std::uint8_t {
@@ -47,6 +50,9 @@ public:
     [[nodiscard]] std::size_t structure() const noexcept {
         return in_hand() ? list_.structure[list_.active] : 0;
     }
+
+    // The body in the hand has moved from `before`: the bodies that move along follow.
+    void follow(const Pose& T_model_before) noexcept TACT_RT;
 
 private:
     [[nodiscard]] std::uint32_t index_of(std::uint32_t id) const noexcept;  // list().count: unknown id

@@ -104,7 +104,10 @@ std::uint32_t DockingModel::items(float fidelity) const noexcept {
 ModelStiffness DockingModel::of_clash() const noexcept {
     const bool clash = (bodies_.list().options_asked & kDockingClash) != 0;
     if (!clash || (stepped_ && !at_others_)) return {};
-    return {.force_n_m = clash_gains_.stiffness_n_m_max, .torque_n_m_rad = clash_gains_.torque_n_m_rad_max};
+    const bool together = (bodies_.list().options_asked & kDockingTogether) != 0;
+    const double scale = together ? kTogetherStiffness : 1.0;
+    return {.force_n_m = scale * clash_gains_.stiffness_n_m_max,
+            .torque_n_m_rad = scale * clash_gains_.torque_n_m_rad_max};
 }
 
 ModelStiffness DockingModel::stiffness() const noexcept {
@@ -183,7 +186,9 @@ bool DockingModel::add_clash(const Pose& T_model_body, StepResult& result) const
     std::array<ClashBody, ModelBodies::kMax> others{};
     std::size_t count = 0;
     for (std::uint32_t i = 0; i < list.count; ++i) {
-        if (i != list.active) others[count++] = {&parts_->clash[list.structure[i]], list.T_model_body[i]};
+        if (i != list.active)
+            others[count++] = {&parts_->clash[list.structure[i]], list.T_model_body[i],
+                               moves_along_with_active(list, i)};
     }
     const ClashResult clash = clash_force({&parts_->clash[bodies_.structure()], T_model_body},
                                           {others.data(), count}, parts_->meta.world_per_model, clash_gains_);
@@ -244,8 +249,10 @@ StepResult DockingModel::feel(const ToolState& tool, const Budget& budget) noexc
     }
     Pose& body = bodies_.list().T_model_body[bodies_.list().active];
     if (!held) {
+        const Pose before = body;
         body.p_m = parts_->meta.to_model(hand.p_m + com_from_tool_world_m_);
         body.q = (hand.q * q_tool_body_).normalized();
+        bodies_.follow(before);
     }
     StepResult clash;  // computed first: only the density can be shortened when time runs out
     at_others_ = add_clash(body, clash);

@@ -13,6 +13,9 @@
 //           the load and is not part of the density's error.
 // Bodies    copies of a structure share its point sets. When the body in the hand changes, the old force fades
 //           to zero before the new one fades in.
+// Together  with kDockingTogether the copies of the body in the hand that are not fixed make its motions, each in its own axes, so
+//           copies related by a symmetry stay so. Density, pull and bending are felt for the body in the hand alone; the clash
+//           force is that of all (clash_force.hpp). Copies that move along are not subtracted. A constant-time order.
 // Flexible  with kDockingFlexible the body bends along its normal modes (flexible_body.hpp); a constant-time order. Clash force
 //           and pull are those of the straight body.
 // Knob      "docking.force": codebook levels from the smallest to all atoms, blended in between.

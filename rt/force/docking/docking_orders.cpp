@@ -13,7 +13,7 @@ namespace {
 static_assert(kModesMax == kShapeModesMax);
 
 // Need no other density; the last one changes no force at once.
-constexpr std::uint32_t kInstantOptions = kDockingClash | kDockingPull | kDockingFlexible;
+constexpr std::uint32_t kInstantOptions = kDockingClash | kDockingPull | kDockingFlexible | kDockingTogether;
 
 // 0: a command for another system.
 std::uint32_t option_of(std::uint8_t command) noexcept {
@@ -28,6 +28,8 @@ std::uint32_t option_of(std::uint8_t command) noexcept {
             return kDockingPull;
         case CommandKind::set_flexible:
             return kDockingFlexible;
+        case CommandKind::set_together:
+            return kDockingTogether;
         default:
             return 0;
     }
@@ -77,8 +79,11 @@ bool DockingModel::set_options(std::uint32_t options, bool on) noexcept {
     std::uint32_t& asked = bodies_.list().options_asked;
     const std::uint32_t before = asked;
     asked = on ? asked | options : asked & ~options;
+    const std::uint32_t changed = before ^ asked;
+    if ((changed & kDockingTogether) != 0) ++bodies_.list().others;  // others are subtracted now
     const bool another = choose_density();
-    if (another || ((before ^ asked) & (kDockingClash | kDockingPull)) != 0) fade(fade_);
+    const bool other_clash = (changed & kDockingTogether) != 0 && (asked & kDockingClash) != 0;
+    if (another || other_clash || (changed & (kDockingClash | kDockingPull)) != 0) fade(fade_);
     return true;
 }
 

@@ -117,6 +117,7 @@ DensityGrid without_others(const DockingParts& parts, const ModelBodies& bodies)
     std::vector<PlacedStructure> placed;
     for (std::uint32_t i = 0; i < bodies.count && i < ModelBodies::kMax; ++i) {
         if (i == bodies.active || bodies.structure[i] >= parts.structures.size()) continue;
+        if (moves_along_with_active(bodies, i)) continue;
         placed.push_back({&parts.structures[bodies.structure[i]], bodies.T_model_body[i]});
     }
     if (placed.empty()) return parts.grid;

@@ -4,7 +4,7 @@
 // Laplacian ipc/scene/density/laplacian_map.hpp, at the resolution of the map or 20 A, whichever is coarser. Its
 //           unit replaces sigma and is chosen so that the scene's gain gives the force range of
 //           ipc/scene/density/docking_gain.hpp.
-// Subtract  removes all bodies except the one in the hand (ipc/scene/density/subtracted_map.hpp) before the
+// Subtract  removes all bodies except the one in the hand and the copies that move along with it (ipc/scene/density/subtracted_map.hpp) before the
 //           Laplacian. The unit stays that of the whole map, so the remaining density keeps its force.
 // Levels    the first map is that of all atoms; codebook levels have smoothed ones (ipc/scene/density/level_maps.hpp).
 // Stiffness of a level: the largest over some of these poses and over the maxima to which home and other poses climb, with a

@@ -1,4 +1,4 @@
-#include "prep/search/fft_volume.hpp"
+#include "prep/map/fft_volume.hpp"
 
 #include <mutex>
 #include <new>
