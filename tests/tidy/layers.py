@@ -91,7 +91,7 @@ WRAPPED = [
     (r"libusb", ["hal/usb"]),
     (r"gpiod", ["hal/io"]),
     (r"gemmi/", ["prep", "tests"]),
-    (r"fftw3", ["prep/search", "tests"]),
+    (r"fftw3", ["prep/map", "tests"]),
     (r"gdcm", ["prep/volume/dicom_files", "tests/unit/prep_dicom_packed_test"]),
     (r"(imgui|imgui_.*|implot.*|GLFW/.*|epoxy/.*|GL/.*|EGL/.*)(\.h)?$", ["gui", "tests", "deploy/tact/doctor"]),
     (r"png\.h|pngconf", ["ipc/image"]),
