@@ -35,7 +35,6 @@ SavedFit fit_of(const SceneFile& scene, const std::vector<Structure>& structures
     SavedFit fit;
     fit.resolution_a = meta.resolution_m / kAngstromM;
     fit.contour = contour;
-    if (!(meta.resolution_m > 0.0)) return fit;
     std::vector<PlacedStructure> placed;
     placed.reserve(bodies.size());
     for (const PlacedBody& b : bodies) placed.push_back({&structures[b.structure], b.T_model_body});
@@ -62,12 +61,11 @@ Remarks remarks_of(const SceneMeta& meta, const SavedFit& fit, std::size_t index
                              printed("%.9f %.9f %.9f", turn.axis().x(), turn.axis().y(), turn.axis().z()));
         remarks.emplace_back("angle_deg", printed("%.6f", turn.angle() / kDegreeRad));
     }
-    if (!fit.numbers) return remarks;
     remarks.emplace_back("resolution_a", printed("%.4g", fit.resolution_a));
     remarks.emplace_back("region", kFitRegion);
     remarks.emplace_back("contour", printed("%.6g", fit.contour));
-    if (body != nullptr) remark_fit(fit.numbers->body[index], "", remarks);
-    if (body == nullptr || count > 1) remark_fit(fit.numbers->all, "all_bodies_", remarks);
+    if (body != nullptr) remark_fit(fit.numbers.body[index], "", remarks);
+    if (body == nullptr || count > 1) remark_fit(fit.numbers.all, "all_bodies_", remarks);
     return remarks;
 }
 
@@ -91,8 +89,7 @@ std::string csv_row(const PlacedBody& body, const std::string& name, const std::
     const Vec3 com_a = body.T_model_body.p_m / kAngstromM;
     row += printed(",%.9f,%.9f,%.9f,%.6f,%.4f,%.4f,%.4f", turn.axis().x(), turn.axis().y(), turn.axis().z(),
                    turn.angle() / kDegreeRad, com_a.x(), com_a.y(), com_a.z());
-    if (!fit.numbers) return row + ",,,,,,,,,,\n";
-    const FitMetrics& m = fit.numbers->body[index];
+    const FitMetrics& m = fit.numbers.body[index];
     return row + printed(",%.4g,%.6f,%.6f,%.8g,%.8g,%.6f,%.6f,%llu,%llu,%llu\n", fit.resolution_a, m.cc_zero,
                          m.cc_mean, m.overlap, m.mean_density, m.mean_density_sigma, m.fraction_inside,
                          static_cast<unsigned long long>(m.region_voxels),

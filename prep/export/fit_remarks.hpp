@@ -1,7 +1,6 @@
 // What is written about saved bodies: the remarks of their files, their matrix files, and the rows of bodies.csv.
 #pragma once
 
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -13,7 +12,7 @@
 namespace tact {
 
 struct SavedFit {
-    std::optional<FitOfBodies> numbers;  // absent if the resolution is unknown
+    FitOfBodies numbers;
     double resolution_a = 0.0;
     double contour = 0.0;
 };

@@ -60,6 +60,7 @@ DockingModel make_model() {
     meta.world_per_model = 0.15 / (kVoxelM * kSide);
     meta.energy_j_per_sigma = 0.01;
     meta.map_sigma = 1.0;
+    meta.resolution_m = 4.0 * kVoxelM;
     Structure body;
     body.name = "bench";
     body.home_com_model_m = Vec3::Constant(0.5 * kVoxelM * kSide);

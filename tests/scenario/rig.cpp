@@ -72,6 +72,7 @@ void bake_rod(const std::filesystem::path& path) {
     for (double& c : meta.centre_model_m) c = kA * kSize;
     meta.energy_j_per_sigma = 0.02;
     meta.map_sigma = 1.5;
+    meta.resolution_m = 8.0 * kA;
     SceneWriter out;
     write_meta(out, meta, "scenario: a bent rod");
     write_grid(out, grid);

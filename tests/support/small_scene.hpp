@@ -73,6 +73,7 @@ inline SceneWriter small_scene(std::size_t atoms = 240) {
     meta.world_per_model = 0.1 / (kSpacing * kSize);
     for (int i = 0; i < 3; ++i) meta.centre_model_m[i] = centre[i];
     meta.energy_j_per_sigma = 0.02;
+    meta.resolution_m = 4.0 * kSpacing;
     meta.map_mean = sum / count;
     meta.map_sigma = std::sqrt(squares / count - meta.map_mean * meta.map_mean);
     meta.contour = meta.map_mean + meta.map_sigma;

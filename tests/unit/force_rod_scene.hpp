@@ -89,6 +89,7 @@ inline Scene make_scene(std::size_t atoms) {
     for (double& c : meta.centre_model_m) c = kCentre;
     meta.energy_j_per_sigma = 0.02;
     meta.map_sigma = 1.5;
+    meta.resolution_m = 8.0 * kA;
     for (const std::size_t share : {40, 20, 10, 4, 2}) add_level(scene.codebook, rod, share);
     return scene;
 }

@@ -110,7 +110,7 @@ json docking_info(const SceneFile& file) {
               {"background", m.map_background},
               {"contour", m.contour},
               {"contour_sigma", (m.contour - m.map_mean) / m.map_sigma},
-              {"resolution_a", m.resolution_m > 0.0 ? json(m.resolution_m / kAngstromM) : json(nullptr)}}},
+              {"resolution_a", m.resolution_m / kAngstromM}}},
             {"bodies", bodies},
             {"formulas", kDockingFormulas}};
 }

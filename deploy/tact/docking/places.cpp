@@ -55,8 +55,7 @@ Offset Places::offset(const BodyAt& body) const {
             rotation_vector_rad(body.T_model_body.q * home.q.conjugate()).norm() / kDegreeRad};
 }
 
-std::optional<FitMetrics> Places::fit(const std::vector<BodyAt>& bodies) const {
-    if (!(meta_.resolution_m > 0.0)) return std::nullopt;
+FitMetrics Places::fit(const std::vector<BodyAt>& bodies) const {
     std::vector<Structure> shaped;
     for (const BodyAt& b : bodies)
         shaped.push_back(bent_structure(structures_.at(b.structure), modes_.at(b.structure), b.amplitude_m));

@@ -45,8 +45,8 @@ public:
     // One body per structure, at the position in its file.
     [[nodiscard]] std::vector<BodyAt> file_bodies() const;
     [[nodiscard]] Offset offset(const BodyAt& body) const;
-    // Empty if the map's resolution is unknown. Takes up to seconds for large maps.
-    [[nodiscard]] std::optional<FitMetrics> fit(const std::vector<BodyAt>& bodies) const;
+    // Takes up to seconds for large maps.
+    [[nodiscard]] FitMetrics fit(const std::vector<BodyAt>& bodies) const;
 
 private:
     SceneMeta meta_;

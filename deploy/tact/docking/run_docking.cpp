@@ -21,12 +21,12 @@ json offset_json(const Offset& o) { return {{"offset_a", o.distance_a}, {"angle_
 
 json fit_numbers(const Places& places, const std::vector<BodyAt>& bodies, const BodyAt& judged) {
     json j = offset_json(places.offset(judged));
-    const auto fit = places.fit(bodies);
-    j["cc_zero"] = fit ? json(fit->cc_zero) : json(nullptr);
-    j["cc_mean"] = fit ? json(fit->cc_mean) : json(nullptr);
-    j["mean_density_sigma"] = fit ? json(fit->mean_density_sigma) : json(nullptr);
-    j["fraction_inside"] = fit ? json(fit->fraction_inside) : json(nullptr);
-    j["region_voxels"] = fit ? json(fit->region_voxels) : json(nullptr);
+    const FitMetrics fit = places.fit(bodies);
+    j["cc_zero"] = fit.cc_zero;
+    j["cc_mean"] = fit.cc_mean;
+    j["mean_density_sigma"] = fit.mean_density_sigma;
+    j["fraction_inside"] = fit.fraction_inside;
+    j["region_voxels"] = fit.region_voxels;
     return j;
 }
 
@@ -77,8 +77,7 @@ json fit_report(const RtRegion& region, const Places& places,
     j["body"] = places.structures()[judged.structure].name;
     j["body_id"] = judged.id;
     j["region"] = kFitRegion;
-    j["resolution_a"] =
-        places.meta().resolution_m > 0.0 ? json(places.meta().resolution_m * 1e10) : json(nullptr);
+    j["resolution_a"] = places.meta().resolution_m * 1e10;
     j["voxel_a"] = places.grid().spacing_m.maxCoeff() * 1e10;
     if (bodies_start) {
         const auto& start = *bodies_start;
@@ -169,11 +168,10 @@ std::string docking_summary(const json& r) {
                 "%.1f deg at the end\n",
                 number(f["at_start"]["offset_a"]), number(f["at_start"]["angle_deg"]), number(f["offset_a"]),
                 number(f["angle_deg"]));
-        if (f["cc_zero"].is_number())
-            add("fit: correlation about zero %.4f, about the mean %.4f (at the position in the file: %.4f, "
-                "%.4f; %s)\n",
-                number(f["cc_zero"]), number(f["cc_mean"]), number(f["at_file_place"]["cc_zero"]),
-                number(f["at_file_place"]["cc_mean"]), kFitRegion);
+        add("fit: correlation about zero %.4f, about the mean %.4f (at the position in the file: %.4f, "
+            "%.4f; %s)\n",
+            number(f["cc_zero"]), number(f["cc_mean"]), number(f["at_file_place"]["cc_zero"]),
+            number(f["at_file_place"]["cc_mean"]), kFitRegion);
     }
     return text;
 }

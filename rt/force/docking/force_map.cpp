@@ -124,11 +124,6 @@ DensityGrid without_others(const DockingParts& parts, const ModelBodies& bodies)
     return subtract_placed(parts.grid, parts.meta.map_background, placed, parts.meta.resolution_m).grid;
 }
 
-double resolution_m(const DockingParts& parts) {
-    const double voxel_m = parts.grid.spacing_m.maxCoeff();
-    return parts.meta.resolution_m > 0.0 ? parts.meta.resolution_m : 4.0 * voxel_m;
-}
-
 double contour_resolution_m(const DockingParts& parts) {
     return std::max(parts.meta.resolution_m, kContourResolutionM);
 }
@@ -159,7 +154,7 @@ FeltGrid summed_grid(const DockingParts& parts, std::uint32_t options, const Mod
     const bool subtracted = (options & kDockingSubtraction) != 0;
     if ((options & kDockingLaplacian) == 0) {
         return {subtracted ? without_others(parts, bodies) : parts.grid, meta.map_background, meta.map_sigma,
-                resolution_m(parts)};
+                meta.resolution_m};
     }
     const auto filtered = [&](const DensityGrid& grid) {
         return laplacian_map(grid, meta.map_background, contour_resolution_m(parts));
