@@ -75,7 +75,14 @@ tact_build() {
     tact_fresh_if_moved "$preset"
     if command -v ccache >/dev/null && [ -z "${CMAKE_CXX_COMPILER_LAUNCHER+given}" ]; then
         export CMAKE_CXX_COMPILER_LAUNCHER=ccache CCACHE_BASEDIR=$PWD CCACHE_NOHASHDIR=1
-        export CCACHE_SLOPPINESS=pch_defines,time_macros CCACHE_DEPEND=1  # no preprocessing before each compilation
+        export CCACHE_SLOPPINESS=pch_defines,time_macros
+        # No preprocessing before each compilation. ccache 4.7 keeps the names of headers relative to the checkout in this mode
+        # only if the path needs no quotes; otherwise another checkout would watch the headers of this one.
+        if [[ $PWD =~ [^A-Za-z0-9/._+-] ]]; then
+            export CCACHE_NAMESPACE=quoted  # not the entries that were made in that mode
+        else
+            export CCACHE_DEPEND=1
+        fi
     fi
     if ! cmake --preset "$preset" >"$log" 2>&1; then
         cat "$log" >&2
