@@ -119,6 +119,10 @@ std::optional<Pose> PlaceFinder::found(std::uint32_t body, std::size_t place) co
     return found_.found[place].T_model_body;
 }
 
+double PlaceFinder::away_m(const Pose& place, const Pose& here) const {
+    return std::hypot((place.p_m - here.p_m).norm(), found_radius_m_ * place.q.angularDistance(here.q));
+}
+
 std::optional<PlaceFinder::Message> PlaceFinder::place_copies(const ShownBody& body, const BodyList& list,
                                                               std::vector<Command>& commands) const {
     if (found_.symmetry.empty() || body.id != found_.start.id) return std::nullopt;
@@ -129,13 +133,19 @@ std::optional<PlaceFinder::Message> PlaceFinder::place_copies(const ShownBody& b
     if (wanted + others > kBodiesMax)
         return Message{Grade::watch, std::to_string(wanted) + " copies and " + std::to_string(others) +
                                          " other bodies are more than " + std::to_string(kBodiesMax)};
-    for (std::size_t i = 0; i < wanted; ++i) {
-        const Pose& place = found_.found[i].T_model_body;
-        if (i < ids.size())
-            commands.push_back({CommandKind::place_body, 0.0, {}, ids[i], place});
-        else
-            commands.push_back({CommandKind::add_body, 0.0, {}, body.structure, place});
+    std::vector<Pose> free;
+    for (const FoundPlace& f : found_.found) free.push_back(f.T_model_body);
+    for (const std::uint32_t id : ids) {  // each to the nearest place, so that no more moves than must
+        if (free.empty()) break;
+        const Pose& here = list.find(id)->newest;
+        const auto nearest = std::min_element(free.begin(), free.end(), [&](const Pose& a, const Pose& b) {
+            return away_m(a, here) < away_m(b, here);
+        });
+        commands.push_back({CommandKind::place_body, 0.0, {}, id, *nearest});
+        free.erase(nearest);
     }
+    for (const Pose& place : free)
+        commands.push_back({CommandKind::add_body, 0.0, {}, body.structure, place});
     commands.push_back({CommandKind::set_together, 1.0, {}});
     return Message{Grade::good,
                    std::to_string(wanted) + " copies by " + found_.symmetry + " placed; they move together"};
@@ -147,12 +157,9 @@ std::vector<DrawnBody> PlaceFinder::ghosts(const BodyList& list) const {
     std::vector<const FoundPlace*> nearest;
     for (const FoundPlace& f : found_.found) nearest.push_back(&f);
     const Pose& here = body->T_model_body;
-    const auto away_m = [&](const FoundPlace* f) {  // of the atoms
-        return std::hypot((f->T_model_body.p_m - here.p_m).norm(),
-                          found_radius_m_ * f->T_model_body.q.angularDistance(here.q));
-    };
-    std::sort(nearest.begin(), nearest.end(),
-              [&](const FoundPlace* a, const FoundPlace* b) { return away_m(a) < away_m(b); });
+    std::sort(nearest.begin(), nearest.end(), [&](const FoundPlace* a, const FoundPlace* b) {
+        return away_m(a->T_model_body, here) < away_m(b->T_model_body, here);
+    });
     nearest.resize(std::min(kGhosts, nearest.size()));
     std::vector<DrawnBody> drawn;
     for (const FoundPlace* f : nearest)

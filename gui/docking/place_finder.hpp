@@ -41,7 +41,7 @@ public:
 
     // A place found for this body; none: there is none.
     [[nodiscard]] std::optional<Pose> found(std::uint32_t body, std::size_t place) const;
-    // All places of a search with a symmetry: the body goes to the first, its free copies and new ones to the others.
+    // All places of a search with a symmetry: the body and its free copies go to the nearest ones, new copies to the others.
     std::optional<Message> place_copies(const ShownBody& body, const BodyList& list,
                                         std::vector<Command>& commands) const;
     // Of the best places, those nearest to the body, at most three.
@@ -52,6 +52,7 @@ public:
 private:
     Message take(PlacementOutcome done, const BodyList& list, const BodiesTopic* topic,
                  std::vector<Command>& commands);
+    [[nodiscard]] double away_m(const Pose& place, const Pose& here) const;  // of the atoms
     [[nodiscard]] std::vector<FitBody> subtracted(std::uint32_t body, const BodyList& list) const;
     // Tells the controller the places found and whether they pull, when that changes.
     void send_pull(const BodiesTopic* topic, std::vector<Command>& commands);

@@ -57,7 +57,7 @@ void start_row(const Theme& theme, const DashboardState& state, FittingState& f)
     if (ImGui::IsItemHovered())
         ImGui::SetTooltip("%s",
                           kObjectiveHelp[static_cast<std::size_t>(std::clamp(s.objective, 0, kMeanDensity))]);
-    text_coloured(colour::kDim, "copies");
+    text_coloured(colour::kDim, "symmetry");
     ImGui::SameLine();
     ImGui::SetNextItemWidth(theme.px(110.0F));
     ImGui::InputTextWithHint("##symmetry", "none", s.symmetry.data(), s.symmetry.size());

@@ -231,6 +231,12 @@ TEST_F(Finder, copies_of_a_symmetry_are_placed_with_new_bodies_and_move_together
     EXPECT_EQ(commands_[2].kind, CommandKind::add_body);
     EXPECT_NEAR((commands_[2].T_model_body.p_m - structure().home_com_model_m).x(), 20e-10, 1e-16);
     EXPECT_EQ(commands_[3].kind, CommandKind::set_together);
+    commands_.clear();
+    topic_.body[0].pos_model_m[0] += 19e-10;
+    list_.follow(topic_);
+    ASSERT_TRUE(finder_->place_copies(list_.bodies()[0], list_, commands_));
+    EXPECT_NEAR((commands_[0].T_model_body.p_m - structure().home_com_model_m).x(), 20e-10, 1e-16)
+        << "to the nearest place";
     EXPECT_FALSE(finder_->place_copies(list_.bodies()[1], list_, commands_))
         << "not the body that was looked for";
 }
