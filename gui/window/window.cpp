@@ -61,6 +61,7 @@ KeyCode code_of(int key) {
 
 void on_key(GLFWwindow* window, int key, int scancode, int action, int modifiers) {
     note_input(window);
+    if (action == GLFW_PRESS) input_of(window).pressed.push_back(key);
     if (action != GLFW_PRESS || (modifiers & (GLFW_MOD_ALT | GLFW_MOD_SUPER)) != 0) return;
     KeyStroke stroke;
     stroke.control = (modifiers & GLFW_MOD_CONTROL) != 0;
@@ -210,11 +211,29 @@ void Window::begin_panels(Theme& theme) {
     }
     ImGui_ImplOpenGL3_NewFrame();
     ImGui_ImplGlfw_NewFrame();
+    show_short_presses();
     if (target_) {
         ImGui::GetIO().DisplaySize = {static_cast<float>(s.width), static_cast<float>(s.height)};
         ImGui::GetIO().DisplayFramebufferScale = {1.0F, 1.0F};
     }
     ImGui::NewFrame();
+}
+
+// Before 1.87 ImGui sees only whether a key is down when a frame begins: a press shorter than a frame would be lost, and with it
+// Backspace or Enter in a field while frames take long.
+void Window::show_short_presses() {
+#if IMGUI_VERSION_NUM < 18700
+    bool* const down = ImGui::GetIO().KeysDown;
+    for (const int key : held_for_a_frame_)
+        if (glfwGetKey(window_, key) != GLFW_PRESS) down[key] = false;
+    held_for_a_frame_.clear();
+    for (const int key : input_.pressed) {
+        if (key < 0 || key > GLFW_KEY_LAST || down[key]) continue;
+        down[key] = true;
+        held_for_a_frame_.push_back(key);
+    }
+#endif
+    input_.pressed.clear();
 }
 
 void Window::bind() {

@@ -19,6 +19,7 @@ namespace tact {
 // Input since it was last taken.
 struct WindowInput {
     std::vector<KeyStroke> keys;
+    std::vector<int> pressed;  // GLFW keys, since the last frame
     std::vector<std::string> dropped;
     bool any = false;  // of any kind, mouse and keys included
 };
@@ -57,6 +58,7 @@ public:
     [[nodiscard]] double display_period_s() const { return display_period_s_; }  // 0: unknown
 
 private:
+    void show_short_presses();
     void open(int width_px, int height_px, bool hidden);
     void start_imgui();
     [[nodiscard]] float density(const Size& size) const;
@@ -68,6 +70,7 @@ private:
     std::string renderer_;
     std::unique_ptr<OffscreenTarget> target_;
     WindowInput input_;
+    std::vector<int> held_for_a_frame_;
     Size size_before_{0, 0, 0, 0};
 };
 
