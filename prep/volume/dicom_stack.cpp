@@ -5,13 +5,15 @@
 #include <memory>
 
 #include "ipc/base/error.hpp"
+#include "ipc/base/printed.hpp"
 #include "prep/volume/dicom.hpp"
+#include "prep/volume/slice_gaps.hpp"
 
 namespace tact {
 namespace {
 
 constexpr std::size_t kVolumeSlices = 8;  // fewer slices are a localizer
-constexpr double kUneven = 0.01, kMissing = 1.5, kTiltRad = 2e-3;
+constexpr double kUneven = 0.01, kTiltRad = 2e-3;
 
 bool same_picture(const DicomSlice& a, const DicomSlice& b) {
     return a.series_uid == b.series_uid && a.columns == b.columns && a.rows == b.rows &&
@@ -74,39 +76,67 @@ void check_pictures(const DicomGroup& g, const std::string& attempt) {
     if (g.size() < 2) fail("the series has only one slice", "give the folder with all slices of the series");
 }
 
-void check_gaps(const DicomGroup& g, const Eigen::Matrix3d& axes, const std::string& attempt, Scan& scan) {
-    std::vector<double> gap;
-    for (std::size_t i = 0; i + 1 < scan.slice.size(); ++i)
-        gap.push_back(scan.slice[i + 1].s_mm - scan.slice[i].s_mm);
-    std::vector<double> sorted = gap;
-    std::nth_element(sorted.begin(), sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2),
-                     sorted.end());
-    const double typical = sorted[sorted.size() / 2];
-    char text[240];
+// Of a slice with another size that lies where one is missing.
+std::string lies_there(const DicomGroup& g, const std::vector<DicomSlice>& left_out, const Vec3& normal,
+                       double from_mm, double to_mm) {
+    for (const DicomSlice& s : left_out) {
+        const double at_mm = s.position_mm.dot(normal);
+        const bool same = s.placed && s.series_uid == g[0].series_uid &&
+                          s.along_row.cross(s.down_rows).normalized().dot(normal) > 0.999;
+        if (same && at_mm > from_mm && at_mm < to_mm)
+            return printed("; %s is there, but has %u x %u pixels of %.3g mm instead of %u x %u of %.3g mm",
+                           s.path.filename().string().c_str(), s.columns, s.rows, s.column_mm, g[0].columns,
+                           g[0].rows, g[0].column_mm);
+    }
+    return {};
+}
+
+void check_missing(const DicomGroup& g, const std::vector<DicomSlice>& left_out, const Scan& scan,
+                   const SliceGaps& gaps, const std::string& attempt) {
+    if (gaps.missing.empty()) return;
     std::size_t missing = 0;
     std::string where;
-    for (std::size_t i = 0; i < gap.size(); ++i) {
-        if (gap[i] < 1e-3 || gap[i] < 0.02 * typical)
+    const Vec3 normal = g[0].along_row.cross(g[0].down_rows).normalized();
+    for (const MissingSlices& m : gaps.missing) {
+        missing += m.count;
+        if (where.size() > 200) continue;
+        where += printed("%s%.2f and %.2f mm", where.empty() ? "" : ", ", scan.slice[m.after].s_mm,
+                         scan.slice[m.after + 1].s_mm);
+        where += lies_there(g, left_out, normal, g[m.after].position_mm.dot(normal),
+                            g[m.after + 1].position_mm.dot(normal));
+    }
+    throw StartupError(attempt,
+                       printed("%zu %s missing: the spacing is %.3g mm, except between ", missing,
+                               missing == 1 ? "slice is" : "slices are", gaps.typical_mm) +
+                           where,
+                       "add the missing slices, or remove the slices on one side of the gap");
+}
+
+void check_gaps(const DicomGroup& g, const std::vector<DicomSlice>& left_out, const Eigen::Matrix3d& axes,
+                const std::string& attempt, Scan& scan) {
+    std::vector<double> at_mm, gap;
+    for (const ScanSlice& s : scan.slice) at_mm.push_back(s.s_mm);
+    const SliceGaps gaps = slice_gaps(at_mm);
+    for (std::size_t i = 0; i + 1 < at_mm.size(); ++i) {
+        gap.push_back(at_mm[i + 1] - at_mm[i]);
+        if (gap[i] < 1e-3 || gap[i] < 0.02 * gaps.typical_mm)
             throw StartupError(attempt,
                                g[i].path.filename().string() + " and " + g[i + 1].path.filename().string() +
                                    " have the same position: the series holds several scans",
                                "keep one of the scans in the folder");
-        if (gap[i] < kMissing * typical) continue;
-        missing += static_cast<std::size_t>(std::lround(gap[i] / typical)) - 1;
-        if (where.size() < 120) {
-            std::snprintf(text, sizeof text, "%s%.2f and %.2f mm", where.empty() ? "" : ", ",
-                          scan.slice[i].s_mm, scan.slice[i + 1].s_mm);
-            where += text;
-        }
     }
-    if (missing > 0) {
-        std::snprintf(text, sizeof text, "%zu slices are missing: the spacing is %.3g mm, except between ",
-                      missing, typical);
-        throw StartupError(attempt, text + where,
-                           "add the missing slices, or remove the slices on one side of the gap");
+    check_missing(g, left_out, scan, gaps, attempt);
+    char text[240];
+    if (gaps.parts.size() > 1) {
+        std::string parts;
+        for (const SlicePart& p : gaps.parts)
+            parts += printed("%s%.4g mm from %.1f to %.1f mm", parts.empty() ? "" : ", ", p.spacing_mm,
+                             at_mm[p.first], at_mm[p.first + p.gaps]);
+        scan.warning.push_back("the slices have several spacings and were resampled by their positions: " +
+                               parts);
     }
     const auto [low, high] = std::minmax_element(gap.begin(), gap.end());
-    if (*high - *low > kUneven * typical) {
+    if (gaps.parts.size() < 2 && *high - *low > kUneven * gaps.typical_mm) {
         std::snprintf(text, sizeof text, "slices are %.4g to %.4g mm apart and were resampled", *low, *high);
         scan.warning.emplace_back(text);
     }
@@ -157,7 +187,11 @@ Scan dicom_stack(std::vector<DicomSlice> slices, unsigned series, const std::str
             groups.emplace_back().push_back(std::move(s));
     }
     Scan scan;
+    const std::vector<DicomGroup> all = groups;
     DicomGroup g = choose(std::move(groups), series, attempt, scan);
+    std::vector<DicomSlice> left_out;
+    for (const DicomGroup& other : all)
+        if (!same_picture(other[0], g[0])) left_out.insert(left_out.end(), other.begin(), other.end());
     check_pictures(g, attempt);
     const Vec3 u = g[0].along_row, v = g[0].down_rows, n = u.cross(v).normalized();
     std::sort(g.begin(), g.end(), [&](const DicomSlice& a, const DicomSlice& b) {
@@ -176,7 +210,7 @@ Scan dicom_stack(std::vector<DicomSlice> slices, unsigned series, const std::str
         const Vec3 at = shape.axes.transpose() * (g[i].position_mm - g[0].position_mm);
         shape.slice[i] = {at.x(), at.y(), at.z()};
     }
-    check_gaps(g, shape.axes, attempt, shape);
+    check_gaps(g, left_out, shape.axes, attempt, shape);
     shape.format = "DICOM";
     const bool hounsfield = g[0].modality == "CT" && (g[0].rescale_type.empty() || g[0].rescale_type == "HU");
     shape.values = hounsfield ? ScanValues::hounsfield : ScanValues::number;

@@ -152,6 +152,7 @@ Scan read_raw_scan(const std::filesystem::path& path, const char* format, RawHea
     auto input = std::make_shared<InputBytes>(path, kScanBytesMax + (1U << 20), kScanBytesMax + (1U << 20));
     RawHeader header = reader(input->view(), attempt, unit_mm);
     if (!header.data_file.empty()) {
+        while (header.data_file.starts_with("./")) header.data_file.erase(0, 2);
         if (header.data_file.find('/') != std::string::npos ||
             header.data_file.find('%') != std::string::npos || header.data_file.starts_with("LIST"))
             throw StartupError(attempt,

@@ -8,6 +8,7 @@
 #include "ipc/image/png.hpp"
 #include "prep/drilling/import_bone.hpp"
 #include "prep/volume/png_stack.hpp"
+#include "prep/volume/slice_gaps.hpp"
 #include "tests/support/says.hpp"
 #include "tests/unit/prep_scan_samples.hpp"
 
@@ -98,6 +99,11 @@ TEST(Scans, nrrd_in_any_axis_order_gives_the_same_bone) {
                                                     "space directions: (1,0,0) (0,-1,0) (0,0,-1)\n"
                                                     "encoding: raw\nbyte skip: 4\ndata file: c.raw\n\n"))))
             .bone);
+    expect_bone(
+        import_bone(hu(of(f.write("d.nhdr", kNrrd + "sizes: 6 5 4\nspace: lps\n"
+                                                    "space directions: (1,0,0) (0,-1,0) (0,0,-1)\n"
+                                                    "encoding: raw\nbyte skip: 4\ndata file: ./c.raw\n\n"))))
+            .bone);
 }
 
 TEST(Scans, meta_image_plain_compressed_and_big_endian) {
@@ -153,6 +159,16 @@ TEST(Scans, nifti_by_matrix_and_by_quaternion) {
     expect_bone(import_bone(hu(of(f.write("b.nii.gz",
                                           gzip(nifti(true, false, sample::bone_numbers({0, 1, 2}, true)))))))
                     .bone);
+}
+
+// By the definition of NIfTI-1: with no rotation and qfac -1 the third axis runs down. Read as if it ran up, an ear would be mirrored.
+TEST(Scans, nifti_with_a_negative_qfac_is_not_mirrored) {
+    const ScanFolder f;
+    std::string bytes = nifti(false, false, sample::bone_numbers({3, 4, 5}));
+    const float qfac = -1.0F, none = 0.0F;
+    std::memcpy(bytes.data() + 76, &qfac, 4);
+    std::memcpy(bytes.data() + 264, &none, 4);  // columns to the right, rows to the front
+    expect_bone(import_bone(hu(of(f.write("a.nii", bytes)))).bone);
 }
 
 TEST(Scans, declared_sizes_are_compared_with_the_file) {
@@ -286,6 +302,65 @@ TEST(Dicom, missing_duplicate_and_broken_slices_are_reported) {
     EXPECT_TRUE(says(refusal(of(f.path)), {"no DICOM image"}));
     write_series(f, {0});
     EXPECT_TRUE(says(refusal(of(f.path)), {"only one slice"}));
+}
+
+// A bone with density 20 + 2 z on slices of two spacings: all slices are there, and each is at its place.
+TEST(Dicom, slices_of_two_spacings_are_resampled_by_their_positions) {
+    const ScanFolder f;
+    std::vector<double> at_mm;
+    for (int i = 0; i < 8; ++i) at_mm.push_back(4.0 * i);
+    for (int i = 0; i < 7; ++i) at_mm.push_back(35.0 + 7.0 * i);
+    int number = 0;
+    for (const double z : at_mm)
+        f.write(numbered("s", number++),
+                sample::dicom_bytes(sample::dicom_slice(z, [&](int, int) { return 20.0 + 2.0 * z; })));
+    BoneImport o = of(f.path);
+    o.voxel_mm = 1.0;
+    std::string warned;
+    o.warn = [&](const std::string& line) { warned += line; };
+    const BoneData bone = import_bone(o).bone;
+    EXPECT_TRUE(says(warned, {"several spacings", "4 mm from 0.0 to 28.0 mm", "7 mm from 28.0 to 77.0 mm"}))
+        << warned;
+    ASSERT_EQ(bone.bricks.size[1], 78U);
+    for (std::uint32_t z = 0; z < 78; ++z)
+        EXPECT_NEAR(bone.density[bone.bricks.voxel(2, z, 2)], 20.0 + 2.0 * z, 1.1) << z;
+}
+
+TEST(Dicom, a_slice_of_another_size_is_named_where_one_is_missing) {
+    const ScanFolder f;
+    for (int u = 0; u < 12; ++u) {
+        sample::DicomSample s = sample::bone_slice(u);
+        if (u == 5) s.columns = 5, s.rows = 6;
+        f.write(numbered("s", u), sample::dicom_bytes(s));
+    }
+    EXPECT_TRUE(says(refusal(of(f.path)),
+                     {"1 slice is missing", "4.00 and 6.00 mm", "s5 is there, but has 5 x 6 pixels"}));
+}
+
+TEST(SliceGaps, tells_missing_slices_from_another_spacing) {
+    const auto of_gaps = [](const std::vector<double>& gaps) {
+        std::vector<double> at{0.0};
+        for (const double g : gaps) at.push_back(at.back() + g);
+        return slice_gaps(at);
+    };
+    EXPECT_TRUE(of_gaps({1, 1, 1, 1, 1}).missing.empty());
+    EXPECT_EQ(of_gaps({1, 1, 1, 1, 1}).parts.size(), 1U);
+    const SliceGaps two = of_gaps({4, 4, 4, 4, 7, 7, 7, 7});
+    EXPECT_TRUE(two.missing.empty());
+    ASSERT_EQ(two.parts.size(), 2U);
+    EXPECT_EQ(two.parts[1].first, 4U);
+    EXPECT_DOUBLE_EQ(two.parts[1].spacing_mm, 7.0);
+    // Both spacings, and a slice lost in each part.
+    const SliceGaps lost = of_gaps({4, 4, 4, 4, 8, 4, 4, 4, 4, 7, 7, 7, 7, 21, 7, 7, 7, 7});
+    ASSERT_EQ(lost.missing.size(), 2U);
+    EXPECT_EQ(lost.missing[0].after, 4U);
+    EXPECT_EQ(lost.missing[0].count, 1U);
+    EXPECT_EQ(lost.missing[1].after, 13U);
+    EXPECT_EQ(lost.missing[1].count, 2U);
+    EXPECT_EQ(lost.parts.size(), 2U);
+    // Three double distances are no spacing of their own.
+    EXPECT_EQ(of_gaps({1, 1, 1, 1, 2, 2, 2, 1, 1, 1, 1}).missing.size(), 3U);
+    EXPECT_TRUE(of_gaps({1, 1.2, 1, 0.8, 1}).missing.empty());
 }
 
 TEST(Dicom, one_of_several_series_is_chosen_or_all_are_listed) {
