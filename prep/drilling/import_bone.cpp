@@ -7,6 +7,7 @@
 #include "ipc/base/error.hpp"
 #include "ipc/base/printable.hpp"
 #include "ipc/base/printed.hpp"
+#include "prep/drilling/bone_threshold.hpp"
 #include "prep/input/read_file.hpp"
 #include "prep/volume/dicom.hpp"
 #include "prep/volume/png_stack.hpp"
@@ -70,6 +71,7 @@ OpenedScan open_scan(const fs::path& path, const BoneImport& o, const Progress& 
 struct DensityRange {
     double low, high;
     bool hounsfield;
+    std::string warning{};  // that it is a proposal; empty: it is known
 };
 
 bool reaches_air(const Scan& scan, const Progress& progress) {
@@ -82,16 +84,33 @@ bool reaches_air(const Scan& scan, const Progress& progress) {
     return false;
 }
 
+// 8-bit values have lost their unit, and the values of other scans may have any: above 0 would be skin and all within.
+DensityRange proposed_range(const Scan& scan, const Progress& progress) {
+    const std::optional<ProposedBone> bone = propose_bone(scan, progress);
+    if (!bone)
+        throw StartupError("separate bone from other tissue", "all voxels have the same value",
+                           "check the file");
+    const std::string options = printed("--threshold-hu %.4g --solid-hu %.4g", bone->threshold, bone->solid);
+    if (scan.values != ScanValues::grey)
+        throw StartupError(
+            "separate bone from other tissue",
+            "no voxel is as low as air in Hounsfield units, so the unit of the values is unknown",
+            "give the file's values for no bone and for solid bone; its histogram suggests " + options);
+    return {bone->threshold, bone->solid, false,
+            printed("8-bit values have no unit: the histogram suggests that bone begins at %.4g (%.1f %% of "
+                    "the voxels are above) "
+                    "and is solid at %.4g; inspect it, and set others with ",
+                    bone->threshold, 100.0 * bone->share_above, bone->solid) +
+                options};
+}
+
 DensityRange choose_range(const Scan& scan, const BoneImport& o, const Progress& progress) {
     DensityRange range{0.0, 255.0, false};
     if (scan.values == ScanValues::hounsfield ||
         (scan.values == ScanValues::number && reaches_air(scan, progress)))
         range = {kThresholdHu, kSolidHu, true};
-    else if (scan.values != ScanValues::grey && !(o.threshold && o.solid))
-        throw StartupError(
-            "separate bone from other tissue",
-            "no voxel is as low as air in Hounsfield units, so the unit of the values is unknown",
-            "give the file's values for no bone and for solid bone: --threshold-hu and --solid-hu");
+    else if (!(o.threshold && o.solid))
+        range = proposed_range(scan, progress);
     if (o.threshold) range.low = *o.threshold;
     if (o.solid) range.high = *o.solid;
     if (!(range.low < range.high) || std::abs(range.low) > 1e6 || std::abs(range.high) > 1e6)
@@ -233,6 +252,7 @@ BoneInput import_bone(const BoneImport& o, const Progress& whole) {
         segmented(scan, plan, *opened.palette, o, std::move(known), bone, progress);
     } else {
         const DensityRange range = choose_range(scan, o, progress);
+        if (!range.warning.empty()) scan.warning.push_back(range.warning);
         if (range.hounsfield) {
             bone.hu_at_0 = static_cast<float>(range.low);
             bone.hu_at_255 = static_cast<float>(range.high);

@@ -1,8 +1,9 @@
 // Converts a scan in any supported format, with or without labels, to bone that can be baked.
 //
 // Density   from two values of the scan: no bone at and below the first, solid at and above the second. For Hounsfield
-//           units these are 300 and 1800; for 8-bit grey 0 and 255. If the unit is unknown and no voxel is as low as
-//           air, both must be given: a guess would produce bone that feels wrong.
+//           units these are 300 and 1800; for 8-bit grey those that the histogram suggests (bone_threshold.hpp), with a warning.
+//           If the unit is unknown and no voxel is as low as air, both must be given: a guess would produce bone that feels
+//           wrong. The error names those that the histogram suggests.
 // Labels    a second file, or the colours of a stack of images. Names come from the file (segmentations of 3D Slicer)
 //           or from an ITK-SNAP label description. A structure is critical if its name contains one of kCriticalWords
 //           or a given word; its voxels have at least kLabelDensity, so that a burr has contact with them.

@@ -256,8 +256,8 @@ TEST_F(Program, bakes_bone_from_a_scan_or_synthetic) {
         "ElementDataFile = LOCAL\n";
     mha.append(64, 'z');
     const std::string scan = write("scan.mha", mha);
-    const Ended baked =
-        run({"drill", scan, "-o", scene, "--crop", "0:4,1:3,0:4", "--unit", "cm", "--face", "top"});
+    const Ended baked = run({"drill", scan, "-o", scene, "--crop", "0:4,1:3,0:4", "--unit", "cm", "--face",
+                             "top", "--threshold-hu", "0", "--solid-hu", "255"});
     ASSERT_EQ(baked.code, 0) << baked.err;
     EXPECT_NE(baked.err.find("does not state the patient's left side"), std::string::npos) << baked.err;
     info = nlohmann::json::parse(run({"info", scene, "--json"}).out);
