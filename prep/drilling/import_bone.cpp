@@ -87,15 +87,17 @@ bool reaches_air(const Scan& scan, const Progress& progress) {
 // 8-bit values have lost their unit, and the values of other scans may have any: above 0 would be skin and all within.
 DensityRange proposed_range(const Scan& scan, const Progress& progress) {
     const std::optional<ProposedBone> bone = propose_bone(scan, progress);
-    if (!bone)
-        throw StartupError("separate bone from other tissue", "all voxels have the same value",
-                           "check the file");
-    const std::string options = printed("--threshold-hu %.4g --solid-hu %.4g", bone->threshold, bone->solid);
+    const std::string options =
+        bone ? printed("--threshold-hu %.4g --solid-hu %.4g", bone->threshold, bone->solid) : "";
     if (scan.values != ScanValues::grey)
         throw StartupError(
             "separate bone from other tissue",
             "no voxel is as low as air in Hounsfield units, so the unit of the values is unknown",
-            "give the file's values for no bone and for solid bone; its histogram suggests " + options);
+            bone ? "give the file's values for no bone and for solid bone; its histogram suggests " + options
+                 : "give the file's values for no bone and for solid bone: --threshold-hu and --solid-hu");
+    if (!bone)
+        throw StartupError("separate bone from other tissue", "all voxels have the same value",
+                           "check the file");
     return {bone->threshold, bone->solid, false,
             printed("8-bit values have no unit: the histogram suggests that bone begins at %.4g (%.1f %% of "
                     "the voxels are above) "
