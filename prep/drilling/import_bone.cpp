@@ -95,9 +95,7 @@ DensityRange proposed_range(const Scan& scan, const Progress& progress) {
             "no voxel is as low as air in Hounsfield units, so the unit of the values is unknown",
             bone ? "give the file's values for no bone and for solid bone; its histogram suggests " + options
                  : "give the file's values for no bone and for solid bone: --threshold-hu and --solid-hu");
-    if (!bone)
-        throw StartupError("separate bone from other tissue", "all voxels have the same value",
-                           "check the file");
+    if (!bone) return {0.0, 255.0, false};  // one value: nothing to separate
     return {bone->threshold, bone->solid, false,
             printed("8-bit values have no unit: the histogram suggests that bone begins at %.4g (%.1f %% of "
                     "the voxels are above) "
