@@ -157,30 +157,32 @@ TEST(Search, the_right_place_stands_out_from_random_ones_scored_elsewhere_alike)
     const Structure& s = ring().subunits.front();
     SearchSettings by = settings();
     by.laplacian = false;
-    const PlaceScorer scorer(ring().grid, s, by, by.resolution_m);
+    // A long subunit alone: its right orientation is better than others anywhere, so that all must be drawn.
+    DensityGrid grid = ring().grid;
+    const PlacedStructure alone{&s, s.home()};
+    grid.values = simulated_map(grid, {&alone, 1}, by.resolution_m);
+    const PlaceScorer scorer(grid, s, by, by.resolution_m);
     const RandomScores found = scorer.random_scores(200);
     EXPECT_EQ(found.places, 200U);
     const auto [mean, sigma] = [&] {
         double sum = 0.0, sum_2 = 0.0;
-        for (const float v : ring().grid.values)
+        for (const float v : grid.values)
             sum += static_cast<double>(v), sum_2 += std::pow(static_cast<double>(v), 2);
-        const auto n = static_cast<double>(ring().grid.values.size());
+        const auto n = static_cast<double>(grid.values.size());
         return std::pair{sum / n, std::sqrt(sum_2 / n - sum * sum / (n * n))};
     }();
     SeededRandom random(77);
     double sum = 0.0, sum_2 = 0.0;
     int n = 0;
     while (n < 150) {
-        const auto i =
-            static_cast<std::size_t>(random.uniform() * static_cast<double>(ring().grid.values.size()));
-        if (static_cast<double>(ring().grid.values[i]) < mean + sigma) continue;
-        const std::size_t x = i % ring().grid.size[0], y = i / ring().grid.size[0] % ring().grid.size[1],
-                          z = i / ring().grid.size[0] / ring().grid.size[1];
+        const auto i = static_cast<std::size_t>(random.uniform() * static_cast<double>(grid.values.size()));
+        if (static_cast<double>(grid.values[i]) < mean + sigma) continue;
+        const std::size_t x = i % grid.size[0], y = i / grid.size[0] % grid.size[1],
+                          z = i / grid.size[0] / grid.size[1];
         const Vec3 at = Vec3(static_cast<double>(x), static_cast<double>(y), static_cast<double>(z));
-        const PlacedStructure placed{
-            &s, {ring().grid.origin_m + ring().grid.spacing_m.cwiseProduct(at), random.rotation()}};
-        const double cc =
-            fit_metrics(ring().grid, {&placed, 1}, {by.resolution_m, 1.0, by.background, 1.0}).cc_mean;
+        const PlacedStructure placed{&s,
+                                     {grid.origin_m + grid.spacing_m.cwiseProduct(at), random.rotation()}};
+        const double cc = fit_metrics(grid, {&placed, 1}, {by.resolution_m, 1.0, by.background, 1.0}).cc_mean;
         sum += cc, sum_2 += cc * cc, ++n;
     }
     const double own_mean = sum / n, own_deviation = std::sqrt(sum_2 / n - own_mean * own_mean);
