@@ -67,7 +67,7 @@ std::string grid_text(const DensityGrid& grid) {
 
 ReadMap read_map(const MapRequest& request) {
     ImportedMap map = import_map(request.path);
-    ReadMap out{std::move(map.grid), map.format, 0.0, {}, {}};
+    ReadMap out{std::move(map.grid), 0.0, {}, {}};
     out.note.push_back("map: " + printable(request.path));
     out.note.push_back("map format: " + map.format + ", " + grid_text(out.grid));
     out.note.push_back("map origin: " + map.origin_rule);

@@ -25,7 +25,6 @@ struct MapRequest {
 
 struct ReadMap {
     DensityGrid grid;  // masked
-    std::string format;
     double resolution_m = 0.0;
     std::string resolution_source;  // "as given"
     std::vector<std::string> note;  // lines "key: value"

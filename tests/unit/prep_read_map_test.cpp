@@ -7,16 +7,15 @@
 #include <complex>
 #include <filesystem>
 #include <fstream>
-#include <functional>
 #include <numbers>
 #include <random>
 
-#include "ipc/base/error.hpp"
 #include "ipc/base/units.hpp"
 #include "prep/map/map_mask.hpp"
 #include "prep/map/map_statistics.hpp"
 #include "prep/map/read_map.hpp"
 #include "prep/map/shell_correlation.hpp"
+#include "tests/support/error_of.hpp"
 #include "tests/support/map_file.hpp"
 
 namespace tact::prep_read_map_test {
@@ -33,14 +32,7 @@ DensityGrid box(std::uint32_t x, std::uint32_t y, std::uint32_t z, double voxel_
     return g;
 }
 
-std::string error_of(const std::function<void()>& call) {
-    try {
-        call();
-    } catch (const StartupError& e) {
-        return e.what();
-    }
-    return "no error";
-}
+using sample::error_of;
 
 // One wave of the transform, by its definition.
 std::complex<double> wave_of(const DensityGrid& g, const std::array<int, 3>& k) {
