@@ -1,6 +1,7 @@
 // The whole search in the ring of six: a subunit has six right places there.
 #include <gtest/gtest.h>
 
+#include "ipc/base/error.hpp"
 #include "ipc/scene/fit/fit_metrics.hpp"
 #include "prep/search/place_scorer.hpp"
 #include "prep/search/place_symmetric.hpp"

@@ -9,6 +9,7 @@
 #include "ipc/scene/density/laplacian_map.hpp"
 #include "ipc/scene/density/level_maps.hpp"
 #include "ipc/scene/density/subtracted_map.hpp"
+#include "rt/force/docking/docking_bodies.hpp"
 #include "rt/force/docking/start_pose.hpp"
 
 namespace tact {
