@@ -110,12 +110,14 @@ void CalibrationController::save() {
     try {
         const std::filesystem::path old =
             write_stage_file(file_, calibration_->draft(), calibration_->remarks());
-        const StageSettings again = read_stage_file(file_);
-        if (stage_text(again) != stage_text(calibration_->draft()))
+        // Both are read, because a quaternion of rounded numbers is normalized: its last digit may change.
+        const StageSettings& draft = calibration_->draft();
+        const StageSettings meant = read_stage_text(stage_text(draft), file_.string());
+        if (stage_text(read_stage_file(file_)) != stage_text(meant))
             throw StartupError("reading the stage file '" + file_.string() + "' again",
                                "the content differs from what was written",
                                "save to another file (--stage FILE)");
-        kept_ = again;
+        kept_ = draft;
         saved_ = "Written to " + file_.string() + " and read back." +
                  (old.empty() ? std::string() : " The old file is kept as " + old.filename().string() + ".");
         saved_grade_ = Grade::good;
