@@ -7,7 +7,7 @@
 namespace tact::launch {
 namespace {
 
-// tact-prep runs in another folder.
+// The scene depends on what is in the files, and its note names them.
 void add_file_option(CLI::App& app, const PassedOption& option, BakedRun& baked) {
     app.add_option_function<std::vector<std::string>>(
            option.name,

@@ -49,6 +49,8 @@ struct StageSettings {
 // All keys, with the remarks as comments in front; reading it gives the same stage, to the nanometre.
 [[nodiscard]] std::string stage_text(const StageSettings& settings,
                                      std::span<const std::string> remarks = {});
+// The file says what the settings say, to the digits that stage_text() writes. Throws StartupError if it cannot be read.
+[[nodiscard]] bool is_in_stage_file(const StageSettings& settings, const std::filesystem::path& path);
 // Written completely or not at all; an existing file is kept beside it under the returned name (empty: none existed).
 // The new file is read back before it replaces the old one. Throws StartupError.
 std::filesystem::path write_stage_file(const std::filesystem::path& path, const StageSettings& settings,

@@ -120,4 +120,10 @@ std::filesystem::path write_stage_file(const std::filesystem::path& path, const 
     return old;
 }
 
+// Both are read, because a quaternion of rounded numbers is normalized, which may change its last digit.
+bool is_in_stage_file(const StageSettings& settings, const std::filesystem::path& path) {
+    const StageSettings meant = read_stage_text(stage_text(settings), path.string());
+    return stage_text(read_stage_file(path)) == stage_text(meant);
+}
+
 }  // namespace tact

@@ -1,4 +1,5 @@
 #include "prep/export/fit_remarks.hpp"
+
 #include "ipc/base/printed.hpp"
 
 namespace tact {

@@ -2,9 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 
 #include "ipc/base/error.hpp"
+#include "ipc/base/printed.hpp"
 #include "ipc/scene/fit/fit_sums.hpp"
 
 namespace tact {
@@ -34,10 +34,8 @@ DensityGrid mask_on(const DensityGrid& grid, const DensityGrid& mask, const std:
     };
     const auto [low, high] = std::minmax_element(mask.values.begin(), mask.values.end());
     if (*low < -kOvershoot || *high > 1.0F + kOvershoot) {
-        char why[96];
-        std::snprintf(why, sizeof why, "its values go from %g to %g", static_cast<double>(*low),
-                      static_cast<double>(*high));
-        refuse(why, "a mask is 1 inside and 0 outside; scale it, or check that it is no density map");
+        refuse(printed("its values go from %g to %g", static_cast<double>(*low), static_cast<double>(*high)),
+               "a mask is 1 inside and 0 outside; scale it, or check that it is no density map");
     }
     DensityGrid out = grid;
     const bool same = same_grid(grid, mask);
@@ -45,13 +43,11 @@ DensityGrid mask_on(const DensityGrid& grid, const DensityGrid& mask, const std:
     for (std::uint32_t z = 0; z < grid.size[2]; ++z)
         for (std::uint32_t y = 0; y < grid.size[1]; ++y)
             for (std::uint32_t x = 0; x < grid.size[0]; ++x, ++i) {
-                float value = mask.values.size() > i && same ? mask.values[i] : 0.0F;
-                if (!same) {
-                    const Vec3 p_m = grid.origin_m + grid.spacing_m.cwiseProduct(Vec3(x, y, z));
-                    value = static_cast<float>(
-                        map_at(mask, (p_m - mask.origin_m).cwiseQuotient(mask.spacing_m), 0.0));
-                }
-                out.values[i] = std::clamp(value, 0.0F, 1.0F);
+                const Vec3 p_m = grid.origin_m + grid.spacing_m.cwiseProduct(Vec3(x, y, z));
+                const double value =
+                    same ? static_cast<double>(mask.values[i])
+                         : map_at(mask, (p_m - mask.origin_m).cwiseQuotient(mask.spacing_m), 0.0);
+                out.values[i] = static_cast<float>(std::clamp(value, 0.0, 1.0));
                 if (out.values[i] > 0.0F) ++inside;
             }
     if (inside == 0)

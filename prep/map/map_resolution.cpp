@@ -5,6 +5,7 @@
 #include "ipc/base/units.hpp"
 
 namespace tact {
+
 void check_resolution(double resolution_m, const std::string& option) {
     if (resolution_m >= 0.5 * kAngstromM && resolution_m <= 200.0 * kAngstromM) return;
     throw StartupError("use the resolution",

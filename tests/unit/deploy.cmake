@@ -14,6 +14,7 @@ set_tests_properties(reproduce_draw_test PROPERTIES TIMEOUT 120 SKIP_RETURN_CODE
 tact_tests(drill_command_tests SOURCES
         unit/deploy_drill_test.cpp unit/deploy_drilling_test.cpp unit/reproduce_test.cpp
     USES bench reproduce launch scene base shm topics SYSTEM nlohmann_json::nlohmann_json)
+tact_test(unit/deploy_info_test.cpp USES launch force scene reference SYSTEM nlohmann_json::nlohmann_json)
 tact_test(unit/deploy_run_test.cpp USES launch shm topics scene base)
 tact_test(unit/deploy_run_save_test.cpp USES launch shm topics scene base)
 tact_test(unit/deploy_scene_switch_test.cpp USES launch shm topics scene base)
@@ -44,6 +45,7 @@ if(TACT_GUI)
 endif()
 find_package(Python3 COMPONENTS Interpreter REQUIRED)
 add_test(NAME deploy_rights_test COMMAND Python3::Interpreter ${CMAKE_CURRENT_SOURCE_DIR}/unit/deploy_rights_test.py ${CMAKE_SOURCE_DIR})
+add_test(NAME deploy_dock_cache_test COMMAND Python3::Interpreter ${CMAKE_CURRENT_SOURCE_DIR}/unit/deploy_dock_cache_test.py $<TARGET_FILE_DIR:tact>)
 add_test(NAME certify_cli_test COMMAND Python3::Interpreter ${CMAKE_CURRENT_SOURCE_DIR}/unit/certify_cli_test.py $<TARGET_FILE_DIR:tact>)
 add_test(NAME config_check_test COMMAND Python3::Interpreter ${CMAKE_CURRENT_SOURCE_DIR}/unit/config_check_test.py $<TARGET_FILE_DIR:tact>
     WORKING_DIRECTORY ${CMAKE_SOURCE_DIR})

@@ -11,6 +11,10 @@
 
 #include "deploy/tact/child.hpp"
 #include "deploy/tact/x_server.hpp"
+#include "ipc/base/printed.hpp"
+#include "ipc/base/units.hpp"
+#include "ipc/scene/file/scene_meta.hpp"
+#include "tests/support/map_file.hpp"
 #include "tests/unit/gui_fake.hpp"
 
 namespace tact::gui_browser_window_test {
@@ -134,6 +138,44 @@ TEST_F(BrowserInTheWindow, marked_raw_data_in_the_folder_is_imported_and_run) {
         press("506 488");  // the button below the rows
     })) << log();
     EXPECT_TRUE(wait_for_words("showing " + folder_ + "/cache/tact/tetra-")) << log();
+}
+
+// xdotool presses a key for less than a frame; Backspace and Enter must reach the field all the same.
+TEST_F(BrowserInTheWindow, the_resolution_of_a_map_is_typed_corrected_and_entered) {
+    const Structure helix = fake::helix(18);
+    std::ofstream(folder_ + "/a.mrc", std::ios::binary)
+        << map_file_bytes(fake::density_of(helix, 24, 40.0 / 23.0, 3.0));
+    std::ofstream pdb(folder_ + "/a.pdb");
+    for (std::size_t i = 0; i < helix.size(); ++i) {
+        const Vec3 at_a = (helix.home_com_model_m + Vec3(static_cast<double>(helix.x_m[i]),
+                                                         static_cast<double>(helix.y_m[i]),
+                                                         static_cast<double>(helix.z_m[i]))) /
+                          kAngstromM;
+        pdb << printed("ATOM  %5zu  CA  ALA A%4zu    %8.3f%8.3f%8.3f  1.00  0.00           C\n", i + 1, i + 1,
+                       at_a.x(), at_a.y(), at_a.z());
+    }
+    pdb.close();
+    EXPECT_TRUE(until_words("importing " + folder_ + "/a.mrc", [] {
+        x("key --clearmodifiers o");
+        std::this_thread::sleep_for(milliseconds(500));
+        press("646 82");  // the folder: its parent, two folders, three scenes, map and structure
+        std::this_thread::sleep_for(milliseconds(500));
+        press("600 329");
+        press("600 355");
+        press("506 488");  // asks for the resolution
+        std::this_thread::sleep_for(milliseconds(500));
+        x("type --delay 100 19");
+        x("key BackSpace");
+        std::this_thread::sleep_for(milliseconds(300));
+        x("type --delay 100 1.5");
+        x("key Return");
+    })) << log();
+    const std::string baked = folder_ + "/cache/tact/a-";
+    ASSERT_TRUE(wait_for_words("showing " + baked)) << log();
+    for (const auto& file : std::filesystem::directory_iterator(folder_ + "/cache/tact")) {
+        if (file.path().extension() != ".tact") continue;
+        EXPECT_NEAR(read_meta(SceneFile::open(file.path())).resolution_m, 11.5 * kAngstromM, 1e-15);
+    }
 }
 
 }  // namespace

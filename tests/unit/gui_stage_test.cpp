@@ -2,6 +2,8 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <filesystem>
+#include <fstream>
 #include <string>
 
 #include "gui/render/screen.hpp"
@@ -259,6 +261,26 @@ TEST(Stereo, each_eye_has_its_area_of_the_output) {
     EXPECT_EQ(above.y_px, 540);
     EXPECT_EQ(above.height_px, 540);
     EXPECT_EQ(area_of_eye(StereoMode::anaglyph, 1, 640, 480).width_px, 640);
+}
+
+// Among so many rotations, some quaternions change their last digit when their rounded numbers are normalized.
+TEST(StageFile, any_rotation_is_found_again_in_its_file_and_no_other) {
+    SeededRandom random(11);
+    char folder[] = "/tmp/tact-stage-XXXXXX";
+    const std::filesystem::path path = std::filesystem::path(mkdtemp(folder)) / "lab.toml";
+    StageSettings s;
+    int changed = 0;
+    for (int k = 0; k < 300; ++k) {
+        s.T_screen_world.q = random.rotation();
+        const std::string text = stage_text(s);
+        std::ofstream(path) << text << std::flush;
+        EXPECT_TRUE(is_in_stage_file(s, path)) << text;
+        if (stage_text(read_stage_file(path)) != text) ++changed;
+    }
+    EXPECT_GT(changed, 0) << "otherwise this tests nothing";
+    s.eyes.apart_m += 1e-6;
+    EXPECT_FALSE(is_in_stage_file(s, path));
+    std::filesystem::remove_all(folder);
 }
 
 }  // namespace

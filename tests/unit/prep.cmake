@@ -14,7 +14,7 @@ tact_tests(prep_mesh_tests SOURCES
 find_package(nlohmann_json REQUIRED)
 tact_tests(prep_files_tests SOURCES
         unit/prep_cli_test.cpp unit/prep_export_test.cpp unit/prep_poses_file_test.cpp unit/prep_best_codebook_test.cpp
-        unit/prep_field_test.cpp unit/prep_bent_test.cpp
+        unit/prep_field_test.cpp unit/prep_bent_test.cpp unit/prep_residue_column_test.cpp
     USES prep_modes prep_synthetic scene prep_export prep_cif prep_structure prep_input base prep_codebook prep_field SYSTEM
         nlohmann_json::nlohmann_json tact_gemmi)
 target_compile_definitions(prep_files_tests PRIVATE TACT_PREP="$<TARGET_FILE:tact-prep>")

@@ -15,8 +15,7 @@ constexpr PassedOption kDockPrep[] = {
     {"--resolution-a", "A",
      "Resolution of the map (angstrom), as published with it; required unless half-maps are given"},
     {"--half-map", "FILE",
-     "One of the two half-maps, given twice: the resolution is where their Fourier shell correlation falls "
-     "to "
+     "One of the two half-maps, given twice: the resolution is where their Fourier shell correlation is "
      "0.143",
      true},
     {"--mask", "FILE", "Map that is 1 inside and 0 outside: density outside becomes background", true},
