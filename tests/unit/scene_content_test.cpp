@@ -97,6 +97,8 @@ TEST(SceneContent, every_field_of_meta_is_checked) {
         refused("map_background", [bad](SceneMeta& m) { m.map_background = bad; });
         refused("contour", [bad](SceneMeta& m) { m.contour = bad; });
         refused("resolution_m", [bad](SceneMeta& m) { m.resolution_m = bad; });
+        refused("resolution_m",
+                [](SceneMeta& m) { m.resolution_m = 0.0; });  // of a docking scene it is never unknown
     }
     refused("title", [](SceneMeta& m) { std::memset(m.title, 'x', sizeof m.title); });
     refused("title", [](SceneMeta& m) { m.title[0] = '\x1b'; });
