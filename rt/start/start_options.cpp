@@ -98,9 +98,14 @@ void describe(CLI::App& app, StartOptions& o, StartOverrides& v) {
         ->type_name("N/M")
         ->check(CLI::Range(1.0, 20000.0))
         ->capture_default_str();
-    app.add_option("--friction", o.surface.friction, "Friction coefficient of the surface")
+    app.add_option("--friction", o.surface.friction,
+                   "Friction coefficient of the surface, before the tool slides")
         ->check(CLI::Range(0.0, 2.0))
         ->capture_default_str();
+    app.add_option("--dynamic-friction", o.surface.dynamic_friction,
+                   "Friction coefficient while the tool slides, at most that of --friction; default: equal")
+        ->type_name("MU")
+        ->check(CLI::Range(0.0, 2.0));
     app.add_option(
            "--mode", v.surface_mode,
            "Contact search on the surface; chr: refined around the tool, which saves the servo no time")

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <string>
 
 #include "rt/force/surface/surface_model.hpp"
@@ -95,7 +96,8 @@ Path random_path(const MeshScene& scene, SeededRandom& random) {
     return path;
 }
 
-void expect_passive(const MeshScene& scene, bool shading, double friction, int paths) {
+void expect_passive(const MeshScene& scene, bool shading, double friction, int paths,
+                    std::optional<double> dynamic_friction = {}) {
     SeededRandom random(11);
     int closed = 0;
     for (int k = 0; k < paths; ++k) {
@@ -106,6 +108,7 @@ void expect_passive(const MeshScene& scene, bool shading, double friction, int p
                                  .stiffness_n_m = 1000.0,
                                  .damping_n_s_m = 0.0,
                                  .friction = friction,
+                                 .dynamic_friction = dynamic_friction,
                                  .shading = shading},
                                 path, speed_m_s);
         if (!e.closed) continue;
@@ -122,6 +125,12 @@ TEST(SurfaceEnergy, a_closed_excursion_gains_nothing_at_any_speed) {
     for (const auto& scene : scenes()) {
         for (const bool shading : {false, true})
             for (const double friction : {0.0, 0.2, 0.8}) expect_passive(*scene, shading, friction, 150);
+    }
+}
+
+TEST(SurfaceEnergy, a_closed_excursion_with_static_and_dynamic_friction_gains_nothing) {
+    for (const auto& scene : scenes()) {
+        for (const bool shading : {false, true}) expect_passive(*scene, shading, 0.8, 60, 0.3);
     }
 }
 

@@ -164,6 +164,33 @@ TEST(Tool, friction_holds_a_box_inside_the_cone_and_lets_it_slide_at_the_rim) {
     EXPECT_NEAR(-slides.force_n.x(), kFriction * slides.force_n.y(), 0.02);
 }
 
+TEST(Tool, a_box_holds_up_to_the_static_coefficient_and_slides_with_the_dynamic_one) {
+    constexpr double kDepth = 0.001, kStep = 2e-5;
+    SurfaceSettings settings = plain(0.5);
+    settings.dynamic_friction = 0.2;
+    Hand hand(box_on_plane(), settings, pose({-0.02, 0.02, 0.0}));
+    (void)hand.lead(pose({-0.02, 0.005 - kDepth, 0.0}));
+    const auto drag = [&](double to_m) {
+        const Vec3 force_n = hand.step(pose({-0.02 + to_m, 0.005 - kDepth, 0.0})).force_n;
+        return std::hypot(force_n.x(), force_n.z()) / force_n.y();
+    };
+    double way_m = 0.0, share = 0.0;
+    for (; way_m < 0.48 * kDepth; way_m += kStep) share = drag(way_m);
+    EXPECT_FALSE(hand.model->slides());
+    EXPECT_GT(share, 0.44);
+    for (; way_m < 2.0 * kDepth; way_m += kStep) share = drag(way_m);
+    for (; way_m < 0.03; way_m += kStep) {
+        share = drag(way_m);
+        ASSERT_NEAR(share, 0.2, 0.01) << "after " << way_m << " m";
+    }
+    EXPECT_TRUE(hand.model->slides());
+    for (int i = 0; i < 25; ++i) (void)drag(way_m);
+    EXPECT_FALSE(hand.model->slides());
+    const double most_m = way_m + 0.25 * kDepth;
+    for (; way_m < most_m; way_m += kStep) share = drag(way_m);
+    EXPECT_GT(share, 0.4);
+}
+
 // Pose over the rough sphere with the tip about `depth` deep.
 Pose slide(double t, double depth) {
     const double around = 1.1 * t, up = 0.9 * std::sin(0.61 * t);

@@ -20,7 +20,9 @@ constexpr PassedOption kTouchPrep[] = {
 constexpr PassedOption kTouchController[] = {
     {"--tool-radius-mm", "MM", "Radius of the ball that touches the surface (mm); 0: a point"},
     {"--stiffness", "N/M", "Stiffness of the surface (N/m)"},
-    {"--friction", "MU", "Friction coefficient of the surface"},
+    {"--friction", "MU", "Friction coefficient of the surface, before the tool slides"},
+    {"--dynamic-friction", "MU",
+     "Friction coefficient while the tool slides, at most that of --friction; default: equal"},
     {"--mode", "off-brute|off-tree|chr",
      "Contact search on the surface; chr: refined around the tool, which saves the servo no time"},
 };

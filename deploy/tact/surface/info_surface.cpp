@@ -24,7 +24,7 @@ constexpr const char* kFormulas[] = {
     "meets triangles",
     "F = stiffness * (c - g) at rest, without friction and shading; world, N",
     "friction: c stays in place within friction * p of its frictionless position x along the surface, p = |x "
-    "- g|",
+    "- g|; friction: the static coefficient, while c slides (until it has rested for 20 ms) the dynamic one",
     "shading: + stiffness * sum w_i s_i (N_i - n_i), n_i the contact normals that hold x with weights w_i, "
     "N_i the normal interpolated there, s_i from 1 to 0 for angles of 20 to 40 degrees between them",
     "stiffness, friction, radius, damping and the force limit are settings of the controller, not of the "

@@ -16,7 +16,6 @@ constexpr double kStaysSteps = 3.0;  // a facet that holds for so many steps is 
 constexpr int kRounds = 4;
 constexpr int kNewtonSteps = 2;
 constexpr double kNewtonMargins = 16.0, kNewtonRadii = 0.1;
-constexpr double kRestingMargins = 0.02;
 constexpr double kNearerMargins = 0.05;
 constexpr double kBorder = 0.1;  // margins: touches are judged again in double precision
 
@@ -285,7 +284,6 @@ Contact SurfaceContact::follow(const Vec3& goal_m, std::uint32_t moves_max,
         const double length = move.move_m.norm();
         const bool cut = length > reach_now;
         if (cut) move.move_m *= reach_now / length;
-        // Shorter moves are rounding noise; the proxy stays at rest.
         const Vec3 moved_m =
             cut || length > kRestingMargins * settings_.margin_m ? move.move_m : Vec3(Vec3::Zero());
         proxy_m_ += moved_m;

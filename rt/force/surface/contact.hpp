@@ -70,6 +70,8 @@ public:
     // A ball at rest on a plane is below it by its rounding, a part of the margin. It must not catch the edge of the next
     // triangle of that plane.
     static constexpr double kSunkMargins = 0.1;
+    // Shorter moves are rounding noise; the proxy stays at rest.
+    static constexpr double kRestingMargins = 0.02;
     static constexpr std::uint32_t kMovesMost = 24;  // of a step
     static constexpr std::size_t kLeavesMax = 4096;
     // A step starts no further move after this many queries, about 100 us.
@@ -89,6 +91,12 @@ public:
     void use(const SurfaceMesh& mesh) noexcept TACT_RT;
     // Puts the proxy at the goal or, if that is inside a closed surface, at the nearest position outside.
     void seat(const Vec3& goal_m) noexcept TACT_RT;
+    // The coefficient for the next steps (stick_slip.hpp).
+    void set_friction(double friction) noexcept TACT_RT { settings_.friction = friction; }
+    // The last step moved the proxy by more than rounding.
+    [[nodiscard]] bool moved() const noexcept TACT_RT {
+        return moved_m_ > kRestingMargins * settings_.margin_m;
+    }
     Contact follow(const Vec3& goal_m, std::uint32_t moves_max,
                    const Deadline& deadline = {}) noexcept TACT_RT;
 

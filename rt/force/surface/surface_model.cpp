@@ -44,6 +44,7 @@ void check_surface_settings(const SurfaceSettings& s) {
     within("stiffness in N/m", s.stiffness_n_m, 1.0, 20000.0);
     within("damping in N s/m", s.damping_n_s_m, 0.0, 10.0);
     within("friction", s.friction, 0.0, 2.0);
+    if (s.dynamic_friction) within("dynamic friction", *s.dynamic_friction, 0.0, s.friction);
     within("force limit in N", s.force_n_max, 0.1, 100.0);
 }
 
@@ -54,6 +55,7 @@ SurfaceModel::SurfaceModel(const SceneMeta& meta, const SurfaceMesh& mesh, const
       solver_(mesh, contact_settings(meta, settings)),
       force_({settings.stiffness_n_m, settings.damping_n_s_m, kDampedDepthM, settings.friction,
               settings.force_n_max, kLagN / settings.stiffness_n_m}),
+      stick_slip_(settings.friction, settings.dynamic_friction.value_or(settings.friction)),
       full_(mesh) {
     if (settings.mode == SurfaceMode::off_brute) regime_ = TouchRegime::brute;
     if (settings.mode == SurfaceMode::chr)
@@ -120,6 +122,7 @@ void SurfaceModel::reset(const ToolState& tool) noexcept {
     fade_.cut();
     contact_ = {};
     force_.reset();
+    stick_slip_.reset();
     ++grips_;
     seated_ = tool_is_there(tool.T_world_tool);
     use_full_surface();
@@ -203,6 +206,7 @@ StepResult SurfaceModel::step(const ToolState& tool, const Budget& budget) noexc
             solver_.seat(goal_m);
             seated_ = true;
             force_.reset();
+            stick_slip_.reset();
             ++grips_;
         }
         if (seated_) {
@@ -213,6 +217,7 @@ StepResult SurfaceModel::step(const ToolState& tool, const Budget& budget) noexc
             choose_surface(goal_m, budget.fidelity);
             const bool hurried = budget.deadline.passed();
             const Vec3 moved_m = goal_m - solver_.goal_m();
+            solver_.set_friction(stick_slip_.coefficient());
             contact_ = solver_.follow(goal_m, hurried ? 1 : moves(budget.fidelity), budget.deadline);
             const bool on_time = !hurried && !contact_.late;
             const double planned = lag_.moves(moves(budget.fidelity));
@@ -227,6 +232,10 @@ StepResult SurfaceModel::step(const ToolState& tool, const Budget& budget) noexc
             depth_m_ = (contact_.proxy_m - goal_m).norm();
             const double pulled_n = newton * depth_m_;
             note_lag();
+            if (contact_.planes > 0)
+                stick_slip_.add(contact_.lift_m.norm(), contact_.rub_m.norm(), solver_.moved(), step_s());
+            else
+                stick_slip_.reset();
             result.wrench_world = fade_.show({force_n(tool, moved_m), Vec3::Zero()});
             result.load.error = 2.0 * newton * solver_.settings().margin_m + force_.off_n();
             if (lagged_ || contact_.state != ContactState::settled)
@@ -236,6 +245,7 @@ StepResult SurfaceModel::step(const ToolState& tool, const Budget& budget) noexc
                 use_full_surface();
                 solver_.seat(goal_m);
                 force_.reset();
+                stick_slip_.reset();
                 ++grips_;
                 ++released_;
             }

@@ -28,6 +28,7 @@
 
 #include <array>
 #include <memory>
+#include <optional>
 
 #include "ipc/scene/file/scene_file.hpp"
 #include "ipc/scene/file/scene_meta.hpp"
@@ -39,6 +40,7 @@
 #include "rt/force/surface/contact_force.hpp"
 #include "rt/force/surface/lag_record.hpp"
 #include "rt/force/surface/shading.hpp"
+#include "rt/force/surface/stick_slip.hpp"
 #include "rt/force/surface/surface_touch.hpp"
 #include "rt/force/surface/triple_buffer.hpp"
 
@@ -52,7 +54,8 @@ struct SurfaceSettings {
     double radius_m = 0.0;  // of the tool; 0: a point, modelled as a ball of radius kPointM
     double stiffness_n_m = 500.0;
     double damping_n_s_m = 0.5;
-    double friction = 0.2;
+    double friction = 0.2;                     // static coefficient
+    std::optional<double> dynamic_friction{};  // of a tool that slides; none: equal to the static one
     bool shading = true;
     double force_n_max = 12.0;
     SurfaceMode mode = SurfaceMode::off_tree;
@@ -97,6 +100,7 @@ public:
     // The normal of the last step's force times its length per stiffness, in world metres: the axis of the friction cone.
     [[nodiscard]] const Vec3& push_world_m() const { return force_.push_m(); }
     // Difference of the last step's force from full shading without pace.
+    [[nodiscard]] bool slides() const noexcept { return stick_slip_.slides(); }  // after the last step
     [[nodiscard]] double shading_loss_n() const { return force_.off_n(); }
     [[nodiscard]] std::uint64_t lagging_steps() const { return lagging_; }  // since construction
 
@@ -132,6 +136,7 @@ private:
     ForceFade fade_;
     ShadedFacet shaded_;
     ContactForce force_;
+    StickSlip stick_slip_;
     LagRecord lag_;
     double depth_m_ = 0.0;  // from the tool to the proxy in the last step, model metres
     bool lagged_ = false;   // since the proxy was last free

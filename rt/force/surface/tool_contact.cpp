@@ -18,7 +18,6 @@ constexpr double kGrows = 4.0;       // growth of the longest move after a cut m
 constexpr double kNextMoves = 3.0;   // longest move after an uncut move, in lengths of that move
 constexpr double kShrinks = 0.5;     // factor after a move without room for its half-spaces
 constexpr double kLeastMargins = 8.0;
-constexpr double kRestingShare = 0.02;  // fraction of a margin; shorter moves are rounding noise
 
 Vec3 linear(const Vec6& y) { return y.head<3>(); }
 
@@ -234,7 +233,7 @@ ToolTouch ToolContact::follow(const Pose& goal, const Limits& limits, const Dead
             if (std::find(held_.begin(), end, touch.place[i].point) == end)
                 held_[held_count_++] = touch.place[i].point;
         }
-        if (move.cut || move.short_ || length > kRestingShare * settings_.margin_m) {
+        if (move.cut || move.short_ || length > SurfaceContact::kRestingMargins * settings_.margin_m) {
             proxy_.p_m += move.y.head<3>();
             proxy_.q =
                 (quat_from_rotation_vector(move.y.tail<3>() / points_.gyration_m()) * proxy_.q).normalized();

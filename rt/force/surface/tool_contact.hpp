@@ -76,6 +76,12 @@ public:
     static constexpr int kSeatingMost = 400;
     void seat(const Pose& goal) noexcept TACT_RT;
     [[nodiscard]] bool seating() const noexcept TACT_RT { return seating_ > 0; }
+    // The coefficient for the next steps (stick_slip.hpp).
+    void set_friction(double friction) noexcept TACT_RT { settings_.friction = friction; }
+    // The last step moved the proxy by more than rounding.
+    [[nodiscard]] bool moved() const noexcept TACT_RT {
+        return last_move_m_ > SurfaceContact::kRestingMargins * settings_.margin_m;
+    }
     // Of one step; queries: of triangles, and as many of distances.
     struct Limits {
         std::uint32_t points = 1, moves = 1, queries = kQueriesMost;

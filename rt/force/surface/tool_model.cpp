@@ -51,6 +51,7 @@ ToolModel::ToolModel(const SceneMeta& meta, const SurfaceMesh& mesh, const Touch
               .friction = 0.0,  // the proxy has it
               .force_n_max = settings.force_n_max,
               .lag_m = SurfaceModel::kLagN / settings.stiffness_n_m}),
+      stick_slip_(settings.friction, settings.dynamic_friction.value_or(settings.friction)),
       gyration_world_m_(solver_.points().gyration_m() * meta.world_per_model),
       torque_n_m_rad_(settings.stiffness_n_m * gyration_world_m_ * gyration_world_m_) {
     if (settings.mode == SurfaceMode::off_brute) regime_ = TouchRegime::brute;
@@ -116,6 +117,7 @@ void ToolModel::reset(const ToolState& tool) noexcept {
     if (valid && !keeps) {
         solver_.seat(goal(tool));
         force_.reset();
+        stick_slip_.reset();
     }
     seated_ = valid;
 }
@@ -186,6 +188,20 @@ Wrench ToolModel::wrench(const ToolState& tool, const Vec6& way_m, const Vec6& m
     return {force_n.head<3>(), gyration_world_m_ * force_n.tail<3>()};
 }
 
+void ToolModel::note_friction(const Vec6& way_m) noexcept {
+    if (touch_.places == 0) {
+        stick_slip_.reset();
+        return;
+    }
+    Vec6 lift_m = Vec6::Zero();
+    for (std::uint32_t i = 0; i < touch_.places; ++i) {
+        const TouchedPlace& p = touch_.place[i];
+        lift_m.head<3>() += p.weight_m * p.normal;
+        lift_m.tail<3>() += p.weight_m / solver_.points().gyration_m() * p.lever_m.cross(p.normal);
+    }
+    stick_slip_.add(lift_m.norm(), (way_m - lift_m).norm(), solver_.moved(), step_s());
+}
+
 StepResult ToolModel::step(const ToolState& tool, const Budget& budget) noexcept {
     const Instant begin = Monotonic::now();
     StepResult result;
@@ -203,6 +219,7 @@ StepResult ToolModel::step(const ToolState& tool, const Budget& budget) noexcept
         if (!seated_ && !clutch) {
             solver_.seat(to);
             force_.reset();
+            stick_slip_.reset();
             seated_ = true;
             ++grips_;
         }
@@ -215,6 +232,7 @@ StepResult ToolModel::step(const ToolState& tool, const Budget& budget) noexcept
                 fade_.rise();
             const bool hurried = budget.deadline.passed();
             const Vec6 moved_m = solver_.way_m(solver_.goal(), to);
+            solver_.set_friction(stick_slip_.coefficient());
             touch_ = solver_.follow(to,
                                     {.points = result.load.items,
                                      .moves = hurried ? 1 : kMovesMost,
@@ -231,6 +249,7 @@ StepResult ToolModel::step(const ToolState& tool, const Budget& budget) noexcept
             if (!on_time || touch_.state == ContactState::lagging) result.status = StepStatus::out_of_time;
             const Vec6 way_m = solver_.way_m(to, solver_.proxy());
             const double pulled_n = settings_.stiffness_n_m * meta_.world_per_model * way_m.norm();
+            note_friction(way_m);
             if (touch_.state != ContactState::settled || !on_time)
                 result.load.error =
                     std::max(result.load.error, 2.0 * std::min(pulled_n, settings_.force_n_max));
@@ -240,6 +259,7 @@ StepResult ToolModel::step(const ToolState& tool, const Budget& budget) noexcept
                 fade_.follow(fade_);
                 solver_.seat(to);
                 force_.reset();
+                stick_slip_.reset();
                 ++grips_;
                 ++released_;
             }

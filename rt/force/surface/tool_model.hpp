@@ -73,6 +73,7 @@ public:
     [[nodiscard]] PathLoad predict(float fidelity) const noexcept TACT_RT override;
     [[nodiscard]] const ToolTouch& tool_touch() const { return touch_; }  // of the last step
     [[nodiscard]] const ToolContact& contact() const { return solver_; }
+    [[nodiscard]] bool slides() const noexcept { return stick_slip_.slides(); }  // after the last step
     [[nodiscard]] std::uint64_t lagging_steps() const { return lagging_; }
     [[nodiscard]] std::uint64_t released() const { return released_; }
 
@@ -80,6 +81,7 @@ private:
     [[nodiscard]] const NearSurface* choose_surface(float fidelity) noexcept TACT_RT;
     [[nodiscard]] Pose goal(const ToolState& tool) const noexcept TACT_RT;
     [[nodiscard]] Vec6 shaded_m() const noexcept TACT_RT;
+    void note_friction(const Vec6& way_m) noexcept TACT_RT;
     Wrench wrench(const ToolState& tool, const Vec6& way_m, const Vec6& moved_m) noexcept TACT_RT;
 
     SceneMeta meta_;
@@ -89,6 +91,7 @@ private:
     TouchRegime regime_ = TouchRegime::tree;
     ToolTouch touch_;
     ToolContactForce force_;
+    StickSlip stick_slip_;
     ForceFade fade_;
     double gyration_world_m_, torque_n_m_rad_;
     bool asked_ = false, seated_ = false;
