@@ -8,11 +8,9 @@ tact_test(unit/force_flexible_test.cpp USES force scene prep_codebook prep_modes
 tact_test(unit/force_docking_test.cpp USES force)
 tact_tests(force_surface_tests SOURCES
         unit/force_surface_test.cpp unit/force_surface_modes_test.cpp unit/force_surface_settled_test.cpp
-        unit/force_surface_energy_test.cpp
+        unit/force_surface_energy_test.cpp unit/force_stick_slip_test.cpp
     USES force prep_surface prep_synthetic prep_mesh_file reference)
-tact_tests(force_surface_friction_tests SOURCES
-        unit/force_surface_slide_test.cpp unit/force_stick_slip_test.cpp
-    USES force prep_surface prep_synthetic)
+tact_test(unit/force_surface_slide_test.cpp USES force prep_surface prep_synthetic)
 tact_test(unit/force_tool_test.cpp USES force prep_surface prep_synthetic)
 tact_tests(force_tool_tests SOURCES
         unit/force_touch_tool_test.cpp unit/force_tool_modes_test.cpp unit/force_tool_dense_test.cpp
