@@ -100,9 +100,9 @@ public:
     // The normal of the last step's force times its length per stiffness, in world metres: the axis of the friction cone.
     [[nodiscard]] const Vec3& push_world_m() const { return force_.push_m(); }
     // Difference of the last step's force from full shading without pace.
-    [[nodiscard]] bool slides() const noexcept { return stick_slip_.slides(); }  // after the last step
     [[nodiscard]] double shading_loss_n() const { return force_.off_n(); }
-    [[nodiscard]] std::uint64_t lagging_steps() const { return lagging_; }  // since construction
+    [[nodiscard]] bool slides() const noexcept { return stick_slip_.slides(); }  // after the last step
+    [[nodiscard]] std::uint64_t lagging_steps() const { return lagging_; }       // since construction
 
     [[nodiscard]] std::uint64_t released() const { return released_; }
 
