@@ -9,7 +9,7 @@ namespace {
 
 constexpr double kRestQuantile = 0.99, kRestStep = 0.02, kRestLeast_s = 1e-7;
 constexpr std::uint32_t kEvery = 16;  // cycles between choices
-constexpr double kSameError = 1e-12;
+constexpr double kSameError = 1e-12, kSameCost = 0.01;
 constexpr double kPartLeast = 0.02;  // limits the scaling of a partial cost to the whole
 // About one miss in a thousand cycles is what the quantile permits; the third within as many lowers the level. An
 // interrupted step counts less, since no level would have met the deadline.
@@ -96,12 +96,21 @@ bool LevelFit::fits(std::size_t row, const Limits& limits, double part) const no
 }
 
 std::size_t LevelFit::best(const Limits& limits, double part, double cost_s_most) const noexcept {
-    std::size_t chosen = 0;
-    for (std::size_t i = 1; i < count_; ++i) {
-        const Row& row = rows_[i];
-        if (row.level > limits.level_max || row.cost_s > cost_s_most || !fits(i, limits, part)) continue;
-        if (row.error <= rows_[chosen].error + kSameError || !fits(chosen, limits, part)) chosen = i;
+    std::array<bool, kRowsMax> fitting{};
+    double least_error = 1e300, least_cost_s = 1e300;
+    for (std::size_t i = 0; i < count_; ++i) {
+        fitting[i] =
+            rows_[i].level <= limits.level_max && rows_[i].cost_s <= cost_s_most && fits(i, limits, part);
+        if (fitting[i]) least_error = std::min(least_error, rows_[i].error);
     }
+    const auto good = [&](std::size_t i) {
+        return fitting[i] && rows_[i].error <= (1.0 + kSmallLoss) * least_error + kSameError;
+    };
+    for (std::size_t i = 0; i < count_; ++i)
+        if (good(i)) least_cost_s = std::min(least_cost_s, rows_[i].cost_s);
+    std::size_t chosen = 0;
+    for (std::size_t i = 0; i < count_; ++i)
+        if (good(i) && rows_[i].cost_s <= (1.0 + kSameCost) * least_cost_s) chosen = i;
     return chosen;
 }
 

@@ -1,4 +1,6 @@
-// Chooses the level of a haptic path: the smallest error among the levels whose predicted cost fits the period.
+// Chooses the level of a haptic path: the smallest error among the levels whose predicted cost fits the period. Of those
+// within kSmallLoss of it the cheapest, since time that buys no accuracy only makes misses more likely; at equal costs the
+// highest.
 //
 // Rows        candidate levels with the cost and error that the model predicts. Dry cycles measure the cost of each
 //             row (calibrate), so the first armed cycle already has its level. A model may predict more in contact:
@@ -53,6 +55,7 @@ public:
     static constexpr double kLeapt = 1.1;
     static constexpr double kWorthGain = 0.15;
     static constexpr double kFreeSpread = 1.1;
+    static constexpr double kSmallLoss = 0.05;  // of the error
     static constexpr double kMissRetreat = 0.85;  // cost limit after a miss, relative to the present cost
 
     struct Row {

@@ -21,6 +21,7 @@ ForceModelCase tool_case(const char* name, const World& (*on)(), double grip_y_m
     c.make = [on] { return on().model({}); };
     c.grip = pose({0.0, grip_y_m, 0.0});
     c.touch = touch;
+    c.error_at_rest = 0.8;
     return c;
 }
 ForceModelCase sliding(ForceModelCase c) {

@@ -90,12 +90,17 @@ TEST(LevelFit, the_first_choice_is_the_row_of_least_error_among_those_that_fit) 
         const float chosen = fit.choose({.period_s = 1e-3});
         // The spread starts at its prior, whose bin of 1.15 ends at 1.1582. A new row uses at most 90 % of the limit.
         const double most_s = 0.88 * 0.7e-3 / 1.1582;
-        double best = 1e9;
+        double least_error = 1e9, least_cost_s = 1e9;
         float wanted = -1.0F;
         bool at_the_edge = false;
         for (const auto& row : rows) {
             at_the_edge = at_the_edge || std::abs(row.cost_s / most_s - 1.0) < 0.01;
-            if (row.cost_s <= most_s && row.error < best) best = row.error, wanted = row.level;
+            if (row.cost_s <= most_s) least_error = std::min(least_error, row.error);
+        }
+        for (const auto& row : rows) {
+            if (row.cost_s > most_s || row.error > 1.05 * least_error || row.cost_s > least_cost_s) continue;
+            least_cost_s = row.cost_s;
+            wanted = row.level;
         }
         if (wanted >= 0.0F && !at_the_edge) {
             EXPECT_EQ(chosen, wanted);
@@ -103,6 +108,17 @@ TEST(LevelFit, the_first_choice_is_the_row_of_least_error_among_those_that_fit) 
         }
     }
     EXPECT_GT(compared, 300);
+}
+
+TEST(LevelFit, time_that_buys_no_accuracy_is_not_spent) {
+    // Half of the error is worth four times the time, four hundredths of it are not.
+    EXPECT_EQ(with({{0.0F, 50 * kUs, 1.0}, {0.5F, 200 * kUs, 0.5}, {1.0F, 400 * kUs, 0.48}})
+                  .choose({.period_s = 1e-3}),
+              0.5F);
+    // At equal costs the highest level.
+    EXPECT_EQ(with({{0.0F, 50 * kUs, 1.0}, {0.5F, 50 * kUs, 1.0}, {1.0F, 50 * kUs, 1.0}})
+                  .choose({.period_s = 1e-3}),
+              1.0F);
 }
 
 TEST(LevelFit, a_costlier_row_with_a_larger_error_is_never_chosen) {

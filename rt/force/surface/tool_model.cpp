@@ -10,9 +10,10 @@ namespace {
 
 constexpr double kFarHandM = 1e3;
 constexpr double kBallMargin = 0.05;  // fraction of the ball's radius
-// Of a step that uses up its queries: 1.4 us for a triangle query with its share of distance queries, measured at 3.7 GHz,
-// over LevelFit::kSpeedLeast.
-constexpr double kStepUs = 5.0, kPointUs = 0.02, kQueryUs = 2.0;
+// Times of a step, of a move, of a point in a move and of queries: those measured at 2.4 GHz (TOOLS.md) times 1.25.
+constexpr double kStepUs = 5.0, kMoveUs = 2.0, kMovePointUs = 0.0045, kQueryUs = 1.8;
+// Moves of a step that uses up its queries.
+constexpr double kMovesUsual = 4.0, kQueriesPerMove = 25.0;
 
 float level_of(float fidelity) {
     return fidelity >= 0.0F ? std::min(fidelity, 1.0F) : 0.0F;  // NaN: the floor
@@ -93,13 +94,20 @@ std::uint32_t ToolModel::queries(float fidelity) noexcept {
                                std::lround(query_part(fidelity) * static_cast<float>(most - kQueriesLeast)));
 }
 
+double ToolModel::error_n(std::uint32_t points) const noexcept {
+    return settings_.stiffness_n_m * meta_.world_per_model *
+           (solver_.points().cover_m(points) + 2.0 * solver_.settings().margin_m);
+}
+
 PathLoad ToolModel::predict(float fidelity) const noexcept {
+    const std::uint32_t most = queries(fidelity);
     PathLoad load;
     load.items = items(fidelity);
-    load.cost_predicted =
-        Duration(std::llround(1e3 * (kStepUs + kPointUs * load.items + kQueryUs * queries(fidelity))));
-    const double newton = settings_.stiffness_n_m * meta_.world_per_model;
-    load.error = newton * (solver_.points().cover_m(load.items) + 2.0 * solver_.settings().margin_m);
+    const double moves = kMovesUsual + most / kQueriesPerMove;
+    load.cost_predicted = Duration(
+        std::llround(1e3 * (kStepUs + moves * (kMoveUs + kMovePointUs * load.items) + kQueryUs * most)));
+    load.error =
+        error_n(load.items) + 2.0 * record_.lagged(most) * std::min(record_.pull_n(), settings_.force_n_max);
     return load;
 }
 
@@ -206,6 +214,7 @@ StepResult ToolModel::step(const ToolState& tool, const Budget& budget) noexcept
     const Instant begin = Monotonic::now();
     StepResult result;
     result.load = predict(budget.fidelity);
+    result.load.error = error_n(result.load.items);
     fade_.begin_step(step_s());
     const bool clutch = (tool.buttons & 1U) != 0;
     if (!holds_tool(tool.T_world_tool)) {
@@ -250,6 +259,7 @@ StepResult ToolModel::step(const ToolState& tool, const Budget& budget) noexcept
             const Vec6 way_m = solver_.way_m(to, solver_.proxy());
             const double pulled_n = settings_.stiffness_n_m * meta_.world_per_model * way_m.norm();
             note_friction(way_m);
+            if (on_time && touch_.looked > 0) record_.add(touch_, queries(budget.fidelity), pulled_n);
             if (touch_.state != ContactState::settled || !on_time)
                 result.load.error =
                     std::max(result.load.error, 2.0 * std::min(pulled_n, settings_.force_n_max));

@@ -13,7 +13,8 @@
 //          that does lags. Points added by the knob while the surface is between the others wait until they are free
 //          (tool_points.hpp).
 // Error    of n points: k times their cover, the depth to which a surface with a slope below 45 degrees against the
-//          tool's can enter between them. While gliding or lagging, twice the force instead.
+//          tool's can enter between them. While gliding or lagging, twice the force instead; predict() adds the share of
+//          the recent steps that would have lagged at the level (query_record.hpp).
 // Shading  as in surface_model.hpp at each contact, with the torque of the corrected force there. Pace and energy of
 //          (force, torque / g): contact_force.hpp.
 // Seat     After a reset or the clutch the proxy approaches the hand or the surface from outside within about 60 steps;
@@ -25,6 +26,7 @@
 
 #include "ipc/scene/mesh/touch_tool.hpp"
 #include "rt/force/surface/contact_force.hpp"
+#include "rt/force/surface/query_record.hpp"
 #include "rt/force/surface/shading.hpp"
 #include "rt/force/surface/surface_model.hpp"
 #include "rt/force/surface/tool_contact.hpp"
@@ -35,7 +37,7 @@ class ToolModel final : public ForceModel {
 public:
     static constexpr double kDampedDepthM = SurfaceModel::kDampedDepthM;
     static constexpr double kLostLimits = SurfaceModel::kLostLimits;
-    static constexpr std::uint32_t kPointsLeast = 32, kMovesMost = 32, kQueriesLeast = 64;
+    static constexpr std::uint32_t kPointsLeast = 32, kMovesMost = 32, kQueriesLeast = 32;
     static constexpr float kAllPointsAt = 0.5F;
 
     // settings.radius_m: radius of the points' balls in world metres; 0: the tool's. The memory behind mesh and forest
@@ -82,6 +84,7 @@ private:
     [[nodiscard]] Pose goal(const ToolState& tool) const noexcept TACT_RT;
     [[nodiscard]] Vec6 shaded_m() const noexcept TACT_RT;
     void note_friction(const Vec6& way_m) noexcept TACT_RT;
+    [[nodiscard]] double error_n(std::uint32_t points) const noexcept TACT_RT;  // between the points
     Wrench wrench(const ToolState& tool, const Vec6& way_m, const Vec6& moved_m) noexcept TACT_RT;
 
     SceneMeta meta_;
@@ -92,6 +95,7 @@ private:
     ToolTouch touch_;
     ToolContactForce force_;
     StickSlip stick_slip_;
+    QueryRecord record_;
     ForceFade fade_;
     double gyration_world_m_, torque_n_m_rad_;
     bool asked_ = false, seated_ = false;

@@ -16,7 +16,8 @@ constexpr std::uint32_t kWayQueries = 24;  // per path between two points
 constexpr double kFreeShare = 0.5;         // fraction of a ball's radius; nearer to the surface is not free
 constexpr std::uint32_t kRootsTried = 8;
 constexpr int kRaises = 16;
-constexpr float kRounding = 4e-7F;  // relative rounding of the coordinates
+constexpr float kNearlyBeyond = 1.0F - 1e-5F;  // share of the room; covers the rounding of single precision
+constexpr float kRounding = 4e-7F;             // relative rounding of the coordinates
 
 std::size_t filled_up(std::uint32_t count) { return (std::size_t{count} + 3) / 4 * 4; }
 
@@ -48,10 +49,10 @@ ToolPoints::ToolPoints(const SurfaceMesh& mesh, const TouchTool& tool, double ba
     reach_m_ += ball_m_;
 }
 
-void ToolPoints::turn_levers(const Pose& pose) noexcept {
+void ToolPoints::turn_levers(const Pose& pose, std::uint32_t points) noexcept {
     hand_m_ = pose.p_m;
     const Eigen::Matrix3f r = pose.q.toRotationMatrix().cast<float>();
-    const std::size_t n = filled_up(count_);
+    const std::size_t n = filled_up(points);
     const float *const x = local_[0].data(), *const y = local_[1].data(), *const z = local_[2].data();
     for (int axis = 0; axis < 3; ++axis) {
         float* const out = lever_[axis].data();
@@ -115,7 +116,7 @@ bool ToolPoints::seat_freely(const Pose& pose, Vec3& hand_m) noexcept {
             const SurfacePoint nearer = mesh_.nearest(hand_m, free_m, SurfacePoint::kNone, 4 * kVisits);
             if (nearer.triangle != SurfacePoint::kNone || nearer.exhausted) return false;
             anchor_m_ = hand_m;
-            turn_levers({hand_m, pose.q});
+            turn_levers({hand_m, pose.q}, count_);
             root_ = 0;
             put(0, free_m - lever_m(0).cast<double>().norm(), found.triangle);
             return true;
@@ -134,7 +135,7 @@ void ToolPoints::seat_one(Pose pose, Vec3& hand_m) noexcept {
     SurfacePoint found;
     Vec3 normal = Vec3::Zero();
     hand_m = anchor_m_ = pose.p_m;
-    turn_levers(pose);
+    turn_levers(pose, count_);
     for (std::uint32_t i = 0; i < tried; ++i) {
         found = mesh_.nearest(place_m(i), kFarAway, hint_[0], 4 * kVisits);
         if (found.triangle == SurfacePoint::kNone) return;
@@ -151,7 +152,7 @@ void ToolPoints::seat_one(Pose pose, Vec3& hand_m) noexcept {
         root_ = tried - 1;
         hand_m += found.point_m + 2.0 * ball_m_ * normal - place_m(root_);
         anchor_m_ = pose.p_m = hand_m;
-        turn_levers(pose);
+        turn_levers(pose, count_);
     }
     put(root_, query(place_m(root_), hint_[0]).distance_m, hint_[0]);
 }
@@ -248,7 +249,7 @@ void ToolPoints::wake(const Pose& pose, std::uint32_t points, std::span<const st
         tried_all_ = true;
         return;
     }
-    turn_levers(pose);
+    turn_levers(pose, count_);
     if (next_ >= points) next_ = 0;
     // At most one pass; points with sleeping parents cost nothing.
     for (std::uint32_t tried = 0; tried < points && queries > 0; ++tried) {
@@ -268,12 +269,13 @@ void ToolPoints::begin_move(const Pose& pose) noexcept {
             for (float& a : asked_[axis]) a -= by[static_cast<Eigen::Index>(axis)];
         anchor_m_ = pose.p_m;
     }
-    turn_levers(pose);
+    const std::uint32_t used = std::max(points_, root_ + 1);
+    turn_levers(pose, used);
     const Eigen::Vector3f from_anchor = (hand_m_ - anchor_m_).cast<float>();
     const float x = from_anchor.x(), y = from_anchor.y(), z = from_anchor.z();
     const float taken =
         static_cast<float>(ball_m_ + 2e-7 * reach_m_) + kRounding * (static_cast<float>(3.0 * reach_m_));
-    const std::size_t n = filled_up(count_);
+    const std::size_t n = filled_up(used);
     for (std::size_t i = 0; i < n; ++i) {
         const float dx = lever_[0][i] + x - asked_[0][i], dy = lever_[1][i] + y - asked_[1][i],
                     dz = lever_[2][i] + z - asked_[2][i];
@@ -288,41 +290,48 @@ double ToolPoints::way_m(std::uint32_t i, const Vec3& v_m, const Vec3& w_rad) co
     return (v_m + w_rad.cross(lever_m(i).cast<double>())).norm();
 }
 
-std::size_t ToolPoints::beyond(const Vec3& v_m, const Vec3& w_rad,
-                               std::span<std::uint32_t> out) const noexcept {
+// Calls visit(i) for each point whose displacement v + w x lever may exceed `share` of its room, until it returns false.
+// Almost always there is none: whole blocks are passed over without a branch per point.
+template <class Visit>
+void ToolPoints::visit_beyond(const Vec3& v_m, const Vec3& w_rad, float share, Visit visit) const noexcept {
     const Eigen::Vector3f v = v_m.cast<float>(), w = w_rad.cast<float>();
-    std::size_t found = 0;
     constexpr std::size_t kBlock = 64;
-    std::array<float, kBlock> over;
-    const float *const lx = lever_[0].data(), *const ly = lever_[1].data(), *const lz = lever_[2].data();
+    std::array<std::int32_t, kBlock> over;
+    const float *const lx = lever_[0].data(), *const ly = lever_[1].data(), *const lz = lever_[2].data(),
+                       *const room = room_.data();
+    const float vx = v.x(), vy = v.y(), vz = v.z(), wx = w.x(), wy = w.y(), wz = w.z(), part = share * share;
     for (std::size_t begin = 0; begin < points_; begin += kBlock) {
         const std::size_t n = std::min(kBlock, points_ - begin);
+        std::int32_t any = 0;
         for (std::size_t k = 0; k < n; ++k) {
             const std::size_t i = begin + k;
-            const float dx = v.x() + w.y() * lz[i] - w.z() * ly[i],
-                        dy = v.y() + w.z() * lx[i] - w.x() * lz[i],
-                        dz = v.z() + w.x() * ly[i] - w.y() * lx[i];
-            over[k] = dx * dx + dy * dy + dz * dz - room_[i] * room_[i];
+            const float dx = vx + wy * lz[i] - wz * ly[i], dy = vy + wz * lx[i] - wx * lz[i],
+                        dz = vz + wx * ly[i] - wy * lx[i];
+            over[k] = dx * dx + dy * dy + dz * dz > part * (room[i] * room[i]) ? 1 : 0;
+            any |= over[k];
         }
-        float most = -1.0F;
-        for (std::size_t k = 0; k < n; ++k) most = over[k] > most ? over[k] : most;
-        if (!(most > 0.0F)) continue;
-        for (std::size_t k = 0; k < n; ++k) {
-            if (!(over[k] > 0.0F)) continue;
-            if (found == out.size()) return found;
-            out[found++] = static_cast<std::uint32_t>(begin + k);
-        }
+        for (std::size_t k = 0; any != 0 && k < n; ++k)
+            if (over[k] != 0 && !visit(static_cast<std::uint32_t>(begin + k))) return;
     }
+}
+
+std::size_t ToolPoints::beyond(const Vec3& v_m, const Vec3& w_rad,
+                               std::span<std::uint32_t> out) const noexcept {
+    std::size_t found = 0;
+    visit_beyond(v_m, w_rad, 1.0F, [&](std::uint32_t i) {
+        if (found < out.size()) out[found++] = i;
+        return found < out.size();
+    });
     return found;
 }
 
 double ToolPoints::share_in_room(const Vec3& v_m, const Vec3& w_rad) const noexcept {
     double share = 1.0;
-    for (std::uint32_t i = 0; i < points_; ++i) {
-        if (!is_awake(i)) continue;
+    visit_beyond(v_m, w_rad, kNearlyBeyond, [&](std::uint32_t i) {
         const double way = way_m(i, v_m, w_rad), room = room_m(i);
-        if (way * share > room) share = room / way;
-    }
+        if (is_awake(i) && way * share > room) share = room / way;
+        return true;
+    });
     return share;
 }
 

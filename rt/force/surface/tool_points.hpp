@@ -50,7 +50,7 @@ public:
     [[nodiscard]] bool tried_all() const noexcept TACT_RT { return tried_all_; }
     [[nodiscard]] std::uint32_t awake() const noexcept TACT_RT { return awake_; }
 
-    // Computes levers and rooms (free displacements) for moves from this pose.
+    // Computes levers and rooms (free displacements) of the points in use for moves from this pose.
     void begin_move(const Pose& pose) noexcept TACT_RT;
     // Lists awake points whose displacement v + w x lever exceeds their room; as many as fit into `out`.
     std::size_t beyond(const Vec3& v_m, const Vec3& w_rad,
@@ -92,7 +92,9 @@ private:
     bool try_to_wake(std::uint32_t i, std::uint32_t& queries) noexcept TACT_RT;
     void put(std::uint32_t i, double distance_m, std::uint32_t hint) noexcept TACT_RT;
     void sleep(std::uint32_t i) noexcept TACT_RT;
-    void turn_levers(const Pose& pose) noexcept TACT_RT;
+    void turn_levers(const Pose& pose, std::uint32_t points) noexcept TACT_RT;  // of the first points
+    template <class Visit>
+    void visit_beyond(const Vec3& v_m, const Vec3& w_rad, float share, Visit visit) const noexcept TACT_RT;
     [[nodiscard]] double bound_now_m(std::uint32_t i) const noexcept TACT_RT;
 
     SurfaceMesh mesh_;  // a view
