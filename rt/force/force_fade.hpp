@@ -6,6 +6,7 @@
 // Out       When the held body changes, its last wrench shrinks by 40 N/s and 2 N m/s. Orders in quick succession do not
 //           delay this. A force of 3.3 N is gone after 83 ms; at 1 kHz that is a twelfth of the slew limit. The direction
 //           stays constant, as for a body that stays where the hand released it.
+// Jump      Where the model changes and the body stays (absorb()), the difference shrinks the same way.
 // Time      Each step has a length, so a fade takes the same time at any rate above 1 / kStepMostS. A longer step counts
 //           as kStepMostS: a pause of the machine must not cause a step of the force.
 // Runs on   servo thread, every step; constant time, no allocation
@@ -56,6 +57,12 @@ public:
         shown_ = leaving_ = before.shown_;
         ramp_ = 0.0;
     }
+    // Before show(): this step shows what the last one showed, and the difference to `felt` shrinks from here on.
+    void absorb(const Wrench& felt) noexcept TACT_RT {
+        leaving_ = {shown_.force_n - felt.force_n, shown_.torque_n_m - felt.torque_n_m};
+    }
+    // Of the force that shrinks.
+    [[nodiscard]] double leaving_n() const noexcept TACT_RT { return leaving_.force_n.norm(); }
     // No force at once.
     void cut() noexcept TACT_RT {
         ramp_ = 0.0;

@@ -55,7 +55,7 @@ public:
     static constexpr double kLeapt = 1.1;
     static constexpr double kWorthGain = 0.15;
     static constexpr double kFreeSpread = 1.1;
-    static constexpr double kSmallLoss = 0.05;  // of the error
+    static constexpr double kSmallLoss = 0.05;    // of the error
     static constexpr double kMissRetreat = 0.85;  // cost limit after a miss, relative to the present cost
 
     struct Row {

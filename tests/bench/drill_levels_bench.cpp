@@ -92,8 +92,9 @@ void level(benchmark::State& state) {
             const Vec3 centre = bone.bricks.to_voxels(tool.T_world_tool.p_m);
             const double radius = radius_m / voxel_m;
             const Instant begin = Monotonic::now();
-            BallMoments m = ball_moments(shared.octree, best_brick_kernels(), centre, radius,
-                                         DrillModel::block_of(fidelity) * radius, model.depth());
+            BallMoments m =
+                ball_moments(shared.octree, best_brick_kernels(), centre, radius,
+                             DrillModel::detail_of(fidelity).asked(model.depth()) * radius, model.depth());
             benchmark::DoNotOptimize(m.m0);
             force_us.push_back(to_us(Monotonic::now() - begin));
             us.push_back(to_us(result.load.cost));

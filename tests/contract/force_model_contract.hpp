@@ -31,9 +31,9 @@ struct ForceModelCase {
     std::function<Pose(int)> path = {};
     int path_steps = 50;
     // Relative difference allowed between the items that predict() expects and those that steps report, for models whose
-    // items depend on the surroundings. Their items may fall, and their errors rise, by three hundredths from level to level.
+    // items depend on the surroundings. Their items may fall, and their errors rise, by a twentieth from level to level.
     double items_tolerance = 0.0;
-    [[nodiscard]] double items_slack() const { return items_tolerance > 0.0 ? 0.97 : 1.0; }
+    [[nodiscard]] double items_slack() const { return items_tolerance > 0.0 ? 0.95 : 1.0; }
     // Part of the predicted error that a step at rest reports at least, for models that also predict how often steps lag.
     double error_at_rest = 1.0 - 1e-3;
     // Reason why all levels give the same force in this case; null: a lower level has a larger error.

@@ -78,7 +78,7 @@ TEST(DrillLevels, a_lower_level_cuts_fewer_bricks_a_step_and_the_same_mass_a_lit
 
 TEST(DrillLevels, the_reported_error_bounds_what_bone_that_waits_changes_in_the_force) {
     for (const double radius_m : {2e-3, 3e-3, 8e-3}) {
-        for (const float level : {0.0F, 0.3F, 0.6F}) {
+        for (const float level : {0.0F, 0.05F, 0.1F, 0.15F, 0.3F, 0.6F}) {
             Drilled full(radius_m), coarse(radius_m);
             full.begin(stroke_m(radius_m, 0.0));
             coarse.begin(stroke_m(radius_m, 0.0));
@@ -104,7 +104,7 @@ TEST(DrillLevels, the_reported_error_bounds_what_bone_that_waits_changes_in_the_
 // Pressed in by 20 mm/s with a burr that takes bone ten times as fast: blocks are not what is wrong here.
 TEST(DrillLevels, the_reported_error_bounds_it_where_bone_goes_fast) {
     for (const double radius_m : {3e-3, 8e-3}) {
-        for (const float level : {0.0F, 0.3F}) {
+        for (const float level : {0.0F, 0.05F, 0.1F, 0.15F, 0.3F}) {
             Drilled full(radius_m, 72, 400.0), coarse(radius_m, 72, 400.0);
             const auto at = [&](int i) {
                 return Vec3(1e-3 * std::sin(0.02 * i), 0.0, radius_m + 5e-4 - 2e-5 * i);
@@ -242,6 +242,38 @@ TEST(DrillLevels, a_deadline_that_passes_while_bone_is_cut_leaves_the_rest_for_l
     const auto whole = static_cast<double>(on_time.model->removed_levels());
     EXPECT_GT(whole, 255.0 * 100.0);
     EXPECT_NEAR(static_cast<double>(late.model->removed_levels()), whole, 0.02 * whole);
+}
+
+// Coarse blocks give another force, up to half of it: the hand gets there slowly, and the error says how far it still is.
+TEST(DrillLevels, a_fall_of_the_level_or_a_late_step_is_no_step_of_the_force) {
+    for (const bool late : {false, true}) {
+        Drilled d(8e-3);
+        d.model->turn_burr({0.0, 1e-3});
+        const Vec3 p_m(0.7e-3, 0.3e-3, 8e-3 - 1e-3);
+        d.begin(p_m);
+        d.model->turn_burr({0.0, 1e-4});
+        DeadlineChecks checks;
+        checks.replayed = true;
+        checks.passed_at = 1;
+        const Deadline passed(Instant::max(), &checks);
+        Vec3 before_n = d.step(p_m, 1.0F).wrench_world.force_n;
+        const Vec3 first_n = before_n;
+        double off_n = 0.0;
+        for (int i = 0; i < 100; ++i) {
+            const StepResult r =
+                late ? d.step(p_m, 1.0F, i < 50 ? passed : Deadline{}) : d.step(p_m, i < 50 ? 0.0F : 1.0F);
+            checks = {};
+            checks.replayed = true;
+            checks.passed_at = 1;
+            const Vec3 now_n = r.wrench_world.force_n;
+            EXPECT_LE((now_n - before_n).norm(), 0.0041) << i;
+            EXPECT_LE((now_n - first_n).norm(), r.load.error) << i;
+            off_n = std::max(off_n, (now_n - first_n).norm());
+            before_n = now_n;
+        }
+        EXPECT_GT(off_n, 0.015) << late;
+        EXPECT_LT((before_n - first_n).norm(), 1e-6) << late;
+    }
 }
 
 TEST(DrillLevels, the_depth_of_the_step_before_makes_no_step_and_no_oscillation) {

@@ -95,10 +95,43 @@ TEST(Erosion, alternating_groups_of_bricks_remove_the_same_mass) {
                      .radius_voxels = radius,
                      .exposure = exposure * (now - last[group]) / kSteps,
                      .groups = kGroups,
-                     .mask = 1U << group});
+                     .first = group});
         last[group] = now;
     }
     EXPECT_NEAR(static_cast<double>(erosion.removed()), right, 0.005 * right);
+}
+
+// Each brick is in one group; ranges of groups, also across the last one, are their sums.
+TEST(Erosion, groups_are_a_partition_and_about_equal) {
+    BoneBlock bone = solid(96);
+    MomentOctree octree(bone.bricks, bone.density);
+    Erosion erosion(octree, bone.density, bone.revision, 3);
+    const auto computed = [&](std::uint32_t groups, std::uint32_t first, std::uint32_t count) {
+        erosion.begin();
+        erosion.cut(best_brick_kernels(), {.from_voxels = Vec3::Constant(47.5),
+                                           .to_voxels = Vec3::Constant(47.5),
+                                           .radius_voxels = 200.0,
+                                           .exposure = 1e-9,  // so little that hardly a voxel changes
+                                           .groups = groups,
+                                           .first = first,
+                                           .count = count});
+        return erosion.pass().visited;
+    };
+    ASSERT_EQ(computed(1, 0, 1), 12U * 12U * 12U);
+    for (const std::uint32_t groups : {8U, 16U, 32U, 64U, 128U, 256U}) {
+        std::vector<std::uint32_t> bricks;
+        for (std::uint32_t g = 0; g < groups; ++g) bricks.push_back(computed(groups, g, 1));
+        EXPECT_EQ(std::accumulate(bricks.begin(), bricks.end(), 0U), 12U * 12U * 12U) << groups;
+        const double mean = 12.0 * 12.0 * 12.0 / groups;
+        EXPECT_LE(*std::max_element(bricks.begin(), bricks.end()), 1.5 * mean + 1.0) << groups;
+        EXPECT_GE(*std::min_element(bricks.begin(), bricks.end()), 0.5 * mean - 1.0) << groups;
+        for (const std::uint32_t first : {0U, 3U, groups / 2 + 1, groups - 2})
+            for (const std::uint32_t count : {2U, 5U, groups / 4}) {
+                std::uint32_t sum = 0;
+                for (std::uint32_t k = 0; k < count; ++k) sum += bricks[(first + k) % groups];
+                EXPECT_EQ(computed(groups, first, count), sum) << groups << ", " << first << ", " << count;
+            }
+    }
 }
 
 TEST(Erosion, rounding_is_unbiased_for_slow_cuts_and_soft_bone) {

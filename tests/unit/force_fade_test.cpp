@@ -126,6 +126,27 @@ TEST(ForceFade, at_1_khz_a_ramp_takes_256_steps_with_the_gain_of_a_count) {
     EXPECT_EQ(leaving.show({}).force_n.x(), 0.0);
 }
 
+TEST(ForceFade, a_jump_of_the_model_is_absorbed_and_gone_after_its_way) {
+    ForceFade fade;
+    for (int i = 0; i < 300; ++i) {
+        fade.begin_step(1e-3);
+        fade.rise();
+        static_cast<void>(fade.show({Vec3(1.0, 0.0, 0.0), Vec3::Zero()}));
+    }
+    double before_n = 1.0;
+    const Wrench other{Vec3(0.5, 0.0, 0.0), Vec3::Zero()};
+    for (int i = 0; i < 20; ++i) {
+        fade.begin_step(1e-3);
+        if (i == 0) fade.absorb(other);
+        const double now_n = fade.show(other).force_n.x();
+        EXPECT_NEAR(now_n, std::max(1.0 - 0.04 * i, 0.5), 1e-12) << i;
+        EXPECT_NEAR(fade.leaving_n(), now_n - 0.5, 1e-12);
+        EXPECT_LE(before_n - now_n, 0.04 + 1e-12);
+        before_n = now_n;
+    }
+    EXPECT_EQ(fade.gain(), 1.0);
+}
+
 TEST(ForceFade, a_pause_or_an_impossible_length_is_no_step_of_the_force) {
     for (const double step_s : {10.0, std::numeric_limits<double>::infinity()}) {
         ForceFade fade;

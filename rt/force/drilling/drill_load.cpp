@@ -7,9 +7,12 @@
 namespace tact {
 namespace {
 
-// ns, 2026-11-25, AVX-512 at 3.7 GHz: fit to the counts and times of README.md's table.
-constexpr double kDrillStepNs = 300.0, kBallNs = 150.0, kBlockNs = 12.0, kSumNs = 150.0, kCutNs = 600.0;
-constexpr double kErrorLeast = 0.012, kErrorPerBlock = 0.2, kErrorRough = 0.1;
+// ns, 2026-11-27, AVX2 at 2.4 GHz over 1.4: fit to steps of burrs of 20 and 40 mm at four levels, 1 and 4 kHz.
+constexpr double kDrillStepNs = 3400.0, kBallNs = 150.0, kBlockNs = 12.0, kSumNs = 145.0, kCutNs = 25.0,
+                 kChangedNs = 1240.0, kWalkedNs = 11.0;
+// Of the bricks that a burr meets, those that lose something in a step; blocks looked at to find one group of them.
+constexpr double kChangedShare = 0.6, kWalkedPerCut = 0.7;
+constexpr double kErrorLeast = 0.012, kErrorPerBlock = 0.2, kErrorRough = 0.6;
 constexpr double kErrorPerVoxel2 = 1.0, kErrorPerVoxel4 = 2.8, kErrorThinCap = 0.08;
 constexpr double kSurfacePerEdge2 = 1.5;  // cubes that a surface meets, on average of its directions
 
@@ -45,19 +48,21 @@ DrillWork surface_work(const BallLook& look, double block) noexcept {
 
 Duration drill_cost(const DrillWork& w) noexcept {
     return Duration(std::llround(kDrillStepNs + kBallNs * w.balls + kBlockNs * w.blocks + kSumNs * w.summed +
-                                 kCutNs * w.cut));
+                                 kCutNs * w.cut + kChangedNs * w.changed + kWalkedNs * w.walked));
 }
 
 DrillWork expected_work(const DrillWork& found, const BallLook& as, double block) noexcept {
     DrillWork work = found;
-    work.cut = 0.0;
+    work.cut = work.changed = work.walked = 0.0;
     if (!(as.block > 0.0) || !(as.depth > 0.0)) return work;
     const DrillWork then = surface_work(as, as.block), now = surface_work(as, block);
     work.blocks *= now.blocks / then.blocks;
-    // Where no brick was summed yet, those of the blocks' scale.
+    // Where few bricks were summed yet, those of the blocks' scale in addition.
     const double scale = found.blocks / then.blocks;
-    work.summed = then.summed > 1.0 && found.summed > 0.0 ? found.summed * now.summed / then.summed
-                                                          : scale * now.summed;
+    if (then.summed > 1.0 && found.summed > 0.0)
+        work.summed = found.summed * now.summed / then.summed;
+    else
+        work.summed = std::max(found.summed + scale * (now.summed - then.summed), 0.0);
     return work;
 }
 
@@ -65,11 +70,17 @@ DrillWork flat_work(const BallLook& look, double block) noexcept {
     DrillWork work = surface_work(look, block);
     work.balls = 1.0;
     work.cut = SurfaceInBone(look.radius, look.depth).met(8.0);
+    work.changed = kChangedShare * work.cut;
+    work.walked = kWalkedPerCut * work.cut;
     return work;
 }
 
-double block_error_share(double block, bool rough) noexcept {
-    return kErrorLeast + kErrorPerBlock * block * block + (rough ? kErrorRough : 0.0);
+double BlockDetail::asked(double depth) const noexcept {
+    return depth < 0.0 ? block : block * std::pow(depth_part(depth), -rough);
+}
+
+double block_error_share(const BlockDetail& d) noexcept {
+    return kErrorLeast + kErrorPerBlock * d.block * d.block + kErrorRough * d.rough * d.rough;
 }
 
 // Deep in bone the moment is small, and its direction less certain. A cap that is thinner than a voxel has an error of its

@@ -1,7 +1,7 @@
 // Work, time and error of a drilling step at a level, from what the last step found.
 //
-// Work     blocks and bricks that the force visits, bricks that erosion computes; as counted in a step, or expected at
-//          another level. Blocks of the force go as (touched area) / block^2, octree level by octree level; the last step's count
+// Work     blocks and bricks that the force and the measurement of its stiffness visit, bricks that erosion
+//          computes and changes; as counted in a step, or expected at another level. Blocks of the force go as (touched area) / block^2, octree level by octree level; the last step's count
 //          sets the scale.
 // Time     constants of one core (README.md); another core or instruction set has a factor common to all levels.
 // Error    against the published equations: shares of the elastic force for blocks and voxels, bounds of what README.md
@@ -21,12 +21,22 @@ namespace tact {
 struct DrillWork {
     double balls = 0.0, blocks = 0.0;  // whose moments were summed
     double summed = 0.0;               // bricks, voxel by voxel
-    double cut = 0.0;                  // bricks, by erosion
+    double cut = 0.0;                  // bricks whose voxels erosion computed
+    double changed = 0.0;              // of them, those that lost something
+    double walked = 0.0;               // blocks that erosion looked at to find them
 
     void add(const BallMoments& m) noexcept {
         balls += 1.0;
         blocks += static_cast<double>(m.blocks) - 512.0 * m.bricks;
         summed += m.bricks;
+    }
+    void add(const DrillWork& w) noexcept {
+        balls += w.balls;
+        blocks += w.blocks;
+        summed += w.summed;
+        cut += w.cut;
+        changed += w.changed;
+        walked += w.walked;
     }
     // Balls, blocks and voxels.
     [[nodiscard]] std::uint32_t items() const noexcept {
@@ -35,6 +45,14 @@ struct DrillWork {
 };
 
 [[nodiscard]] Duration drill_cost(const DrillWork& work) noexcept TACT_RT;
+
+// Of a level: the smallest block over the radius, and how little blocks shrink near the surface: 0 as in ball_moments(),
+// 1 not at all.
+struct BlockDetail {
+    double block = 0.1, rough = 0.0;
+    // What to ask ball_moments() for, over the radius, for a ball at this depth (below 0: unknown).
+    [[nodiscard]] double asked(double depth) const noexcept TACT_RT;
+};
 
 // What the blocks of one ball depend on, in voxels.
 struct BallLook {
@@ -45,11 +63,11 @@ struct BallLook {
 [[nodiscard]] DrillWork expected_work(const DrillWork& found, const BallLook& as,
                                       double block) noexcept TACT_RT;
 
-// Of a ball in flat solid bone, by the sizes alone; all bricks that it meets are cut.
+// Of a ball in flat solid bone, by the sizes alone.
 [[nodiscard]] DrillWork flat_work(const BallLook& look, double block) noexcept TACT_RT;
 
-// Of the elastic force, for blocks in radii. rough: blocks do not shrink near the surface.
-[[nodiscard]] double block_error_share(double block, bool rough) noexcept TACT_RT;
+// Of the elastic force.
+[[nodiscard]] double block_error_share(const BlockDetail& detail) noexcept TACT_RT;
 // Error of one ball, because bone is known by voxels only. elastic_full_n: elastic force at h = R; voxel: in radii.
 [[nodiscard]] double voxel_error_n(double elastic_full_n, double depth, double voxel) noexcept TACT_RT;
 // Newtons per exposure that is pending, of a ball of weight 1.

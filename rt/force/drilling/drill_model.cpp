@@ -13,13 +13,21 @@ namespace tact {
 namespace {
 
 constexpr double kNoHandM = 1e3;  // no hand is there
-// Of the radius; with larger blocks the slope is off by up to 40 %.
+// Smallest of the radius with which the stiffness is measured; larger where the level's are, since those make the force
+// whose slope it is. With larger ones the slope of small blocks is off by up to 40 %.
 constexpr double kBlockStiffness = 0.5 * kBlockMost;
+BlockDetail stiffness_detail(const BlockDetail& d) noexcept {
+    return {.block = std::max(d.block, kBlockStiffness), .rough = d.rough};
+}
 // Half of the way over which it is measured, in radii of the head, and at least in voxels: below that a force shows the steps of its voxels.
 constexpr double kStiffnessReach = 0.05, kStiffnessReachVoxels = 0.25;
+constexpr double kRoughUntil = 0.2;                      // level
+constexpr float kLateLevel = -1.0F, kLevelJump = 0.03F;  // a knob's slew rate moves less in a step
+constexpr BlockDetail kLate{.block = kBlockMost, .rough = 1.0};
 constexpr double kTypicalForceN = 3.0;  // of a surgeon's hand
-// In the pocket that it has cut, a burr touches over this times the area of flat bone at the same force.
-constexpr double kPocketArea = 3.5;
+// In the pocket that it has cut, a burr touches over 3.5 times the area of flat bone at the same force; a deeper one touches
+// more.
+constexpr double kPocketArea = 5.5;
 
 bool hand_is_there(const Pose& pose) noexcept {
     const double turn = pose.q.squaredNorm();
@@ -99,10 +107,11 @@ void DrillModel::turn_burr(const BurrDrive& drive) noexcept {
     drive_.step_s = std::min(drive_.step_s, kStepSMost);
 }
 
-double DrillModel::block_of(float fidelity) noexcept {
+BlockDetail DrillModel::detail_of(float fidelity) noexcept {
     const double level =
         fidelity >= 0.0F ? std::min(static_cast<double>(fidelity), 1.0) : 0.0;  // NaN: the floor
-    return kBlockCoarse * std::pow(kBlockFine / kBlockCoarse, level);
+    return {.block = kBlockCoarse * std::pow(kBlockFine / kBlockCoarse, level),
+            .rough = std::max(1.0 - level / kRoughUntil, 0.0)};
 }
 
 KnobSpec DrillModel::knob() const noexcept {
@@ -116,8 +125,18 @@ double DrillModel::rate_per_s() const noexcept {
 }
 
 DrillWork DrillModel::expected(float fidelity) const noexcept {
-    DrillWork work = expected_work(last_.work, last_.look, block_of(fidelity) * last_.look.radius);
-    if (led_) work.cut = turns_.bricks() * turns_.groups_at(fidelity, drive_.step_s) / turns_.groups();
+    const BlockDetail detail = detail_of(fidelity);
+    const auto asked = [&](const BlockDetail& d) { return d.asked(last_.look.depth) * last_.look.radius; };
+    DrillWork work = expected_work(last_.work, last_.look, asked(detail));
+    if (last_.still_look.block > 0.0)
+        work.add(expected_work(last_.still, last_.still_look, asked(stiffness_detail(detail))));
+    if (led_) {
+        const std::uint32_t groups = turns_.groups_at(fidelity, drive_.step_s);
+        const double share = static_cast<double>(groups) / turns_.groups();
+        work.cut = share * turns_.bricks().computed;
+        work.changed = share * turns_.bricks().changed;
+        work.walked = turns_.walked() * turns_.passes_of(groups);
+    }
     return work;
 }
 
@@ -126,22 +145,31 @@ PathLoad DrillModel::predict(float fidelity) const noexcept {
     const DrillWork work = expected(fidelity);
     load.items = work.items();
     // In free space and at the first contact, the cost in the pocket that the burr will cut.
-    DrillWork typical = flat_work(typical_, block_of(fidelity) * typical_.radius);
+    const BlockDetail detail = detail_of(fidelity);
+    const auto asked = [&](const BlockDetail& d) { return d.asked(typical_.depth) * typical_.radius; };
+    DrillWork typical = flat_work(typical_, asked(detail));
+    DrillWork still = flat_work(typical_, asked(stiffness_detail(detail)));
+    still.cut = still.changed = still.walked = 0.0;
+    typical.add(still);
     const double pocket = std::min(kPocketArea, 1.0 / typical_.depth);  // no more than half of the ball
     typical.blocks *= pocket;
     typical.summed *= pocket;
-    typical.cut *= pocket * static_cast<double>(turns_.groups_at(fidelity, drive_.step_s)) / turns_.groups();
+    const std::uint32_t groups = turns_.groups_at(fidelity, drive_.step_s);
+    const double share = static_cast<double>(groups) / turns_.groups();
+    typical.cut *= pocket * share;
+    typical.changed *= pocket * share;
+    typical.walked *= pocket * turns_.passes_of(groups);
     load.cost_predicted = std::max(drill_cost(work), drill_cost(typical));
     // A group waits for all steps between its cuts.
-    const double steps = static_cast<double>(turns_.groups()) / turns_.groups_at(fidelity, drive_.step_s);
+    const double steps = static_cast<double>(turns_.groups()) / groups;
     const double pending = 0.5 * (steps - 1.0) * rate_per_s() * drive_.step_s;
-    load.error = error_n(last_, block_of(fidelity), pending);
+    load.error = error_n(last_, detail, pending);
     return load;
 }
 
 // Scaling down to force_n_max turns a vector's error e at scale s into sqrt(2) s e at most, and into no more than e.
-double DrillModel::error_n(const BallForces& sum, double block, double pending) const noexcept {
-    const double error = block_error_share(block, sum.late) * sum.elastic_n + sum.voxel_error_n;
+double DrillModel::error_n(const BallForces& sum, const BlockDetail& detail, double pending) const noexcept {
+    const double error = block_error_share(detail) * sum.elastic_n + sum.voxel_error_n;
     const double scale = std::min(std::numbers::sqrt2 * sum.scale, 1.0);
     return std::min(scale * error, 2.0 * settings_.force_n_max) +
            std::min(sum.scale * sum.pending_n * pending, 2.0 * settings_.force_n_max);
@@ -176,7 +204,7 @@ void DrillModel::publish(const ModelCycle& cycle) noexcept {
     if (publisher_ != nullptr) publisher_->add(*this, cycle);
 }
 
-DrillModel::BallForces DrillModel::ball_forces(const ToolState& tool, double block, bool hurried,
+DrillModel::BallForces DrillModel::ball_forces(const ToolState& tool, const BlockDetail& detail, bool hurried,
                                                const Deadline& deadline) noexcept {
     BallForces sum;
     sum.late = hurried;
@@ -193,7 +221,10 @@ DrillModel::BallForces DrillModel::ball_forces(const ToolState& tool, double blo
         const ToolBall& ball = tool_.ball[i];
         if (!sum.late && i > 0) sum.late = deadline.passed();
         const double radius = ball.radius_m / per_voxel_m_;
-        const double used = (sum.late ? kBlockCoarse : block) * radius, depth = sum.late ? 1.0 : depths_[i];
+        // No first look for a rough one.
+        const bool unknown = depths_[i] < 0.0 && detail.rough > 0.0;
+        const double depth = sum.late || unknown ? 1.0 : depths_[i],
+                     used = (sum.late ? kLate : detail).asked(depth) * radius;
         const BallMoments m = ball_moments(bone_.octree, kernels_, now_voxels_[i], radius, used, depth);
         sum.work.add(m);
         depths_[i] = 0.0;
@@ -237,7 +268,8 @@ DrillModel::BallForces DrillModel::ball_forces(const ToolState& tool, double blo
     return sum;
 }
 
-Wrench DrillModel::still_wrench(const Pose& T_world_tool) const noexcept {
+Wrench DrillModel::still_wrench(const Pose& T_world_tool, const BlockDetail& detail,
+                                DrillWork& work) const noexcept {
     Wrench sum;
     const Quat q = T_world_tool.q.normalized();
     const Vec3 spin_rad_s = drive_.burr_rad_s * (q * Vec3::UnitZ());
@@ -248,8 +280,9 @@ Wrench DrillModel::still_wrench(const Pose& T_world_tool) const noexcept {
         const double radius = ball.radius_m / per_voxel_m_;
         const Vec3 arm_m = q * ball.centre_tool_m;
         const Vec3 centre = bone_.octree.bricks().to_voxels(meta_.to_model(T_world_tool.p_m + arm_m));
-        const BallMoments m =
-            ball_moments(bone_.octree, kernels_, centre, radius, kBlockStiffness * radius, depths_[i]);
+        const BallMoments m = ball_moments(bone_.octree, kernels_, centre, radius,
+                                           detail.asked(depths_[i]) * radius, depths_[i]);
+        work.add(m);
         if (!(m.m0 > 0.0)) continue;
         law.elastic_pa = elastic_pa_[i];
         const BurrForce f =
@@ -267,11 +300,12 @@ Wrench DrillModel::still_wrench(const Pose& T_world_tool) const noexcept {
     return sum;
 }
 
-void DrillModel::measure_stiffness(const Pose& T_world_tool) noexcept {
-    if (!measured_.due()) return;
+void DrillModel::measure_stiffness(const Pose& T_world_tool, const BlockDetail& detail) noexcept {
     const double h_m = std::max(kStiffnessReach * head_radius_m_, kStiffnessReachVoxels * per_voxel_m_);
-    measured_.note(still_wrench(measured_.moved(T_world_tool, h_m, lever_m_)),
-                   still_wrench(measured_.moved(T_world_tool, -h_m, lever_m_)), h_m, lever_m_);
+    const BallLook& look = last_.look;
+    last_.still_look = {look.radius, look.depth, detail.asked(look.depth) * look.radius};
+    const Pose at = measured_.next(T_world_tool, h_m, lever_m_);
+    measured_.note(still_wrench(at, detail, last_.still), h_m, lever_m_);
 }
 
 // Across the shaft, turning with the burr; never faster than a tenth of the servo's rate, which a hand still feels as
@@ -317,9 +351,9 @@ StepResult DrillModel::step(const ToolState& tool, const Budget& budget) noexcep
         else
             fade_.rise();
         const bool hurried = budget.deadline.passed();
-        const double block = block_of(budget.fidelity);
+        const BlockDetail detail = detail_of(budget.fidelity);
         const double pending = turns_.pending();
-        last_ = ball_forces(tool, block, hurried, budget.deadline);
+        last_ = ball_forces(tool, detail, hurried, budget.deadline);
         BallForces& sum = last_;
         elastic_n_ = sum.elastic_n;
         Wrench wrench = sum.wrench;
@@ -328,44 +362,59 @@ StepResult DrillModel::step(const ToolState& tool, const Budget& budget) noexcep
                      scale = size_n > settings_.force_n_max ? settings_.force_n_max / size_n : 1.0;
         sum.scale = scale;
         const double gain = fade_.gain() * scale;
-        result.wrench_world = fade_.show({gain * wrench.force_n, gain * wrench.torque_n_m});
-        result.load.error = error_n(sum, sum.late ? kBlockCoarse : block, pending);
+        const Wrench felt{gain * wrench.force_n, gain * wrench.torque_n_m};
+        // Other blocks give another force: not at once.
+        const float level = sum.late ? kLateLevel : budget.fidelity;
+        if (std::abs(level - level_) > kLevelJump) fade_.absorb(felt);
+        level_ = level;
+        result.wrench_world = fade_.show(felt);
+        result.load.error = error_n(sum, sum.late ? kLate : detail, pending) + fade_.leaving_n();
         if (sum.elastic_n > 0.0 && !sum.late)
-            measure_stiffness(tool.T_world_tool);
+            measure_stiffness(tool.T_world_tool, stiffness_detail(detail));
         else if (!(sum.elastic_n > 0.0))
             measured_.reset();
 
         cuts_ = !clutch && drive_.burr_rad_s > 0.0;
         bool late = sum.late || budget.deadline.passed();
+        std::uint32_t groups_left = 0;
         if (!led_) {
             turns_.forget(now_voxels_);
             led_ = true;
         } else {
             const double rate = rate_per_s();
             turns_.expose(rate * drive_.step_s, rate * kStepSMost);
+            const std::uint32_t groups = turns_.groups_at(budget.fidelity, drive_.step_s);
             if (late && turns_.pending() > 0.0) {
+                groups_left = groups;
                 ++postponed_;
             } else {
-                const ErosionTurns::Done done =
-                    turns_.cut(erosion_, {.kernels = &kernels_,
-                                          .tool = &tool_,
-                                          .now_voxels = &now_voxels_,
-                                          .per_voxel_m = per_voxel_m_,
-                                          .soft = settings_.soft,
-                                          .groups = turns_.groups_at(budget.fidelity, drive_.step_s),
-                                          .deadline = &budget.deadline});
+                const ErosionTurns::Done done = turns_.cut(erosion_, {.kernels = &kernels_,
+                                                                      .tool = &tool_,
+                                                                      .now_voxels = &now_voxels_,
+                                                                      .per_voxel_m = per_voxel_m_,
+                                                                      .soft = settings_.soft,
+                                                                      .groups = groups,
+                                                                      .deadline = &budget.deadline});
                 if (done.cut < done.wanted) {
                     late = true;
+                    groups_left = done.wanted - done.cut;
                     ++postponed_;
                 }
             }
         }
         if (late) result.status = StepStatus::out_of_time;
         last_.work.cut = erosion_.pass().visited;
-        result.load.items = last_.work.items();
+        last_.work.changed = erosion_.pass().bricks;
+        last_.work.walked = erosion_.pass().walked;
+        DrillWork all = last_.work;
+        all.add(last_.still);
+        result.load.items = all.items();
         if (late) {
-            const auto done = static_cast<double>(drill_cost(last_.work).count()),
-                       whole = static_cast<double>(std::max(drill_cost(planned).count(), Duration::rep{1}));
+            DrillWork left;
+            left.changed = std::max(turns_.bricks().changed / turns_.groups(), 1.0) * groups_left;
+            const auto done = static_cast<double>(drill_cost(all).count()),
+                       whole = std::max(done + static_cast<double>(drill_cost(left).count()),
+                                        static_cast<double>(drill_cost(planned).count()));
             result.load.work_done = static_cast<float>(std::clamp(done / whole, 0.01, 1.0));
         }
     }

@@ -6,7 +6,8 @@
 //          the step. a is in proportion to the burr's speed; a burr that stands takes nothing. Harder pressed it
 //          goes deeper, and so takes more: eq. 12 knows no other pressure.
 // Knob     "drilling.force": smallest block looked at, 0.5 R to 0.1 R (eq. 8), less where the last step was shallow; and
-//          the groups of bricks that a step cuts (erosion_turns.hpp), from one to all. Turning it is smooth.
+//          the groups of bricks that a step cuts (erosion_turns.hpp), from one to all. Below kRoughUntil blocks shrink less
+//          near the surface. Turning it is smooth, and a jump of it is absorbed (force_fade.hpp).
 // Late     past the deadline the remaining balls are felt in blocks of 0.5 R, whatever the depth, and nothing more is cut;
 //          steps in time cut for all the time since, kStepSMost at most, so nothing is left out.
 // Error    of a level: of its blocks, and of the bone that waits to be cut (drill_load.hpp).
@@ -136,8 +137,7 @@ public:
     [[nodiscard]] const SceneMeta& meta() const { return meta_; }
     [[nodiscard]] const DrillSettings& settings() const { return settings_; }
     [[nodiscard]] const DrillTool& tool() const { return tool_; }
-    // Smallest block looked at, over the radius.
-    [[nodiscard]] static double block_of(float fidelity) noexcept TACT_RT;
+    [[nodiscard]] static BlockDetail detail_of(float fidelity) noexcept TACT_RT;
 
 private:
     struct BallForces {
@@ -150,14 +150,18 @@ private:
         BallLook look;           // at the ball with most work
         double pending_n = 0.0;  // error per exposure that waits
         bool held_in = false;    // one of them
+        DrillWork still;         // of the stiffness
+        BallLook still_look;     // at that ball; block 0: not measured
     };
-    [[nodiscard]] BallForces ball_forces(const ToolState& tool, double block, bool hurried,
+    [[nodiscard]] BallForces ball_forces(const ToolState& tool, const BlockDetail& detail, bool hurried,
                                          const Deadline& deadline) noexcept TACT_RT;
-    // Without velocity and vibration, within force_n_max, in the coarsest blocks.
-    [[nodiscard]] Wrench still_wrench(const Pose& T_world_tool) const noexcept TACT_RT;
-    void measure_stiffness(const Pose& T_world_tool) noexcept TACT_RT;
+    // Without velocity and vibration, within force_n_max.
+    [[nodiscard]] Wrench still_wrench(const Pose& T_world_tool, const BlockDetail& detail,
+                                      DrillWork& work) const noexcept TACT_RT;
+    void measure_stiffness(const Pose& T_world_tool, const BlockDetail& detail) noexcept TACT_RT;
     [[nodiscard]] double rate_per_s() const noexcept TACT_RT;
-    [[nodiscard]] double error_n(const BallForces& sum, double block, double pending) const noexcept TACT_RT;
+    [[nodiscard]] double error_n(const BallForces& sum, const BlockDetail& detail,
+                                 double pending) const noexcept TACT_RT;
     [[nodiscard]] DrillWork expected(float fidelity) const noexcept TACT_RT;
     [[nodiscard]] Vec3 shaken_n(const ToolState& tool, double elastic_n) noexcept TACT_RT;
 
@@ -168,6 +172,7 @@ private:
     const BrickKernels& kernels_;
     Erosion erosion_;
     ForceFade fade_;
+    float level_ = 1.0F;  // of the last step
     ToolDrive driven_;
     BurrDrive drive_;
     DrillPublisher* publisher_ = nullptr;

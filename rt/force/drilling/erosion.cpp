@@ -14,10 +14,14 @@ struct Erosion::Way {
     Vec3 from, way;
     double radius, per_way2;  // 1 / |way|^2; 0: it stands
     std::uint64_t key;
-    std::uint32_t groups;
-    std::uint64_t mask;  // CuttingBall's, repeated every `groups` bits
+    std::uint32_t groups, first, count;
     ErodeJob job;
 
+    // For one of so many groups from this one on.
+    bool asks_for(std::uint32_t group, std::uint32_t many) const noexcept {
+        const std::uint32_t offset = (group - first) & (groups - 1);
+        return offset < count || offset + many > groups;
+    }
     // Of the centre of a block from the ball's way.
     double distance2(const Vec3& centre) const noexcept {
         const Vec3 d = centre - from;
@@ -28,23 +32,19 @@ struct Erosion::Way {
 
 namespace {
 constexpr double kHalfDiagonalOf = 0.8660254037844387;
+constexpr std::uint32_t kFineGroups = 32;
 
-// A fixed partition in which neighbours differ. A group is the low bits of this number.
-constexpr std::uint32_t group_number(std::uint32_t x, std::uint32_t y, std::uint32_t z) noexcept {
-    return x + 3 * y + 5 * z;
-}
-
-// Groups of the eight bricks of a block, relative to that of the first.
-constexpr std::uint64_t kGroupsOfBlock = [] {
-    std::uint64_t bits = 0;
-    for (std::uint32_t k = 0; k < 8; ++k) bits |= 1ULL << group_number(k & 1U, k >> 1U & 1U, k >> 2U);
-    return bits;
-}();
-
-std::uint64_t repeated(std::uint64_t mask, std::uint32_t groups) noexcept {
-    mask &= (1ULL << groups) - 1;
-    for (std::uint32_t bits = groups; bits < 64; bits *= 2) mask |= mask << bits;
-    return mask;
+// A fixed partition in which neighbours differ and each group is spread evenly: up to kFineGroups by the place of the
+// brick; beyond, groups of the same blocks of eight bricks follow each other, so that a pass leaves out the others.
+constexpr std::uint32_t group_of(std::uint32_t x, std::uint32_t y, std::uint32_t z,
+                                 std::uint32_t groups) noexcept {
+    const std::uint32_t fine = (x + 3 * y + 5 * z) & (std::min(groups, kFineGroups) - 1);
+    const std::uint32_t bx = x >> 1U & 1U, by = y >> 1U & 1U, bz = z >> 1U & 1U;
+    const std::uint32_t block = groups > 4 * kFineGroups   ? bx | by << 1U | bz << 2U
+                                : groups > 2 * kFineGroups ? (bx ^ bz) | (by ^ bz) << 1U
+                                : groups > kFineGroups     ? bx ^ by ^ bz
+                                                           : 0;
+    return block * kFineGroups + fine;
 }
 
 }  // namespace
@@ -75,7 +75,8 @@ void Erosion::cut(const BrickKernels& kernels, const CuttingBall& ball) noexcept
     w.way = ball.to_voxels - ball.from_voxels;
     w.radius = ball.radius_voxels;
     w.groups = ball.groups;
-    w.mask = repeated(ball.mask, ball.groups);
+    w.first = ball.first;
+    w.count = ball.count;
     if (w.way.squaredNorm() < 1e-8 * w.radius * w.radius) {  // the bend would be lost in rounding
         w.from += 0.5 * w.way;
         w.way.setZero();
@@ -111,12 +112,12 @@ void Erosion::cut(const BrickKernels& kernels, const CuttingBall& ball) noexcept
 
 void Erosion::visit(const Way& way, std::uint32_t level, std::uint32_t x, std::uint32_t y,
                     std::uint32_t z) noexcept {
-    // Without a brick of these groups there is nothing to do. Blocks of more than eight bricks have all groups.
-    if (level < 2) {
-        const std::uint32_t scale = 1U << level, of_first = group_number(scale * x, scale * y, scale * z);
-        const std::uint64_t groups = way.mask >> (of_first & (way.groups - 1));
-        if ((groups & (level == 0 ? 1U : kGroupsOfBlock)) == 0) return;
+    if (level == 0 && !way.asks_for(group_of(x, y, z, way.groups), 1)) return;
+    if (level == 1 && way.groups > kFineGroups) {
+        const std::uint32_t first = group_of(2 * x, 2 * y, 2 * z, way.groups) & ~(kFineGroups - 1);
+        if (!way.asks_for(first, kFineGroups)) return;
     }
+    ++pass_.walked;
     const std::size_t i = octree_.index(level, x, y, z);
     if (level == 0 ? octree_.brick(i).m0 == 0 : octree_.block(level, i).m0 == 0) return;
     const double edge = static_cast<double>(8U << level), reach = way.radius + kHalfDiagonalOf * edge;

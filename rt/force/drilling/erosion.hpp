@@ -29,6 +29,7 @@ struct ErosionPass {
     std::uint64_t removed = 0;   // levels
     std::uint32_t bricks = 0;    // that lost something
     std::uint32_t visited = 0;   // bricks whose voxels were computed: the work of the pass
+    std::uint32_t walked = 0;    // blocks and bricks that were looked at to find them
     std::uint64_t unlisted = 0;  // of `removed`, what found no room in the list of dust
 };
 
@@ -38,8 +39,8 @@ struct CuttingBall {
     double radius_voxels = 1.0;
     double exposure = 0.0;  // a times the step's time: solid bone in the ball's centre keeps exp(-exposure)
     double soft = 1.0;      // the rate in the softest bone over that in solid bone; linear between
-    // Of bricks in so many groups, a power of two up to 32, those whose bits are set (erosion_turns.hpp).
-    std::uint32_t groups = 1, mask = ~0U;
+    // Of bricks in so many groups, a power of two up to 256, `count` from `first` on, in a circle (erosion_turns.hpp).
+    std::uint32_t groups = 1, first = 0, count = 1;
 };
 
 class Erosion {

@@ -14,9 +14,10 @@ std::uint32_t ErosionTurns::groups_at(float fidelity, double step_s) const noexc
 
 void ErosionTurns::forget(const Centres& now_voxels) noexcept {
     ++step_;
-    for (std::uint32_t g = 0; g < groups_; ++g) group_[g] = {now_voxels, 0.0, step_, 0.0, false};
-    pending_ = 0.0;
-    started_ = 0;
+    for (std::uint32_t g = 0; g < groups_; ++g) group_[g] = {now_voxels, 0.0, step_, {}, false};
+    pending_ = walked_ = 0.0;
+    sum_ = {};
+    started_ = known_ = 0;
 }
 
 void ErosionTurns::expose(double exposure, double most) noexcept {
@@ -38,17 +39,14 @@ ErosionTurns::Done ErosionTurns::cut(Erosion& erosion, const Job& job) noexcept 
     done.wanted = std::min({job.groups, groups_, started_ + 1});
     while (done.cut < done.wanted) {
         const Group& first = group_[next_];
-        std::uint32_t mask = 0, many = 0;
-        while (done.cut + many < done.wanted && many < kPassGroups) {
-            const std::uint32_t g = (next_ + many) % groups_;
-            if (group_[g].step != first.step) break;
-            mask |= 1U << g;
+        std::uint32_t many = 0;
+        while (done.cut + many < done.wanted && many < pass_groups() &&
+               group_[(next_ + many) % groups_].step == first.step)
             ++many;
-        }
-        double bricks = 0.0;
+        Bricks bricks;
         if (first.exposure > 0.0) {
             if (done.cut > 0 && job.deadline->passed()) break;
-            const std::uint32_t before = erosion.pass().visited;
+            const ErosionPass before = erosion.pass();
             for (std::uint32_t i = 0; i < job.tool->count; ++i) {
                 const ToolBall& ball = job.tool->ball[i];
                 if (!ball.cuts) continue;
@@ -58,16 +56,23 @@ ErosionTurns::Done ErosionTurns::cut(Erosion& erosion, const Job& job) noexcept 
                                            .exposure = first.exposure * ball.weight,
                                            .soft = job.soft,
                                            .groups = groups_,
-                                           .mask = mask});
+                                           .first = next_,
+                                           .count = many});
             }
-            bricks = static_cast<double>(erosion.pass().visited - before) / many;
+            const ErosionPass& after = erosion.pass();
+            bricks = {static_cast<double>(after.visited - before.visited) / many,
+                      static_cast<double>(after.bricks - before.bricks) / many};
+            walked_ = after.walked - before.walked;
         }
         for (std::uint32_t k = 0; k < many; ++k, next_ = (next_ + 1) % groups_) {
             Group& group = group_[next_];
             pending_ -= group.exposure;
             group.exposure = 0.0;
             group.step = step_;
+            sum_.computed += bricks.computed - group.bricks.computed;
+            sum_.changed += bricks.changed - group.bricks.changed;
             group.bricks = bricks;
+            known_ += group.was_cut ? 0 : 1;
             group.was_cut = true;
             std::copy_n(job.now_voxels->begin(), job.tool->count, group.from_voxels.begin());
         }
@@ -76,15 +81,6 @@ ErosionTurns::Done ErosionTurns::cut(Erosion& erosion, const Job& job) noexcept 
     started_ = std::min(done.cut, groups_);
     pending_ = std::max(pending_, 0.0);
     return done;
-}
-
-double ErosionTurns::bricks() const noexcept {
-    double sum = 0.0, cut = 0.0;
-    for (std::uint32_t g = 0; g < groups_; ++g) {
-        sum += group_[g].bricks;
-        cut += group_[g].was_cut ? 1.0 : 0.0;
-    }
-    return cut > 0.0 ? sum * groups_ / cut : 0.0;
 }
 
 }  // namespace tact
