@@ -57,12 +57,18 @@ public:
         shown_ = leaving_ = before.shown_;
         ramp_ = 0.0;
     }
-    // Before show(): this step shows what the last one showed, and the difference to `felt` shrinks from here on.
-    void absorb(const Wrench& felt) noexcept TACT_RT {
+    // Before show(), where the model of the same body changes: the difference of this step's wrench to the last one
+    // shown shrinks from here on, as far as most_n; the rest is not the model's doing. A torque counts as a force at this
+    // lever.
+    void absorb(const Wrench& felt, double most_n, double lever_m) noexcept TACT_RT {
         leaving_ = {shown_.force_n - felt.force_n, shown_.torque_n_m - felt.torque_n_m};
+        const double size_n = leaving_n(lever_m), part = size_n > most_n ? most_n / size_n : 1.0;
+        leaving_ = {part * leaving_.force_n, part * leaving_.torque_n_m};
     }
-    // Of the force that shrinks.
-    [[nodiscard]] double leaving_n() const noexcept TACT_RT { return leaving_.force_n.norm(); }
+    // Of what shrinks.
+    [[nodiscard]] double leaving_n(double lever_m) const noexcept TACT_RT {
+        return std::max(leaving_.force_n.norm(), leaving_.torque_n_m.norm() / lever_m);
+    }
     // No force at once.
     void cut() noexcept TACT_RT {
         ramp_ = 0.0;

@@ -137,14 +137,20 @@ TEST(ForceFade, a_jump_of_the_model_is_absorbed_and_gone_after_its_way) {
     const Wrench other{Vec3(0.5, 0.0, 0.0), Vec3::Zero()};
     for (int i = 0; i < 20; ++i) {
         fade.begin_step(1e-3);
-        if (i == 0) fade.absorb(other);
+        if (i == 0) fade.absorb(other, 1.0, 0.01);
         const double now_n = fade.show(other).force_n.x();
         EXPECT_NEAR(now_n, std::max(1.0 - 0.04 * i, 0.5), 1e-12) << i;
-        EXPECT_NEAR(fade.leaving_n(), now_n - 0.5, 1e-12);
+        EXPECT_NEAR(fade.leaving_n(0.01), now_n - 0.5, 1e-12);
         EXPECT_LE(before_n - now_n, 0.04 + 1e-12);
         before_n = now_n;
     }
     EXPECT_EQ(fade.gain(), 1.0);
+    // What the model cannot explain is shown at once; torques count at the lever.
+    fade.absorb({Vec3(0.1, 0.0, 0.0), Vec3::Zero()}, 0.1, 0.01);
+    EXPECT_NEAR(fade.show({Vec3(0.1, 0.0, 0.0), Vec3::Zero()}).force_n.x(), 0.2, 1e-12);
+    fade.absorb({Vec3(0.2, 0.0, 0.0), Vec3(0.0, 0.004, 0.0)}, 0.1, 0.01);
+    EXPECT_NEAR(fade.show({Vec3(0.2, 0.0, 0.0), Vec3(0.0, 0.004, 0.0)}).torque_n_m.y(), 0.003, 1e-12);
+    EXPECT_NEAR(fade.leaving_n(0.01), 0.1, 1e-12);
 }
 
 TEST(ForceFade, a_pause_or_an_impossible_length_is_no_step_of_the_force) {

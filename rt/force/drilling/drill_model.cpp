@@ -363,12 +363,15 @@ StepResult DrillModel::step(const ToolState& tool, const Budget& budget) noexcep
         sum.scale = scale;
         const double gain = fade_.gain() * scale;
         const Wrench felt{gain * wrench.force_n, gain * wrench.torque_n_m};
+        const double error = error_n(sum, sum.late ? kLate : detail, pending);
         // Other blocks give another force: not at once.
         const float level = sum.late ? kLateLevel : budget.fidelity;
-        if (std::abs(level - level_) > kLevelJump) fade_.absorb(felt);
+        if (std::abs(level - level_) > kLevelJump)
+            fade_.absorb(felt, error_before_n_ + error, head_radius_m_);
         level_ = level;
+        error_before_n_ = error;
         result.wrench_world = fade_.show(felt);
-        result.load.error = error_n(sum, sum.late ? kLate : detail, pending) + fade_.leaving_n();
+        result.load.error = error + fade_.leaving_n(head_radius_m_);
         if (sum.elastic_n > 0.0 && !sum.late)
             measure_stiffness(tool.T_world_tool, stiffness_detail(detail));
         else if (!(sum.elastic_n > 0.0))

@@ -173,6 +173,7 @@ private:
     Erosion erosion_;
     ForceFade fade_;
     float level_ = 1.0F;  // of the last step
+    double error_before_n_ = 0.0;
     ToolDrive driven_;
     BurrDrive drive_;
     DrillPublisher* publisher_ = nullptr;
