@@ -15,6 +15,9 @@ constexpr double kPartLeast = 0.02;  // limits the scaling of a partial cost to 
 // interrupted step counts less, since no level would have met the deadline.
 constexpr double kMissKept = 0.999, kInterruptedMiss = 0.4, kMissesMost = 2.2;
 
+// A freely running loop shares its core: other programs hold several steps in a row, at any level.
+constexpr std::uint32_t kMissesInARow = 2, kMissesInARowFree = CostSpread::kChangedRun;
+
 // Of the whole step.
 double part_of(const LevelFit::Sample& s) noexcept {
     return std::clamp(std::min(s.work_done, s.recomputed), kPartLeast, 1.0);
@@ -148,13 +151,16 @@ void LevelFit::follow_rest(double rest_s) noexcept {
 LevelFit::Choice LevelFit::add(const Sample& s, const Limits& limits) noexcept {
     if (count_ == 0) return {.level = s.level};
     const CostSpread::Kind kind = learn(s);
+    if (s.deadline_missed && kind == CostSpread::Kind::interrupted && limits.free_running)
+        misses_ -= kInterruptedMiss;
     const std::size_t before = row_;
     const bool changed_cost = kind == CostSpread::Kind::changed,
                due = cycle_ % kEvery == 0 || changed_cost || leapt_;
     LevelReason reason = LevelReason::hold;
     if (due) over_s_ = fits(row_, limits, 1.0) ? 0.0 : over_s_ + kEvery * s.dt_s;
-    if (s.deadline_missed && row_ > 0 && (misses_ > kMissesMost || misses_in_a_row_ > 1)) {
-        const double share = misses_in_a_row_ > 1 ? kUse * limits.period_s * part_of(s) / s.model_s : 1.0;
+    const bool in_a_row = misses_in_a_row_ >= (limits.free_running ? kMissesInARowFree : kMissesInARow);
+    if (s.deadline_missed && row_ > 0 && (misses_ > kMissesMost || in_a_row)) {
+        const double share = in_a_row ? kUse * limits.period_s * part_of(s) / s.model_s : 1.0;
         row_ = best(limits, 1.0, std::min(share, kMissRetreat) * rows_[row_].cost_s);
         reason = LevelReason::deadline_missed;
         misses_ = 0.0;

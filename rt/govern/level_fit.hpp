@@ -23,7 +23,8 @@
 //             use only kRise of it, so the level does not hunt
 // Deadline    about one miss in a thousand cycles is what the quantile permits; the third within as many lowers the
 //             level at once, to at most kMissRetreat of the present cost. An interrupted step counts less, since it
-//             would have missed at any level. The second miss in a row lowers it to what would have fitted
+//             would have missed at any level. The second miss in a row lowers it to what would have fitted; in a
+//             freely running loop, whose core other programs hold for several steps, the fourth
 // Holds       the level rises kHold_s after a fall at the earliest, and only if that takes kWorthGain off its error; a fall after a rise doubles the hold, up to
 //             kHoldMost_s. A fall more than kHoldForgotten_s after the previous one restores kHold_s
 // Thread      servo; constant time, no allocation
