@@ -2,8 +2,8 @@
 //
 // Share    of the recent steps in contact that needed more than q queries, of triangles or of distances. A step that ran
 //          out of them counts as one that needed more, which kQueriesMost would have been enough for, unless it had those
-// Prior    kPrior steps: 7 in a hundred need any to speak of, and a share falls by e every 75 queries. Measured with strokes
-//          of 150 mm/s over a rough surface at 2 kHz (TOOLS.md). So levels differ before the first contact
+// Prior    kPrior steps: 7 in a hundred need any to speak of, and a share falls by e every 75 queries. Measured with the
+//          emulated hand's strokes at 2 kHz (TOOLS.md). So levels differ before the first contact
 // Thread   servo; no allocation
 #pragma once
 
