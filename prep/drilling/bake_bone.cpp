@@ -94,6 +94,7 @@ BakedBone bake_bone(BoneInput&& input, SceneWriter& out, const Progress& progres
         baked.note += printed("density: 0 at %g HU and below, 255 at %g HU and above\n",
                               static_cast<double>(bone.hu_at_0), static_cast<double>(bone.hu_at_255));
     write_bone_volume(out, bone.view());
+    if (bone.patient) write_patient_frame(out, *bone.patient);
     std::vector<std::uint8_t>().swap(bone.density);
     if (!bone.structure.empty()) {
         std::array<std::uint64_t, 256> count{};

@@ -283,13 +283,15 @@ BoneInput import_bone(const BoneImport& o, const Progress& whole) {
                            (scan.oriented ? "the patient's " : "presumably the patient's ") +
                            kFaceNames[static_cast<std::size_t>(o.face)]});
     if (scan.oriented) {
-        const Vec3 middle =
-            scan.origin_mm + scan.axes * Vec3(plan.start_mm[0] + 0.5 * plan.voxel_mm * (plan.count[0] - 1.0),
-                                              plan.start_mm[1] + 0.5 * plan.voxel_mm * (plan.count[1] - 1.0),
-                                              plan.start_mm[2] + 0.5 * plan.voxel_mm * (plan.count[2] - 1.0));
+        bone.patient = plan.patient(scan);
+        const Vec3& middle = bone.patient->origin_mm;
         input.note.push_back(
             printed("model (0, 0, 0): %.2f mm left, %.2f mm back, %.2f mm up from the scan's origin",
                     middle.x(), middle.y(), middle.z()));
+        const Eigen::Matrix3d& axes = bone.patient->axes;
+        input.note.push_back(printed(
+            "model axes in the patient: x to %s, y to %s, z to %s", patient_letters(axes.col(0)).c_str(),
+            patient_letters(axes.col(1)).c_str(), patient_letters(axes.col(2)).c_str()));
     } else {
         scan.warning.emplace_back(
             "the file does not state the patient's left side: the bone may be mirrored");

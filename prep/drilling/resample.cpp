@@ -180,6 +180,19 @@ private:
 
 }  // namespace
 
+PatientFrame SamplePlan::patient(const Scan& scan) const {
+    PatientFrame frame;
+    Vec3 first_mm = Vec3::Zero();  // voxel (0, 0, 0) of the model, along the scan's axes
+    for (std::size_t a = 0; a < 3; ++a) {
+        const auto from = static_cast<Eigen::Index>(axis[a]);
+        const double sign = reversed[a] ? -1.0 : 1.0;
+        frame.axes.col(static_cast<Eigen::Index>(a)) = sign * scan.axes.col(from);
+        first_mm[from] = start_mm[axis[a]] + (reversed[a] ? voxel_mm * (count[axis[a]] - 1.0) : 0.0);
+    }
+    frame.origin_mm = scan.origin_mm + scan.axes * first_mm - 1e3 * (frame.axes * bricks.origin_m);
+    return frame;
+}
+
 SamplePlan plan_samples(const Scan& scan, double voxel_mm, BoneFace face) {
     SamplePlan plan;
     const auto [u_low, u_high] = std::minmax_element(scan.slice.begin(), scan.slice.end(),

@@ -13,6 +13,7 @@
 
 #include "ipc/base/progress.hpp"
 #include "ipc/scene/bone/bone_bricks.hpp"
+#include "ipc/scene/bone/patient_frame.hpp"
 #include "prep/volume/scan.hpp"
 
 namespace tact {
@@ -33,6 +34,8 @@ struct SamplePlan {
     std::array<double, 3> start_mm{};      // of the first voxel, along these axes
     std::array<std::size_t, 3> axis{};     // model axis a is this scan axis,
     std::array<bool, 3> reversed{};        // reversed if true
+    // Of the model in the patient; the scan is oriented.
+    [[nodiscard]] PatientFrame patient(const Scan& scan) const;
     [[nodiscard]] std::size_t voxel(std::uint32_t u, std::uint32_t v, std::uint32_t s) const {
         const std::array<std::uint32_t, 3> from{u, v, s};
         std::array<std::uint32_t, 3> to;

@@ -7,6 +7,7 @@
 #include "ipc/scene/bone/bone_labels.hpp"
 #include "ipc/scene/bone/bone_volume.hpp"
 #include "ipc/scene/bone/distance_field.hpp"
+#include "ipc/scene/bone/patient_frame.hpp"
 #include "ipc/scene/file/scene_meta.hpp"
 #include "rt/force/drilling/drill_model.hpp"
 
@@ -20,6 +21,8 @@ constexpr const char* kDrillingFormulas[] = {
      "is centred on origin_model_m"),
     ("m0 = integral of density / 255 over the burr, m1 = the same times the position from its centre; "
      "metres"),
+    ("x_patient_mm = origin_lps_mm + 1000 * (x_model[0] * direction of x + x_model[1] * that of y + "
+     "x_model[2] * that of z); LPS: to the patient's left, back and head"),
     "x^2 - x^3 / 3 = m0 / (pi R^3), x = h / R, h the penetration",
     ("elastic: c_e R^2 x^(3/2) away from the bone, along -m1 / |m1|; N; c_e is elastic_pa, or if "
      "depth_at_1_n_m is above 0, the value that holds the ball with 1 N at that depth on a flat surface (or "
@@ -65,6 +68,16 @@ json drilling_info(const SceneFile& file) {
             structures.push_back(row);
         }
     }
+    json patient;  // null: the scan states no orientation
+    if (const auto frame = read_patient_frame(file)) {
+        json axes = json::object();
+        for (int a = 0; a < 3; ++a)
+            axes[std::string(1, "xyz"[a])] = {
+                {"to", patient_letters(frame->axes.col(a))},
+                {"direction_lps", {frame->axes(0, a), frame->axes(1, a), frame->axes(2, a)}}};
+        patient = {{"model_axes", axes},
+                   {"origin_lps_mm", {frame->origin_mm.x(), frame->origin_mm.y(), frame->origin_mm.z()}}};
+    }
     const DrillSettings settings;
     const BurrLaw& law = settings.law;
     return {
@@ -79,6 +92,7 @@ json drilling_info(const SceneFile& file) {
           {"bone_voxels", solid},
           {"solid_volume_mm3", mass * voxel_mm3},
           {"bytes", bone.bricks.bytes()}}},
+        {"patient", patient},
         {"structures", structures},
         {"elastic_pa", law.elastic_pa},
         {"friction_n_s_m3", law.friction_n_s_m3},

@@ -13,12 +13,14 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "ipc/scene/bone/bone_bricks.hpp"
 #include "ipc/scene/bone/bone_volume.hpp"
+#include "ipc/scene/bone/patient_frame.hpp"
 #include "ipc/scene/file/scene_file.hpp"
 
 namespace tact {
@@ -45,6 +47,7 @@ struct BoneData {
     std::vector<std::uint8_t> density;
     std::vector<BoneStructure> structure;  // empty: no labels
     std::vector<std::uint8_t> label;       // empty, or one per density
+    std::optional<PatientFrame> patient;   // as the scan states
 
     [[nodiscard]] BoneVolumeView view() const { return {bricks, hu_at_0, hu_at_255, density}; }
 };
