@@ -8,6 +8,7 @@
 #include "ipc/scene/bone/bone_labels.hpp"
 #include "ipc/scene/bone/bone_volume.hpp"
 #include "ipc/scene/bone/distance_field.hpp"
+#include "ipc/scene/bone/patient_frame.hpp"
 #include "ipc/scene/density/density_map.hpp"
 #include "ipc/scene/density/normal_modes.hpp"
 #include "ipc/scene/density/structure.hpp"
@@ -32,7 +33,7 @@ constexpr SectionTag kTags[] = {{'M', 'E', 'T', 'A'}, {'N', 'O', 'T', 'E'}, {'G'
                                 {'B', 'O', 'D', 'Y'}, {'C', 'O', 'D', 'E'}, {'M', 'E', 'S', 'H'},
                                 {'S', 'U', 'R', 'F'}, {'F', 'R', 'S', 'T'}, {'T', 'O', 'O', 'L'},
                                 {'B', 'O', 'N', 'E'}, {'L', 'A', 'B', 'L'}, {'D', 'I', 'S', 'T'},
-                                {'M', 'O', 'D', 'E'}};
+                                {'M', 'O', 'D', 'E'}, {'P', 'A', 'T', 'I'}};
 
 template <class Read>
 std::size_t accepted(Read&& read) {
@@ -79,6 +80,7 @@ void write_bone(SceneWriter& out) {
     write_bone_labels(out, bricks, {{{"nerve", {1, 2, 3, 4}, true}, {"incus", {}, false}}, label});
     const std::vector<std::int16_t> quanta(12, 50);
     write_distance_field(out, 0, {1, {3, 2, 2}, 4e-3, Vec3::Zero(), 1e-4, 4e-3, quanta});
+    write_patient_frame(out, {});
 }
 
 // One valid section per tag.
@@ -231,6 +233,13 @@ void use_labels(const SceneFile& file) {
     for (const std::uint8_t l : labels.label) (void)labels.critical(l);
 }
 
+void use_patient(const SceneFile& file) {
+    const std::optional<PatientFrame> frame = read_patient_frame(file);
+    require(frame.has_value());
+    const Vec3 p_m(0.01, -0.02, 0.03);
+    require((frame->model_m(frame->patient_mm(p_m)) - p_m).norm() < 1e-6);
+}
+
 void use_distances(const SceneFile& file) {
     for (const DistanceField& f : read_distance_fields(file, 2))
         for (const Vec3& p : {Vec3(0, 0, 0), f.origin_m, Vec3(0.005, 0.001, 0.001), Vec3(1e300, -1e300, 0.0)})
@@ -266,6 +275,7 @@ bool run(std::span<const std::byte> input) {
         sections += accepted([&] { use_labels(file); });
         sections += accepted([&] { use_distances(file); });
         sections += accepted([&] { use_modes(file); });
+        sections += accepted([&] { use_patient(file); });
     });
     return sections == std::size(kTags);
 }

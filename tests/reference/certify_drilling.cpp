@@ -22,9 +22,10 @@ namespace {
 namespace ref = reference;
 
 constexpr double kStepS = 1e-3, kSpeedMS = 0.04;
-constexpr int kPathSteps = 250;           // of a path
-constexpr int kSettleSteps = 6;           // the size of blocks follows the depth of the step before
-constexpr int kSlopeSteps = 226;          // the stiffness is measured axis by axis, after a jump of the level has faded
+constexpr int kPathSteps = 250;  // of a path
+constexpr int kSettleSteps = 6;  // the size of blocks follows the depth of the step before
+constexpr int kSlopeSteps =
+    226;  // the stiffness is measured axis by axis, after a jump of the level has faded
 constexpr int kFlushSteps = 64;           // longer than any group of bricks waits
 constexpr double kRemovedLeast = 5000.0;  // levels; a path beside the bone removes less
 constexpr double kRoundingN = 2e-3;       // a sliver of a voxel in the ball; not felt

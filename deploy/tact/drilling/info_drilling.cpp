@@ -74,7 +74,8 @@ json drilling_info(const SceneFile& file) {
         for (int a = 0; a < 3; ++a)
             axes[std::string(1, "xyz"[a])] = {
                 {"to", patient_letters(frame->axes.col(a))},
-                {"direction_lps", {frame->axes(0, a), frame->axes(1, a), frame->axes(2, a)}}};
+                {"direction_lps",
+                 {frame->axes(0, a) + 0.0, frame->axes(1, a) + 0.0, frame->axes(2, a) + 0.0}}};  // no -0
         patient = {{"model_axes", axes},
                    {"origin_lps_mm", {frame->origin_mm.x(), frame->origin_mm.y(), frame->origin_mm.z()}}};
     }
