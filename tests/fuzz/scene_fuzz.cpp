@@ -235,7 +235,7 @@ void use_labels(const SceneFile& file) {
 
 void use_patient(const SceneFile& file) {
     const std::optional<PatientFrame> frame = read_patient_frame(file);
-    require(frame.has_value());
+    if (!frame) throw StartupError("read the patient's frame", "there is none", "add one");
     const Vec3 p_m(0.01, -0.02, 0.03);
     require((frame->model_m(frame->patient_mm(p_m)) - p_m).norm() < 1e-6);
 }
