@@ -10,6 +10,7 @@
 #include "ipc/base/error.hpp"
 #include "ipc/scene/bone/bone_labels.hpp"
 #include "ipc/scene/bone/bone_volume.hpp"
+#include "ipc/scene/bone/patient_frame.hpp"
 #include "ipc/scene/file/scene_meta.hpp"
 #include "tests/bench/bench_drilling.hpp"
 #include "tests/bench/drill_run.hpp"
@@ -86,6 +87,10 @@ TEST(DrillingInfo, has_all_data_for_another_program_to_compute_the_same) {
     write_meta(out, meta, "made by: a test\n");
     write_bone_volume(out, {.bricks = bone.bricks, .density = bone.density});
     write_bone_labels(out, bone.bricks, {.structure = {{"nerve", {255, 255, 0, 255}, true}}, .label = label});
+    PatientFrame frame;  // the model's x to the head, y to the left, z to the back
+    frame.axes << 0, 1, 0, 0, 0, 1, 1, 0, 0;
+    frame.origin_mm = Vec3(4.0, -5.0, 6.0);
+    write_patient_frame(out, frame);
     const ScratchFolder scratch;
     const auto path = scratch.path() / "bone.tact";
     const std::vector<std::byte> bytes = out.to_bytes();
@@ -102,6 +107,11 @@ TEST(DrillingInfo, has_all_data_for_another_program_to_compute_the_same) {
     EXPECT_DOUBLE_EQ(told["structures"][0]["volume_mm3"], 0.5);
     EXPECT_TRUE(told["structures"][0]["distance_error_mm"].is_null());
     EXPECT_EQ(told["elastic_pa"], BurrLaw{}.elastic_pa);
+    const auto& axes = told["patient"]["model_axes"];
+    EXPECT_EQ(axes["x"]["to"], "H");
+    EXPECT_EQ(axes["y"]["to"], "L");
+    EXPECT_EQ(axes["z"]["direction_lps"], (std::vector<double>{0.0, 1.0, 0.0}));
+    EXPECT_EQ(told["patient"]["origin_lps_mm"], (std::vector<double>{4.0, -5.0, 6.0}));
 }
 
 }  // namespace

@@ -76,6 +76,23 @@ TEST(DrillLevels, a_lower_level_cuts_fewer_bricks_a_step_and_the_same_mass_a_lit
     }
 }
 
+// No group has more bricks than those of a head of 48 voxels, until there are 256.
+TEST(DrillLevels, groups_grow_with_the_surface_of_the_head) {
+    EXPECT_EQ(ErosionTurns(20.0).groups(), 8U);
+    for (const double radius : {30.0, 48.0, 49.0, 96.0, 120.0, 192.0}) {
+        const std::uint32_t groups = ErosionTurns(radius).groups();
+        EXPECT_GE(groups, 8.0 * radius * radius / (48.0 * 48.0)) << radius;
+        EXPECT_LT(groups, std::max(16.0 * radius * radius / (48.0 * 48.0), 8.5)) << radius;
+    }
+    EXPECT_EQ(ErosionTurns(200.0).groups(), 256U);
+    // A pass never holds more than an eighth of them, so the deadline is checked at least so often.
+    for (const double radius : {100.0, 200.0}) {
+        const ErosionTurns turns(radius);
+        EXPECT_EQ(turns.passes_of(turns.groups()), 8U) << radius;
+        EXPECT_EQ(turns.passes_of(1), 1U);
+    }
+}
+
 TEST(DrillLevels, the_reported_error_bounds_what_bone_that_waits_changes_in_the_force) {
     for (const double radius_m : {2e-3, 3e-3, 8e-3}) {
         for (const float level : {0.0F, 0.05F, 0.1F, 0.15F, 0.3F, 0.6F}) {

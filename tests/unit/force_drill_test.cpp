@@ -131,6 +131,10 @@ TEST(Erosion, groups_are_a_partition_and_about_equal) {
                 for (std::uint32_t k = 0; k < count; ++k) sum += bricks[(first + k) % groups];
                 EXPECT_EQ(computed(groups, first, count), sum) << groups << ", " << first << ", " << count;
             }
+        // Blocks without a brick of the group are passed over.
+        static_cast<void>(computed(groups, 0, 1));
+        EXPECT_LE(erosion.pass().walked, bricks[0] + 6U * 6U * 6U * std::min(8.0 / groups, 1.0) + 64.0)
+            << groups;
     }
 }
 

@@ -1,6 +1,7 @@
 #include "rt/force/drilling/erosion.hpp"
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <cmath>
 
@@ -17,11 +18,7 @@ struct Erosion::Way {
     std::uint32_t groups, first, count;
     ErodeJob job;
 
-    // For one of so many groups from this one on.
-    bool asks_for(std::uint32_t group, std::uint32_t many) const noexcept {
-        const std::uint32_t offset = (group - first) & (groups - 1);
-        return offset < count || offset + many > groups;
-    }
+    bool asks_for(std::uint32_t group) const noexcept { return ((group - first) & (groups - 1)) < count; }
     // Of the centre of a block from the ball's way.
     double distance2(const Vec3& centre) const noexcept {
         const Vec3 d = centre - from;
@@ -36,16 +33,22 @@ constexpr std::uint32_t kFineGroups = 32;
 
 // A fixed partition in which neighbours differ and each group is spread evenly: up to kFineGroups by the place of the
 // brick; beyond, groups of the same blocks of eight bricks follow each other, so that a pass leaves out the others.
-constexpr std::uint32_t group_of(std::uint32_t x, std::uint32_t y, std::uint32_t z,
-                                 std::uint32_t groups) noexcept {
-    const std::uint32_t fine = (x + 3 * y + 5 * z) & (std::min(groups, kFineGroups) - 1);
-    const std::uint32_t bx = x >> 1U & 1U, by = y >> 1U & 1U, bz = z >> 1U & 1U;
-    const std::uint32_t block = groups > 4 * kFineGroups   ? bx | by << 1U | bz << 2U
-                                : groups > 2 * kFineGroups ? (bx ^ bz) | (by ^ bz) << 1U
-                                : groups > kFineGroups     ? bx ^ by ^ bz
-                                                           : 0;
-    return block * kFineGroups + fine;
-}
+struct GroupOf {
+    std::uint32_t block, place, places;
+    GroupOf(std::uint32_t x, std::uint32_t y, std::uint32_t z, std::uint32_t groups) noexcept
+        : place(x + 3 * y + 5 * z), places(std::min(groups, kFineGroups)) {
+        const std::uint32_t bx = x >> 1U & 1U, by = y >> 1U & 1U, bz = z >> 1U & 1U;
+        block = kFineGroups * (groups > 4 * kFineGroups   ? bx | by << 1U | bz << 2U
+                               : groups > 2 * kFineGroups ? (bx ^ bz) | (by ^ bz) << 1U
+                               : groups > kFineGroups     ? bx ^ by ^ bz
+                                                          : 0);
+    }
+    // Of the brick that is `further` in x + 3 y + 5 z, in the same block of eight.
+    [[nodiscard]] std::uint32_t at(std::uint32_t further) const noexcept {
+        return block + ((place + further) & (places - 1));
+    }
+};
+constexpr std::array<std::uint32_t, 8> kPlacesOfBlock{0, 1, 3, 4, 5, 6, 8, 9};
 
 }  // namespace
 
@@ -112,10 +115,13 @@ void Erosion::cut(const BrickKernels& kernels, const CuttingBall& ball) noexcept
 
 void Erosion::visit(const Way& way, std::uint32_t level, std::uint32_t x, std::uint32_t y,
                     std::uint32_t z) noexcept {
-    if (level == 0 && !way.asks_for(group_of(x, y, z, way.groups), 1)) return;
-    if (level == 1 && way.groups > kFineGroups) {
-        const std::uint32_t first = group_of(2 * x, 2 * y, 2 * z, way.groups) & ~(kFineGroups - 1);
-        if (!way.asks_for(first, kFineGroups)) return;
+    // Without a brick of these groups there is nothing to do. Blocks of more than eight bricks have all groups.
+    if (level == 0 && !way.asks_for(GroupOf(x, y, z, way.groups).at(0))) return;
+    if (level == 1) {
+        const GroupOf group(2 * x, 2 * y, 2 * z, way.groups);
+        if (std::none_of(kPlacesOfBlock.begin(), kPlacesOfBlock.end(),
+                         [&](std::uint32_t further) { return way.asks_for(group.at(further)); }))
+            return;
     }
     ++pass_.walked;
     const std::size_t i = octree_.index(level, x, y, z);
