@@ -293,6 +293,42 @@ TEST(DrillLevels, a_fall_of_the_level_or_a_late_step_is_no_step_of_the_force) {
     }
 }
 
+// After a reset the depth is unknown. A rough level does not look at the ball twice to find it.
+TEST(DrillLevels, the_first_step_at_the_floor_is_no_more_work_than_the_next) {
+    Drilled d(8e-3);
+    d.model->turn_burr({0.0, 1e-3});
+    const Vec3 p_m(0.7e-3, 0.3e-3, 8e-3 - 1e-3);
+    for (int i = 0; i < 3; ++i) {
+        ToolState tool;
+        tool.T_world_tool.p_m = p_m;
+        d.model->reset(tool);
+        const std::uint32_t first = d.step(p_m, 0.0F).load.items, next = d.step(p_m, 0.0F).load.items;
+        EXPECT_GT(next, 0U);
+        EXPECT_LE(first, next + next / 5);
+    }
+}
+
+// The step plans for a slow burr; then the burr turns a hundred times as fast, and the time ends between two passes.
+TEST(DrillLevels, a_late_step_that_did_more_than_it_planned_is_still_not_whole) {
+    constexpr double kRadiusM = 16e-3;
+    int cut_short = 0;
+    for (int i = 0; i < 20; ++i) {
+        Drilled d(kRadiusM, 120);
+        const Vec3 p_m(0.0, 0.0, kRadiusM - 1.5e-3);
+        d.model->turn_burr({1e-3 * kFullRadS, 1e-3});
+        d.begin(p_m);
+        d.model->turn_burr({kFullRadS, 1e-3});
+        DeadlineChecks checks;
+        checks.replayed = true;
+        checks.passed_at = 3;
+        const StepResult r = d.step(p_m + Vec3(1e-5 * i, 0.0, 0.0), 1.0F, Deadline(Instant::max(), &checks));
+        if (r.status != StepStatus::out_of_time || d.model->cut().visited == 0) continue;
+        ++cut_short;
+        EXPECT_LT(r.load.work_done, 0.95F);
+    }
+    EXPECT_GT(cut_short, 10);
+}
+
 TEST(DrillLevels, the_depth_of_the_step_before_makes_no_step_and_no_oscillation) {
     Drilled d(6e-3);
     d.model->turn_burr({0.0, 1e-3});

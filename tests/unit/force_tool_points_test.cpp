@@ -1,0 +1,55 @@
+// The points that a move touches, and the share of it that they allow, against all points one by one.
+#include "rt/force/surface/tool_points.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <random>
+#include <vector>
+
+#include "tests/unit/force_tool_fixture.hpp"
+
+namespace tact::force_tool_points_test {
+namespace {
+
+using namespace tool_test;
+
+TEST(ToolPoints, the_points_beyond_their_room_and_the_share_are_those_of_all_points_one_by_one) {
+    const World& w = box_on_rough();
+    std::mt19937 random(7);
+    std::normal_distribution<double> normal;
+    const auto vector = [&] { return Vec3(normal(random), normal(random), normal(random)); };
+    for (const std::uint32_t used : {40U, 333U, 1000U}) {
+        ToolPoints points(w.mesh, w.tool, w.tool.ball_m);
+        Pose at{Vec3(0.0, 0.054 / kWorldPerModel, 0.0), Quat::Identity()};
+        at.p_m = points.seat(at);
+        for (int i = 0; i < 1000 && !points.tried_all(); ++i) points.wake(at, used, {}, 500);
+        points.begin_move(at);
+        std::vector<std::uint32_t> listed(1000);
+        int limited = 0;
+        for (int i = 0; i < 400; ++i) {
+            const double size_m = points.reach_m() * std::pow(10.0, -0.01 * i);
+            const Vec3 v_m = size_m * vector(), w_rad = size_m / points.reach_m() * vector();
+            double share = 1.0;
+            std::vector<std::uint32_t> beyond;
+            for (std::uint32_t p = 0; p < used; ++p) {
+                if (!points.is_awake(p)) continue;
+                const double way = points.way_m(p, v_m, w_rad), room = points.room_m(p);
+                share = std::min(share, room / way);
+                if (way > room * (1.0 + 1e-5)) beyond.push_back(p);
+            }
+            EXPECT_NEAR(points.share_in_room(v_m, w_rad), share, 1e-12) << used << ", " << i;
+            limited += share < 1.0 && share > 0.0 ? 1 : 0;
+            const auto end = listed.begin() + static_cast<std::ptrdiff_t>(points.beyond(v_m, w_rad, listed));
+            EXPECT_TRUE(std::includes(listed.begin(), end, beyond.begin(), beyond.end()))
+                << used << ", " << i;
+            for (auto p = listed.begin(); p != end; ++p)
+                EXPECT_GT(points.way_m(*p, v_m, w_rad), points.room_m(*p) * (1.0 - 1e-5))
+                    << used << ", " << i;
+        }
+        EXPECT_GT(limited, 50) << used;
+    }
+}
+
+}  // namespace
+}  // namespace tact::force_tool_points_test
