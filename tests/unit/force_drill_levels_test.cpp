@@ -293,6 +293,23 @@ TEST(DrillLevels, a_fall_of_the_level_or_a_late_step_is_no_step_of_the_force) {
     }
 }
 
+// Where the ball is deep in the bone, blocks do not shrink at any level, and the floor has no error of its own.
+TEST(DrillLevels, rough_blocks_add_an_error_only_where_blocks_would_shrink) {
+    for (const double depth : {0.1, 0.6}) {
+        Drilled d(3e-3);
+        d.model->turn_burr({0.0, 1e-3});
+        const Vec3 p_m(0.0, 0.0, 3e-3 * (1.0 - depth));
+        d.begin(p_m);
+        StepResult floor, above;
+        for (int i = 0; i < 300; ++i) floor = d.step(p_m, 0.0F);
+        for (int i = 0; i < 300; ++i) above = d.step(p_m, 0.2F);
+        if (depth > 0.5)
+            EXPECT_LT(floor.load.error, 2.0 * above.load.error);
+        else
+            EXPECT_GT(floor.load.error, 3.0 * above.load.error);
+    }
+}
+
 // After a reset the depth is unknown. A rough level does not look at the ball twice to find it.
 TEST(DrillLevels, the_first_step_at_the_floor_is_no_more_work_than_the_next) {
     Drilled d(8e-3);

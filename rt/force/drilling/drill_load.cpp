@@ -79,8 +79,11 @@ double BlockDetail::asked(double depth) const noexcept {
     return depth < 0.0 ? block : block * std::pow(depth_part(depth), -rough);
 }
 
-double block_error_share(const BlockDetail& d) noexcept {
-    return kErrorLeast + kErrorPerBlock * d.block * d.block + kErrorRough * d.rough * d.rough;
+double shallow_share(double depth) noexcept { return (1.0 - depth_part(depth)) / (1.0 - depth_part(0.0)); }
+
+double block_error_n(const BlockDetail& d, double elastic_n, double shallow_n) noexcept {
+    return (kErrorLeast + kErrorPerBlock * d.block * d.block) * elastic_n +
+           kErrorRough * d.rough * d.rough * shallow_n;
 }
 
 // Deep in bone the moment is small, and its direction less certain. A cap that is thinner than a voxel has an error of its

@@ -66,8 +66,10 @@ struct BallLook {
 // Of a ball in flat solid bone, by the sizes alone.
 [[nodiscard]] DrillWork flat_work(const BallLook& look, double block) noexcept TACT_RT;
 
-// Of the elastic force.
-[[nodiscard]] double block_error_share(const BlockDetail& detail) noexcept TACT_RT;
+// shallow_n: the part of the elastic force for which rough blocks are too large, by shallow_share() of each ball's.
+[[nodiscard]] double block_error_n(const BlockDetail& detail, double elastic_n,
+                                   double shallow_n) noexcept TACT_RT;
+[[nodiscard]] double shallow_share(double depth) noexcept TACT_RT;  // 0 where blocks do not shrink, to 1
 // Error of one ball, because bone is known by voxels only. elastic_full_n: elastic force at h = R; voxel: in radii.
 [[nodiscard]] double voxel_error_n(double elastic_full_n, double depth, double voxel) noexcept TACT_RT;
 // Newtons per exposure that is pending, of a ball of weight 1.

@@ -169,7 +169,7 @@ PathLoad DrillModel::predict(float fidelity) const noexcept {
 
 // Scaling down to force_n_max turns a vector's error e at scale s into sqrt(2) s e at most, and into no more than e.
 double DrillModel::error_n(const BallForces& sum, const BlockDetail& detail, double pending) const noexcept {
-    const double error = block_error_share(detail) * sum.elastic_n + sum.voxel_error_n;
+    const double error = block_error_n(detail, sum.elastic_n, sum.shallow_n) + sum.voxel_error_n;
     const double scale = std::min(std::numbers::sqrt2 * sum.scale, 1.0);
     return std::min(scale * error, 2.0 * settings_.force_n_max) +
            std::min(sum.scale * sum.pending_n * pending, 2.0 * settings_.force_n_max);
@@ -258,7 +258,9 @@ DrillModel::BallForces DrillModel::ball_forces(const ToolState& tool, const Bloc
         const Vec3 force_n = ball.weight * f.wrench.force_n;
         sum.wrench.force_n += force_n;
         sum.wrench.torque_n_m += ball.weight * f.wrench.torque_n_m + arm_m.cross(force_n);
-        sum.elastic_n += full_n * f.depth * std::sqrt(f.depth);
+        const double elastic_n = full_n * f.depth * std::sqrt(f.depth);
+        sum.elastic_n += elastic_n;
+        sum.shallow_n += shallow_share(f.depth) * elastic_n;
         sum.voxel_error_n += voxel_error_n(full_n, f.depth, per_voxel_m_ / ball.radius_m);
         if ((ball.cuts || i == 0) && f.depth > depth_) {
             depth_ = f.depth;

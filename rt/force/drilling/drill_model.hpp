@@ -143,6 +143,7 @@ private:
     struct BallForces {
         Wrench wrench;           // at the tool's origin, world, before limits
         double elastic_n = 0.0;  // sum of sizes
+        double shallow_n = 0.0;  // of them (drill_load.hpp)
         double voxel_error_n = 0.0;
         double scale = 1.0;  // down to force_n_max
         bool late = false;
