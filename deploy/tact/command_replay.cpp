@@ -15,7 +15,7 @@ namespace tact::launch {
 namespace {
 
 struct ReplayOptions {
-    std::string file, scene, session = "replay", size = "1280x800", screenshot;
+    std::string file, scene, bone, session = "replay", size = "1280x800", screenshot;
     bool show = false, json = false, headless = false;
     double from_s = 0.0, speed = 1.0, seconds = 0.0;
 };
@@ -23,6 +23,7 @@ struct ReplayOptions {
 std::vector<std::string> words_of(const ReplayOptions& o) {
     std::vector<std::string> words{o.file};
     if (!o.scene.empty()) words.insert(words.end(), {"--scene", o.scene});
+    if (!o.bone.empty()) words.insert(words.end(), {"--bone", o.bone});
     if (o.json) words.emplace_back("--json");
     if (o.show)
         words.insert(words.end(), {"--show", "--session", o.session, "--from", std::to_string(o.from_s),
@@ -82,6 +83,8 @@ void add_replay(CLI::App& app, int& exit_code) {
         ->required()
         ->type_name("FILE.h5");
     command->add_option("--scene", o->scene, "Current path of the recorded scene")->type_name("SCENE");
+    command->add_option("--bone", o->bone, "Current path of the drilled bone with which the run started")
+        ->type_name("FILE.bone");
     command->add_flag("--json", o->json, "Print the result as JSON");
     auto* const shown =
         command->add_flag("--show", o->show, "Show the run in a window at the recorded speed");

@@ -76,6 +76,21 @@ private:
 
     void start() {
         if (options_.gui) prepare_display();
+        if (!first_) {  // they were meant for the scene before
+            options_.keep.clear();
+            options_.drop_controller_option("--resume");
+        }
+        // Before the controller, like a recording.
+        auto words = system_->keeper_arguments(options_);
+        if (words.empty() && !options_.keep.empty())
+            throw StartupError("keeping drilled bone in " + options_.keep.string(), "this scene has no bone",
+                               "remove --keep");
+        if (!words.empty()) {
+            ChildSettings keeper;
+            keeper.arguments = std::move(words);
+            keeper.grace = options_.grace;
+            keeper_.emplace("tact-record", find_program("tact-record", options_.programs), keeper);
+        }
         ChildSettings rt;
         rt.arguments = controller_arguments(facts_.scene, options_, first_);
         rt.grace = options_.grace;
@@ -151,6 +166,7 @@ private:
         if (gui_ && !gui_->poll()) keep_off_core(gui_->pid(), *core);
         if (record_ && !record_->poll()) keep_off_core(record_->pid(), *core);
         if (flight_ && !flight_->poll()) keep_off_core(flight_->pid(), *core);
+        if (keeper_ && !keeper_->poll()) keep_off_core(keeper_->pid(), *core);
         if (x_ && !x_->child().poll()) keep_off_core(x_->child().pid(), *core);
     }
 
@@ -209,7 +225,7 @@ private:
 
     int finish() {
         for (std::optional<Child>* const recorder :
-             {&record_, &flight_}) {  // they end by themselves after the controller
+             {&record_, &flight_, &keeper_}) {  // they end by themselves after the controller
             if (!*recorder) continue;
             if (!(*recorder)->wait(std::chrono::seconds(10))) (*recorder)->stop();
             if (const auto& ending = (*recorder)->wait(options_.grace + std::chrono::seconds(1)))
@@ -276,7 +292,7 @@ private:
     std::optional<ScratchFolder> scratch_;  // must outlive the X server, which uses it
     std::optional<XServer> x_;
     std::vector<std::pair<std::string, std::string>> display_;
-    std::optional<Child> rt_, gui_, record_, flight_;
+    std::optional<Child> rt_, gui_, record_, flight_, keeper_;
     bool ending_ = false;
     int lines_ = 0;
     Instant started_{}, sample_due_{}, line_due_{}, core_due_{}, asked_due_{};

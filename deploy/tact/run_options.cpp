@@ -71,6 +71,21 @@ bool RunOptions::has_controller_option(const std::string& name) const {
     return std::find(controller.begin(), controller.end(), name) != controller.end();
 }
 
+std::string RunOptions::controller_value(const std::string& name) const {
+    const auto at = std::find(controller.begin(), controller.end(), name);
+    return at != controller.end() && at + 1 != controller.end() ? at[1] : std::string();
+}
+
+void RunOptions::drop_controller_option(const std::string& name) {
+    const auto at = std::find(controller.begin(), controller.end(), name);
+    if (at != controller.end() && at + 1 != controller.end()) controller.erase(at, at + 2);
+}
+
+void RunOptions::set_controller_value(const std::string& name, const std::string& value) {
+    const auto at = std::find(controller.begin(), controller.end(), name);
+    if (at != controller.end() && at + 1 != controller.end()) at[1] = value;
+}
+
 void RunOptions::add_for_scene(const std::vector<std::string>& words) {
     if (!typed) typed = controller;
     controller.insert(controller.end(), words.begin(), words.end());
@@ -107,6 +122,10 @@ void RunOptions::settle() {
     if (!record.empty() && std::filesystem::exists(record))
         throw StartupError("recording to " + record.string(), "the file exists already",
                            "give another name, or remove the file");
+    if (!keep.empty()) keep = std::filesystem::absolute(keep);
+    if (!keep.empty() && std::filesystem::exists(keep))
+        throw StartupError("keeping drilled bone in " + keep.string(), "the file exists already",
+                           "give another name, or continue with it: --resume");
     if (!save.empty()) save = std::filesystem::absolute(save);
     if (!screenshot.empty()) {
         screenshot = std::filesystem::absolute(screenshot);
@@ -140,6 +159,10 @@ void add_run_options(CLI::App& app, RunOptions& options) {
            "--flight", options.flight,
            "Folder for recordings of the last 30 s, saved at an overrun, a fault or the key M in the window")
         ->type_name("DIR");
+    app.add_option("--keep", options.keep,
+                   "New file for the drilled bone, written while it is drilled; default: in "
+                   "$XDG_STATE_HOME/tact/drilled; continue with it by --resume")
+        ->type_name("FILE.bone");
     app.add_option("--session", options.session, "Session name shared by the processes of the run")
         ->type_name("NAME")
         ->capture_default_str();

@@ -20,6 +20,7 @@ struct RunOptions {
     std::filesystem::path out;     // folder for run.json, run.csv and run.png
     std::filesystem::path save;    // folder for the placed structures
     std::filesystem::path record;  // every cycle of the run, HDF5
+    std::filesystem::path keep;    // what the run changes in its scene; empty: a new file in the state folder
     std::filesystem::path flight;  // folder for recordings of the last seconds, saved at an event
     std::string session = "default";
     std::string size = "1280x800";   // of the window
@@ -34,6 +35,11 @@ struct RunOptions {
     std::optional<std::vector<std::string>> typed;
 
     [[nodiscard]] bool has_controller_option(const std::string& name) const;
+    // Value of a controller option as typed; empty: not given.
+    [[nodiscard]] std::string controller_value(const std::string& name) const;
+    void drop_controller_option(const std::string& name);  // with its value
+    void set_controller_value(const std::string& name,
+                              const std::string& value);  // of an option that is given
     // Adds controller options for this scene only; forget_scene() restores the typed ones.
     void add_for_scene(const std::vector<std::string>& words);
     void forget_scene();

@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "deploy/tact/run_options.hpp"
 #include "deploy/tact/run_record.hpp"
 #include "deploy/tact/signals.hpp"
 #include "ipc/topics/regions.hpp"
@@ -32,6 +33,9 @@ public:
         const std::function<std::filesystem::path()>& /*scratch*/) {
         return {};
     }
+    // Arguments of a tact-record that keeps what the run changes in its scene; empty: none. May complete the options of
+    // the controller. Called once, before the controller starts.
+    virtual std::vector<std::string> keeper_arguments(RunOptions& /*options*/) { return {}; }
     // Called at every poll while a controller is visible.
     virtual void watch(const RtRegion& /*region*/) {}
     // Sets `own`, `heading` and `line_end` of the sample.

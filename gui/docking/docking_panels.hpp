@@ -151,7 +151,8 @@ public:
     ContourRowState contours;
 
     [[nodiscard]] CardSize card_size() const override { return {212.0F, 0.3F}; }
-    void draw_card(const Theme& theme, const PixelRect& card) const override;  // of the fit
+    void draw_card(const Theme& theme, const PixelRect& card,
+                   DashboardState& state) const override;  // of the fit
     void draw_in_scene_card(const Theme& theme, DashboardState& state) override;
     [[nodiscard]] std::string drawn_text(const DashboardState& state) const override;
 };

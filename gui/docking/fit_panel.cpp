@@ -26,7 +26,7 @@ void metrics(const Theme& theme, const FitMetrics& m, double contour) {
 
 }  // namespace
 
-void DockingPanels::draw_card(const Theme& theme, const PixelRect& card) const {
+void DockingPanels::draw_card(const Theme& theme, const PixelRect& card, DashboardState& /*state*/) const {
     const FitState& f = fit;
     begin_card(theme, "Fit", card);
     if (f.known) {

@@ -68,6 +68,14 @@ void Bleeding::open(std::uint32_t x, std::uint32_t y, std::uint32_t z, double dr
     oldest_ = (oldest_ + 1) % kWoundsMost;
 }
 
+void Bleeding::close(const ParticleCells& cells) noexcept {
+    std::erase_if(wounds_, [&](const Wound& w) {
+        const Vec3 at = cells.to_cells(w.at_m);
+        return cells.bone({static_cast<int>(at.x()), static_cast<int>(at.y()), static_cast<int>(at.z())});
+    });
+    if (wounds_.size() < kWoundsMost) oldest_ = 0;
+}
+
 void Bleeding::step(double dt_s, std::size_t drops_most, Particles& particles) noexcept {
     const ParticleCells& cells = particles.cells();
     for (std::size_t i = 0; i < wounds_.size();) {

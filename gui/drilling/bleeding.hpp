@@ -26,6 +26,8 @@ public:
 
     // A voxel of this density has been removed.
     void cut(std::uint32_t x, std::uint32_t y, std::uint32_t z, std::uint8_t density) noexcept;
+    // Wounds where bone came back are gone.
+    void close(const ParticleCells& cells) noexcept;
     // At most this many drops in this step.
     void step(double dt_s, std::size_t drops_most, Particles& particles) noexcept;
     [[nodiscard]] std::size_t wounds() const noexcept { return wounds_.size(); }

@@ -55,22 +55,56 @@ bool BoneField::empty(std::uint32_t cx, std::uint32_t cy, std::uint32_t cz) cons
     return true;
 }
 
-bool BoneField::changed(std::uint32_t brick) {
+void BoneField::changed(std::uint32_t brick, bool grown) {
     constexpr std::uint32_t kCellsOfBrick = BoneBricks::kEdge / kCell;
     const auto n = now_.bricks.bricks();
-    const std::array<std::uint32_t, 3> at{brick % n[0] * kCellsOfBrick, brick / n[0] % n[1] * kCellsOfBrick,
-                                          brick / n[0] / n[1] * kCellsOfBrick};
-    for (std::uint32_t z = at[2]; z < at[2] + kCellsOfBrick; ++z)
-        for (std::uint32_t y = at[1]; y < at[1] + kCellsOfBrick; ++y)
-            for (std::uint32_t x = at[0]; x < at[0] + kCellsOfBrick; ++x) {
-                std::uint8_t& cell = free_[(std::size_t{z} * cells_[1] + y) * cells_[0] + x];
-                const bool none = empty(x, y, z);
-                if (cell > 0 && !none) {
-                    measure();
-                    return false;
+    const std::array<std::uint32_t, 3> brick_at{brick % n[0], brick / n[0] % n[1], brick / n[0] / n[1]};
+    // A surface at the border of a brick is in the cells beside it, too.
+    std::array<std::uint32_t, 3> from{}, to{};
+    for (std::size_t i = 0; i < 3; ++i) {
+        from[i] = brick_at[i] * kCellsOfBrick;
+        to[i] = from[i] + kCellsOfBrick;
+        if (!grown) continue;
+        from[i] -= from[i] > 0 ? 1 : 0;
+        to[i] = std::min(to[i] + 1, cells_[i]);
+    }
+    for (std::uint32_t z = from[2]; z < to[2]; ++z)
+        for (std::uint32_t y = from[1]; y < to[1]; ++y)
+            for (std::uint32_t x = from[0]; x < to[0]; ++x) {
+                const std::size_t at = (std::size_t{z} * cells_[1] + y) * cells_[0] + x;
+                std::uint8_t& cell = free_[at];
+                if (empty(x, y, z)) {
+                    cell = std::max(cell, std::uint8_t{1});
+                } else if (cell > 0) {
+                    cell = 0;
+                    filled_.push_back(static_cast<std::uint32_t>(at));
                 }
-                if (none) cell = std::max(cell, std::uint8_t{1});
             }
+}
+
+// From the filled cells outwards, as far as cells are farther from all other bone.
+bool BoneField::settle() {
+    if (filled_.empty()) return false;
+    constexpr std::uint32_t kMost = 255;
+    const auto nx = static_cast<int>(cells_[0]), ny = static_cast<int>(cells_[1]),
+               nz = static_cast<int>(cells_[2]);
+    for (std::uint32_t distance = 1; distance < kMost && !filled_.empty(); ++distance) {
+        next_.clear();
+        for (const std::uint32_t at : filled_) {
+            const auto i = static_cast<int>(at);
+            const int x = i % nx, y = i / nx % ny, z = i / nx / ny;
+            for (int c = std::max(z - 1, 0); c <= std::min(z + 1, nz - 1); ++c)
+                for (int b = std::max(y - 1, 0); b <= std::min(y + 1, ny - 1); ++b)
+                    for (int a = std::max(x - 1, 0); a <= std::min(x + 1, nx - 1); ++a) {
+                        const auto beside = static_cast<std::uint32_t>((c * ny + b) * nx + a);
+                        if (free_[beside] <= distance) continue;
+                        free_[beside] = static_cast<std::uint8_t>(distance);
+                        next_.push_back(beside);
+                    }
+        }
+        filled_.swap(next_);
+    }
+    filled_.clear();
     return true;
 }
 

@@ -4,8 +4,8 @@
 //           the opacity of its remaining fraction, so it is as visible as bone; one invisible in the scan is shown
 //           as labelled.
 // Cells     of 4 voxels a side. 0: may hold something; k: all cells nearer than k (the largest of the three
-//           differences) are empty, so a ray can skip them at once. Bone is only removed: distances stay valid while
-//           drilling.
+//           differences) are empty, so a ray can skip them at once. Distances stay valid while bone is removed; bone that
+//           comes back shortens them in settle().
 // Surface   where the opacity, interpolated linearly between voxel centres, reaches kSurface.
 // Thread    frame thread
 #pragma once
@@ -46,9 +46,10 @@ public:
     }
     // Opacities of a brick, x fastest.
     void solids(std::uint32_t brick, std::span<std::uint8_t, BoneBricks::kVoxels> out) const;
-    // Updates the cells of a brick. Returns false if bone appeared in an empty cell: all distances were measured
-    // again.
-    bool changed(std::uint32_t brick);
+    // Updates the cells of a brick; grown: bone came back in it, and settle() must follow before cells are used.
+    void changed(std::uint32_t brick, bool grown = false);
+    // Shortens the distances to bone that came back. True: some cells changed.
+    bool settle();
 
     [[nodiscard]] const std::array<std::uint32_t, 3>& cells() const { return cells_; }
     // Radius of a ball about a centre that contains everything visible, voxels; 0: nothing.
@@ -66,6 +67,7 @@ private:
     const BoneVolumeView& now_;
     std::array<std::uint32_t, 3> cells_{};
     std::vector<std::uint8_t> free_;
+    std::vector<std::uint32_t> filled_, next_;  // cells that bone came back to; those at the next distance
 };
 
 }  // namespace tact

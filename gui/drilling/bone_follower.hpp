@@ -10,6 +10,7 @@
 // Thread   frame thread. follow() allocates only for more simultaneous changes than ever before.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <span>
 #include <string>
@@ -24,6 +25,11 @@ struct BrickChange {
     std::uint32_t brick;                          // index, order of BoneBricks
     std::span<const std::uint8_t> before, after;  // BoneBricks::kVoxels each
     bool cut_now;  // since the last call; false: before the controller was found
+    // Bone came back: a stroke was undone.
+    [[nodiscard]] bool grown() const {
+        return !std::equal(after.begin(), after.end(), before.begin(),
+                           [](std::uint8_t now, std::uint8_t then) { return now <= then; });
+    }
 };
 
 class BoneFollower {

@@ -77,8 +77,8 @@ float BoneView::reach_a() const {
     return static_cast<float>(voxel_a * field_.reach_voxels(centre));
 }
 
-void BoneView::changed(std::uint32_t brick) {
-    if (!field_.changed(brick)) cells_anew_ = true;
+void BoneView::changed(std::uint32_t brick, bool grown) {
+    field_.changed(brick, grown);
     changed_.push_back(brick);
     for (Eyeful& eye : eye_)
         if (eye.pixels() > 0) eye.changed.push_back(brick);
@@ -106,9 +106,9 @@ PixelBox BoneView::on_screen(const BoneFrame& frame, const Vec3& low, const Vec3
 }
 
 void BoneView::send_changes() {
+    const bool cells_anew = field_.settle();
     for (const std::uint32_t b : changed_) textures_.send(field_, b);
-    if (cells_anew_) textures_.send_cells(field_);
-    cells_anew_ = false;
+    if (cells_anew) textures_.send_cells(field_);
     changed_.clear();
 }
 

@@ -31,8 +31,8 @@ class BoneView {
 public:
     // All arguments must outlive it; `now` is the bone as drilled. centre_model_m: origin of the scene frame.
     BoneView(const BoneContent& bone, const Vec3& centre_model_m, const BoneVolumeView& now);
-    // Reports that the brick's densities in `now` changed since the last call, or since the start.
-    void changed(std::uint32_t brick);
+    // Reports that the brick's densities in `now` changed since the last call, or since the start. grown: some rose.
+    void changed(std::uint32_t brick, bool grown = false);
     // Throws StartupError if graphics memory, allocated step by step in the first calls, does not suffice.
     void draw(const BoneFrame& frame);
 
@@ -85,7 +85,6 @@ private:
     GlVertexArray array_;
     GlBuffer corners_;
     std::vector<std::uint32_t> changed_;
-    bool cells_anew_ = false;
 };
 
 }  // namespace tact

@@ -73,6 +73,9 @@ void DrillController::show(const DrillTopic& drill, DashboardState& dashboard, D
     const BoneLabelsView& labels = bone_->labels;
     state.burr = describe_tool(drill.hand[0]);
     state.suction_tube = describe_tool(drill.hand[1]);
+    state.undoable = drill.undoable;
+    state.redoable = drill.redoable;
+    state.exchanging = drill.exchanging != 0;
     state.removed_m3 = drill.level_m3 * static_cast<double>(drill.removed_levels);
     const auto by_burr = watch_->look(drill, 0), by_suction_tube = watch_->look(drill, 1);
     state.structures.clear();

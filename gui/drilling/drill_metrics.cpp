@@ -101,8 +101,9 @@ std::uint8_t DrillMetrics::brick(std::uint32_t brick, std::span<const std::uint8
         nearest_critical_m(bricks_.to_model(middle)) < kDrillNearM.back() + half_m + 2.0 * error_m;
     std::uint8_t injured = 0;
     for (std::uint32_t i = 0; i < BoneBricks::kVoxels; ++i) {
-        if (after[i] >= before[i]) continue;
-        const auto levels = static_cast<std::uint64_t>(before[i] - after[i]);
+        if (after[i] == before[i]) continue;
+        // Bone that comes back is subtracted: unsigned numbers wrap, and their sums are right.
+        const auto levels = static_cast<std::uint64_t>(int{before[i]} - int{after[i]});
         const std::uint8_t label = labels_.label.empty() ? std::uint8_t{0} : labels_.label[first + i];
         metrics_.removed_levels += levels;
         StructureMetrics& s = metrics_.structure[label < metrics_.structure.size() ? label : 0];
@@ -113,7 +114,7 @@ std::uint8_t DrillMetrics::brick(std::uint32_t brick, std::span<const std::uint8
             for (std::size_t k = 0; k < kDrillNearM.size(); ++k)
                 if (away_m < kDrillNearM[k]) metrics_.near_levels[k] += levels;
         }
-        if (!cut_now || !labels_.critical(label)) continue;
+        if (!cut_now || after[i] > before[i] || !labels_.critical(label)) continue;
         if (cycle_s_ - injured_s_[label] > kInjuryPauseS) {
             ++s.injuries;
             ++metrics_.injuries;
@@ -126,6 +127,13 @@ std::uint8_t DrillMetrics::brick(std::uint32_t brick, std::span<const std::uint8
 
 DrillMetricsRow DrillMetrics::metrics() const {
     DrillMetricsRow all = metrics_;
+    // A controller that adds bone to the scene's owes none.
+    const auto not_below_zero = [](std::uint64_t& levels) {
+        if (static_cast<std::int64_t>(levels) < 0) levels = 0;
+    };
+    not_below_zero(all.removed_levels);
+    for (std::uint64_t& levels : all.near_levels) not_below_zero(levels);
+    for (StructureMetrics& s : all.structure) not_below_zero(s.removed_levels);
     all.strokes = strokes_.metrics();
     return all;
 }

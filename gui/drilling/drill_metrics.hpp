@@ -4,6 +4,7 @@
 // Numbers   of the burr in the first hand. Drilling: it turns. Cutting: it also removed bone in that cycle.
 //           Force is the force on the hand; excess is above kForceExcessN while drilling.
 //           Near: distance to a critical structure from the head's surface (times) or the removed voxel (volumes).
+//           Bone that an undone stroke brings back is no longer removed; times and injuries stay.
 //           An injury is the removal of a critical structure's bone after none was removed for kInjuryPauseS.
 //           Cycles that the window missed are counted, not estimated.
 // Unit      SI in the hand's space; bone in density levels, 255 per voxel of solid bone

@@ -33,6 +33,28 @@ void metrics(const Theme& theme, const DrillingState& d) {
                       : std::string());
 }
 
+// Of the bone that was taken.
+void undo(const Theme& theme, const DrillingState& d, DashboardState& state) {
+    const auto button = [&](const char* name, std::uint32_t count, CommandKind kind, const char* help) {
+        ImGui::BeginDisabled(count == 0 || d.exchanging || !state.attached);
+        if (ImGui::Button(name)) state.requests.push_back({kind, 0.0, {}});
+        ImGui::EndDisabled();
+        if (ImGui::IsItemHovered(ImGuiHoveredFlags_AllowWhenDisabled)) ImGui::SetTooltip("%s", help);
+    };
+    button("Undo stroke", d.undoable, CommandKind::undo_stroke,
+           "bring back the bone of the last stroke, with the force faded out meanwhile (Ctrl+Z)\n"
+           "a stroke: bone taken without a pause of 0.3 s, at most 10 s");
+    ImGui::SameLine();
+    button("Redo stroke", d.redoable, CommandKind::redo_stroke,
+           "take the bone of the undone stroke (Ctrl+Y)");
+    ImGui::SameLine();
+    ImGui::AlignTextToFramePadding();
+    if (d.exchanging)
+        text_coloured(colour::kWatch, "no force meanwhile");
+    else
+        text_small(theme, colour::kDim, d.undoable > 0 ? format("%u can be undone", d.undoable) : "");
+}
+
 void structure(const Theme& theme, const DrillingState& d, const DrillingState::Structure& s) {
     const ImVec2 at = ImGui::GetCursorScreenPos();
     const float edge = theme.px(8.0F), h = ImGui::GetTextLineHeight();
@@ -61,7 +83,7 @@ void tip(const DrillingState& d) {
 
 }  // namespace
 
-void DrillingPanels::draw_card(const Theme& theme, const PixelRect& card) const {
+void DrillingPanels::draw_card(const Theme& theme, const PixelRect& card, DashboardState& state) const {
     const DrillingState& d = drilling;
     begin_card(theme, "Drilling", card, true);
     if (!d.known) {
@@ -73,6 +95,7 @@ void DrillingPanels::draw_card(const Theme& theme, const PixelRect& card) const 
         }
         tools(theme, d);
         metrics(theme, d);
+        undo(theme, d, state);
         if (d.structures.empty()) {
             text_small(theme, colour::kDim,
                        d.labelled ? "No labelled structure is critical (tact drill --critical)."

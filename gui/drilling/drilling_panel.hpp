@@ -37,7 +37,9 @@ struct DrillingState {
     double removed_m3 = 0.0, force_n = 0.0, drilling_s = 0.0, excess_s = 0.0;
     std::uint64_t strokes = 0, injuries = 0;
     double stroke_m = 0.0, stroke_m_s = 0.0;
-    std::vector<Structure> structures;  // critical ones, nearest first
+    std::uint32_t undoable = 0, redoable = 0;  // strokes of bone taken
+    bool exchanging = false;                   // one is being undone or redone: no force
+    std::vector<Structure> structures;         // critical ones, nearest first
 };
 
 class DrillingPanels : public SystemPanels {
@@ -47,8 +49,8 @@ public:
     std::array<std::uint32_t, 3> voxels{};
     double voxel_m = 0.0;  // edge
 
-    [[nodiscard]] CardSize card_size() const override { return {300.0F, 0.37F}; }
-    void draw_card(const Theme& theme, const PixelRect& card) const override;
+    [[nodiscard]] CardSize card_size() const override { return {328.0F, 0.40F}; }
+    void draw_card(const Theme& theme, const PixelRect& card, DashboardState& state) const override;
     void draw_in_scene_card(const Theme& theme, DashboardState& state) override;
     [[nodiscard]] std::string drawn_text(const DashboardState& state) const override;
 };

@@ -66,9 +66,19 @@ void DrillingSystem::follow(const SystemContext& context) {
 
 bool DrillingSystem::perform(KeyAction what, std::size_t place, const SystemContext& context) {
     static_cast<void>(place);
-    if (what != KeyAction::approach_burr) return false;
-    approach_burr(context);
-    return true;
+    switch (what) {
+        case KeyAction::approach_burr:
+            approach_burr(context);
+            return true;
+        case KeyAction::undo:
+        case KeyAction::redo:
+            if (context.controller.attached())
+                context.state.requests.push_back(
+                    {what == KeyAction::undo ? CommandKind::undo_stroke : CommandKind::redo_stroke, 0.0, {}});
+            return true;
+        default:
+            return false;
+    }
 }
 
 void DrillingSystem::approach_burr(const SystemContext& context) const {
@@ -118,7 +128,7 @@ void DrillingSystem::prepare(std::int64_t now_ns, bool sharp, ViewFrame& frame,
         drawn.bone_rays = rays_most(frame, sharp, context);
         if (!sharp) drawn.bone_fill_s = kFillS;
         if (BoneView* const bone = layer_->bone())
-            for (const BrickChange& c : bone_.changes()) bone->changed(c.brick);
+            for (const BrickChange& c : bone_.changes()) bone->changed(c.brick, c.grown());
         if (controller.attached() && controller.have_drill)
             drawn.tools = hands_.follow(controller.drill, content_->meta);
         drawn.particles = &site_->particles();
@@ -168,9 +178,9 @@ void DrillingSystem::finish(const SystemContext& context) {
             "bone density levels: {} removed by the controller, {} received while shown: {} sucked, {} "
             "carried, "
             "{} left, {} "
-            "discarded, {} too few for a grain",
+            "discarded, {} in bone that came back, {} too few for a grain",
             controller.have_drill ? controller.drill.removed_levels : 0, l.drilled, l.sucked, l.carried,
-            l.left, l.given_up, l.pooled);
+            l.left, l.given_up, l.buried, l.pooled);
     }
     controller_.save(options_.report, visibility);
 }

@@ -122,6 +122,19 @@ void Particles::remove(std::uint32_t i, std::uint64_t& account) noexcept {
     particle_.pop_back();
 }
 
+void Particles::bury() noexcept {
+    for (std::size_t i = 0; i < particle_.size();) {
+        const Particle& p = particle_[i];
+        const Cell here = {static_cast<int>(p.at[0]), static_cast<int>(p.at[1]), static_cast<int>(p.at[2])};
+        if (!cells_.bone(here)) {
+            ++i;
+            continue;
+        }
+        cells_.set(here, CellState::free);
+        remove(static_cast<std::uint32_t>(i), ledger_.buried);
+    }
+}
+
 void Particles::regroup(std::uint32_t i) noexcept {
     groups_.move_to(i, speed_group(std::sqrt(squared(particle_[i].velocity)) / fastest_));
 }

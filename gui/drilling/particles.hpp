@@ -57,9 +57,10 @@ struct Stir {
 };
 
 struct Ledger {  // levels of bone
-    std::uint64_t drilled = 0, pooled = 0, carried = 0, sucked = 0, left = 0, given_up = 0;
+    std::uint64_t drilled = 0, pooled = 0, carried = 0, sucked = 0, left = 0, given_up = 0,
+                  buried = 0;  // in bone that came back
     [[nodiscard]] bool balances() const noexcept {
-        return drilled == pooled + carried + sucked + left + given_up;
+        return drilled == pooled + carried + sucked + left + given_up + buried;
     }
 };
 
@@ -82,6 +83,8 @@ public:
                  const Vec3& velocity_m_s) noexcept;
     // Adds one particle. Returns false if there is no space nearby, or the maximum is reached.
     bool emit(Matter matter, const Vec3& at_m, const Vec3& velocity_m_s) noexcept;
+    // Removes the particles where bone came back.
+    void bury() noexcept;
     ParticleStep step(double dt_s, double budget_s, const Vec3& looked_at_m, const Suction& suction,
                       const Stir& stir = {}) noexcept;
     // Limits the number shown, within the limit of the settings. The next steps discard the least important excess

@@ -111,6 +111,11 @@ void SiteEffects::take_changes(const Frame& frame, const DrillHand* burr) noexce
     const auto n = bricks_.bricks();
     const Vec3 out =
         burr != nullptr ? Vec3(quat(burr->quat_model_tool_xyzw) * Vec3(0.0, 0.0, 1.0)) : Vec3(0.0, 0.0, 1.0);
+    if (std::any_of(frame.changes.begin(), frame.changes.end(),
+                    [](const BrickChange& change) { return change.grown(); })) {
+        particles_.bury();
+        bleeding_.close(particles_.cells());
+    }
     for (const BrickChange& change : frame.changes) {
         if (!change.cut_now) continue;
         const std::uint32_t bx = change.brick % n[0] * kEdge, by = change.brick / n[0] % n[1] * kEdge,

@@ -6,7 +6,7 @@
 
 namespace tact {
 
-void FieldPanels::draw_card(const Theme& theme, const PixelRect& card) const {
+void FieldPanels::draw_card(const Theme& theme, const PixelRect& card, DashboardState& /*state*/) const {
     begin_card(theme, "Field at the tool", card);
     const FieldState& f = field;
     if (!f.known) {

@@ -24,7 +24,7 @@ public:
     FieldState field;
 
     [[nodiscard]] CardSize card_size() const override { return {170.0F, 0.3F}; }
-    void draw_card(const Theme& theme, const PixelRect& card) const override;
+    void draw_card(const Theme& theme, const PixelRect& card, DashboardState& state) const override;
     void draw_in_scene_card(const Theme& theme, DashboardState& state) override;
     [[nodiscard]] std::string drawn_text(const DashboardState& state) const override;
 };

@@ -30,8 +30,8 @@ public:
 
     // Card between those of the controller and of the scene.
     [[nodiscard]] virtual CardSize card_size() const { return {}; }
-    virtual void draw_card(const Theme& theme, const PixelRect& card) const {
-        static_cast<void>(theme), static_cast<void>(card);
+    virtual void draw_card(const Theme& theme, const PixelRect& card, DashboardState& state) const {
+        static_cast<void>(theme), static_cast<void>(card), static_cast<void>(state);
     }
     // Part inside the scene card.
     virtual void draw_in_scene_card(const Theme& theme, DashboardState& state) = 0;

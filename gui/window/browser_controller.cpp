@@ -8,6 +8,7 @@
 
 #include "gui/window/import_progress.hpp"
 #include "ipc/base/error.hpp"
+#include "ipc/base/state_folder.hpp"
 #include "ipc/base/whole_file.hpp"
 #include "ipc/scene/file/scene_kinds.hpp"
 #include "ipc/scene/file/scene_switch.hpp"

@@ -57,7 +57,7 @@ void draw_dashboard(const Theme& theme, PanelState& state, SystemPanels& system,
     ImGui::PushStyleVar(ImGuiStyleVar_WindowMinSize, ImVec2(1.0F, 1.0F));
     if (middle.calibration) draw_calibration(theme, state.calibration, layout.middle);
     if (!middle.calibration) draw_health(theme, state, layout.health);
-    if (middle.size.height > 0.0F) system.draw_card(theme, layout.middle);
+    if (middle.size.height > 0.0F) system.draw_card(theme, layout.middle, state);
     if (!middle.calibration) draw_scene(theme, state, system, layout.scene);
     draw_plots(theme, state, layout.plots);
     draw_events(theme, state, layout.events);

@@ -21,16 +21,6 @@ constexpr std::int64_t kLatestUnixS = 253402300799;  // the year 9999
 
 }  // namespace
 
-std::filesystem::path state_folder() {
-    const auto folder_of = [](const char* name) {
-        const char* const value = std::getenv(name);
-        return std::filesystem::path(value != nullptr && value[0] == '/' ? value : "");
-    };
-    if (const auto xdg = folder_of("XDG_STATE_HOME"); !xdg.empty()) return xdg / "tact";
-    if (const auto home = folder_of("HOME"); !home.empty()) return home / ".local" / "state" / "tact";
-    return {};
-}
-
 std::vector<RecentScene> read_recents_text(std::string_view text, const std::string& name) {
     const auto fail = [&](const std::string& why) {
         throw StartupError("reading the recent scenes, " + name, why, kRecentsFix);

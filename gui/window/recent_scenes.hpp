@@ -21,9 +21,6 @@ struct RecentScene {
 
 inline constexpr std::size_t kRecentsMost = 24, kRecentsBytesMost = std::size_t{256} * 1024;
 
-// $XDG_STATE_HOME/tact, else ~/.local/state/tact; empty: neither variable is set.
-[[nodiscard]] std::filesystem::path state_folder();
-
 [[nodiscard]] std::vector<RecentScene> read_recents_text(std::string_view text, const std::string& name);
 [[nodiscard]] std::string recents_text(const std::vector<RecentScene>& scenes);
 // A missing file: none.

@@ -1,8 +1,8 @@
 // tact-record: writes the contents of a controller's rings to an HDF5 file; keeps a flight recorder;
-// repairs files of killed recorders; converts recordings to text tables.
+// repairs files of killed recorders; converts recordings to text tables; keeps drilled bone.
 //
 // Exit  0  success: the recording is complete, or the file was repaired or needed no repair
-//      1  error, or the disk was nearly full: the recording up to then is complete
+//      1  error, or the disk was (nearly) full: what was written up to then is complete
 //      2  wrong usage
 #include <signal.h>
 #include <unistd.h>
@@ -15,6 +15,7 @@
 
 #include "ipc/manual/manual.hpp"
 #include "ipc/record/repair.hpp"
+#include "ipc/recorder/bone_keeper.hpp"
 #include "ipc/recorder/csv.hpp"
 #include "ipc/recorder/flight.hpp"
 #include "ipc/recorder/recorder.hpp"
@@ -34,6 +35,7 @@ struct Requests {
     RecorderSettings settings;
     FlightSettings flight;
     CsvSettings csv;
+    BoneKeeperSettings bone;
     std::string file, repair, folder, table, output;
     double length_s = 30.0;
     bool json = false, quiet = false;
@@ -126,6 +128,32 @@ int keep_flights(Requests& w) {
     return outcome.failed == 0 ? 0 : 1;
 }
 
+int keep_drilled_bone(Requests& w) {
+    w.bone.session = w.settings.session;
+    w.bone.wait_s = w.settings.wait_s;
+    w.bone.stop = [] { return stop_asked != 0; };
+    const BoneKept kept = keep_bone(w.bone, [&](const std::string& text) {
+        if (!w.quiet) std::fprintf(stderr, "tact-record: %s\n", text.c_str());
+    });
+    const std::string name = w.bone.file.string();
+    if (w.json)
+        std::printf("%s\n", nlohmann::json{{"file", kept.drilled ? name : ""},
+                                           {"strokes", kept.strokes},
+                                           {"bytes", kept.bytes},
+                                           {"complete", kept.complete}}
+                                .dump()
+                                .c_str());
+    else if (!kept.drilled)
+        std::printf("no bone was drilled: no file was written\n");
+    else
+        std::printf("%s: %u strokes, %.1f MB\n", name.c_str(), kept.strokes,
+                    1e-6 * static_cast<double>(kept.bytes));
+    if (kept.complete) return 0;
+    std::fprintf(stderr, "tact-record: the last changes of the bone could not be written to %s\n",
+                 name.c_str());
+    return 1;
+}
+
 int make_table(Requests& w) {
     w.csv.recording = w.table;
     w.csv.file = w.output;
@@ -141,13 +169,15 @@ int run_request(Requests& w) {
     if (!w.repair.empty()) return repair_file(w);
     if (!w.table.empty()) return make_table(w);
     if (!w.folder.empty()) return keep_flights(w);
+    if (!w.bone.file.empty()) return keep_drilled_bone(w);
     w.settings.file = w.file;
     return make_recording(w);
 }
 
 void describe(CLI::App& app, Requests& w) {
     auto* const what = app.add_option_group(
-        "What", "Action: record to a file (default), keep a flight recorder, repair or convert");
+        "What",
+        "Action: record to a file (default), keep a flight recorder or drilled bone, repair or convert");
     what->add_option("file", w.file, "New recording of every servo cycle, such as run.h5")
         ->type_name("FILE.h5");
     what->add_option("--flight", w.folder,
@@ -160,7 +190,13 @@ void describe(CLI::App& app, Requests& w) {
         ->type_name("FILE.h5");
     auto* const csv =
         what->add_option("--csv", w.table, "Recording to convert into a table (CSV)")->type_name("FILE.h5");
+    auto* const bone = what->add_option("--bone", w.bone.file,
+                                        "New file for the drilled bone of a run, written while it is drilled")
+                           ->type_name("FILE.bone");
     what->require_option(1);
+    app.add_option("--bone-from", w.bone.resumed, "File of drilled bone with which the run started")
+        ->type_name("FILE.bone")
+        ->needs(bone);
     app.add_option("--session", w.settings.session, "Session name of the controller")
         ->type_name("NAME")
         ->capture_default_str();
@@ -200,7 +236,7 @@ int main(int argc, char** argv) {
         "kill -9 loses at most a second."};
     app.footer(
         "Exit codes: 0 success: the recording is complete, or the file was repaired or needed no repair; 1 "
-        "error, or the disk was nearly full: the recording up to then is complete; 2 wrong usage.");
+        "error, or the disk was (nearly) full: what was written up to then is complete; 2 wrong usage.");
     describe(app, w);
     if (const auto answered = manual::answer(app, "tact-record", argc, argv)) return *answered;
     try {

@@ -24,6 +24,7 @@ bool Watched::look() {
     LinkClient::News news = link_.poll();
     if (region_.empty() && news.arrived) {
         region_ = MappedRegion<RtRegion>::map(std::move(news.rt_fd), refusal_);
+        if (news.bone_fd.valid()) bone_ = MappedBoneRegion::map(std::move(news.bone_fd), bone_refusal_);
     } else if (!region_.empty() && (news.left || news.arrived)) {
         ended_ = true;  // the region of another controller does not belong to this recording
     }

@@ -11,6 +11,7 @@
 #include "ipc/record/recording_writer.hpp"
 #include "ipc/recorder/drain.hpp"
 #include "ipc/shm/link.hpp"
+#include "ipc/topics/bone_region.hpp"
 
 namespace tact::record {
 
@@ -23,13 +24,16 @@ public:
     bool look();
     [[nodiscard]] bool ended() const { return ended_; }
     [[nodiscard]] const RtRegion& region() const { return *region_; }
+    [[nodiscard]] const MappedBoneRegion& bone() const { return bone_; }  // empty(): none, or refused
+    [[nodiscard]] const std::string& bone_refusal() const { return bone_refusal_; }
     [[nodiscard]] std::uint64_t generation() const { return region_.generation(); }
     [[nodiscard]] std::string waiting_for() const;
 
 private:
     LinkClient link_;
     MappedRegion<RtRegion> region_;
-    std::string refusal_;
+    MappedBoneRegion bone_;
+    std::string refusal_, bone_refusal_;
     bool ended_ = false;
 };
 

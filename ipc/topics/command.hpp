@@ -37,8 +37,11 @@ enum class CommandKind : std::uint16_t {
     set_pull,      // value: 1 on, 0 off
     set_flexible,  // value: 1 on, 0 off
     set_together,  // value: 1 on, 0 off
+    // The last stroke of the burr, and the last one that was undone.
+    undo_stroke,
+    redo_stroke,
 };
-inline constexpr CommandKind kLastCommand = CommandKind::set_together;
+inline constexpr CommandKind kLastCommand = CommandKind::redo_stroke;
 // True for commands that the force model executes or refuses; all others concern the loop.
 [[nodiscard]] constexpr bool is_for_model(CommandKind kind) {
     return kind >= CommandKind::select_body && kind <= kLastCommand && kind != CommandKind::mark;

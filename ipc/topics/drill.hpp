@@ -27,7 +27,7 @@ enum class DrillShape : std::uint8_t { sphere, cylinder, cone };  // of a burr's
 struct DrillHand {
     double pos_model_m[3];  // of the head's centre
     double quat_model_tool_xyzw[4];
-    std::uint64_t removed_levels;  // by this tool, since the controller started
+    std::uint64_t removed_levels;  // by this tool, since the controller started, also in undone strokes
     float radius_m;                // of the head; for a cone, its largest radius
     float length_m;                // of a cylinder or cone, including round ends; otherwise the diameter
     float tip_radius_m;            // of a cone; otherwise the radius
@@ -47,18 +47,23 @@ struct DrillHand {
 static_assert(sizeof(DrillHand) == 128 && offsetof(DrillHand, kind) == 112);
 
 struct alignas(64) DrillTopic {
-    static constexpr TopicInfo kInfo{.name = "drill", .version = 1, .writer = Writer::rt};
+    static constexpr TopicInfo kInfo{.name = "drill", .version = 2, .writer = Writer::rt};
     std::int64_t taken_at_ns;
     std::uint64_t cycle;
-    std::uint64_t removed_levels;  // by all tools, since the controller started
-    double level_m3;               // volume of solid bone per level, in the hand's space
-    float burr_rad_s_most;         // with the pedal down
-    float irrigation_m3_s_most;    // water flow at 1
-    float suction_m3_s_most;       // intake flow at 1
-    std::uint8_t reserved[20];     // zero
+    std::uint64_t removed_levels;   // missing from the scene's bone
+    double level_m3;                // volume of solid bone per level, in the hand's space
+    float burr_rad_s_most;          // with the pedal down
+    float irrigation_m3_s_most;     // water flow at 1
+    float suction_m3_s_most;        // intake flow at 1
+    std::uint32_t strokes;          // in effect, with the one under way
+    std::uint16_t undoable;         // of them
+    std::uint16_t redoable;         // strokes that were undone
+    std::uint8_t stroke_under_way;  // 1: yes; a pause of 0.3 s ends it
+    std::uint8_t exchanging;        // 1: a stroke is being undone or redone; no force, nothing is cut
+    std::uint8_t reserved[10];      // zero
     DrillHand hand[kDrillHands];
 };
 static_assert(std::is_trivially_copyable_v<DrillTopic> && sizeof(DrillTopic) == 320);
-static_assert(offsetof(DrillTopic, hand) == 64);
+static_assert(offsetof(DrillTopic, strokes) == 44 && offsetof(DrillTopic, hand) == 64);
 
 }  // namespace tact

@@ -253,6 +253,10 @@ const char* command_kind_text(CommandKind kind) noexcept {
             return "bending";
         case CommandKind::set_together:
             return "copies together";
+        case CommandKind::undo_stroke:
+            return "undo a stroke";
+        case CommandKind::redo_stroke:
+            return "redo a stroke";
     }
     return kUnknown;
 }

@@ -165,11 +165,13 @@ int main(int argc, char** argv) {
     spdlog::set_default_logger(spdlog::stderr_color_mt("tact-replay"));
     spdlog::set_pattern("%n %^%l%$ %v");
     Requests w;
-    std::string file, scene;
+    std::string file, scene, bone;
     CLI::App app{
         "tact-replay: repeats a recorded run with the code of the controller, and compares every force"};
     app.add_option("file", file, "Recording of tact record")->required()->type_name("FILE.h5");
     app.add_option("--scene", scene, "Current path of the recorded scene")->type_name("SCENE");
+    app.add_option("--bone", bone, "Current path of the drilled bone with which the run started")
+        ->type_name("FILE.bone");
     auto* show =
         app.add_flag("--show", w.show, "Show the run at the recorded speed in the window of the session");
     app.add_option("--session", w.session, "Session name of the window")
@@ -199,6 +201,7 @@ int main(int argc, char** argv) {
     signal(SIGPIPE, SIG_IGN);
     w.settings.recording = file;
     w.settings.scene = scene;
+    w.settings.bone = bone;
     try {
         return run(w);
     } catch (const std::exception& e) {

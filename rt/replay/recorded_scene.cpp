@@ -5,6 +5,8 @@
 #include <vector>
 
 #include "ipc/base/error.hpp"
+#include "ipc/base/state_folder.hpp"
+#include "ipc/scene/bone/drilled_bone.hpp"
 
 namespace tact {
 
@@ -45,6 +47,25 @@ SceneFile open_recorded_scene(const RecordingReader::About& about, const fs::pat
         another ? "the file of this name is a different scene"
                 : "it is neither beside the recording, nor in this folder, nor among the baked scenes",
         "give the recorded scene with --scene, or bake it again as it was");
+}
+
+fs::path find_recorded_bone(const std::string& name, const std::string& identity, const fs::path& recording,
+                            const fs::path& given) {
+    std::vector<fs::path> places{recording.parent_path() / name, name};
+    if (!given.empty())
+        places = {given};
+    else if (const fs::path state = state_folder(); !state.empty())
+        places.push_back(state / "drilled" / name);
+    bool another = false;
+    for (const fs::path& place : places) {
+        std::error_code unknown;
+        if (!fs::is_regular_file(place, unknown)) continue;
+        if (file_identity(place) == identity) return place;
+        another = true;
+    }
+    throw StartupError("finding the drilled bone '" + name + "' with which the recorded run started",
+                       another ? "the file changed since this run was recorded" : "there is no such file",
+                       "give the file as it was with --bone, or record another run");
 }
 
 }  // namespace tact

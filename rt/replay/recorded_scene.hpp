@@ -14,4 +14,10 @@ namespace tact {
                                             const std::filesystem::path& recording,
                                             const std::filesystem::path& scene_path);
 
+// The file of drilled bone with which the recorded run started. given: its present path; empty: a file of its name beside
+// the recording, in this folder, or among the kept ones. Fails if none is as it was.
+[[nodiscard]] std::filesystem::path find_recorded_bone(const std::string& name, const std::string& identity,
+                                                       const std::filesystem::path& recording,
+                                                       const std::filesystem::path& given);
+
 }  // namespace tact

@@ -108,7 +108,7 @@ Replay::Replay(const ReplaySettings& settings)
         obstacle_ = "the recording starts in the middle of a run, at step " +
                     std::to_string(about.first_step) +
                     "; the state of the models and of the safety chain at that step is unknown";
-    build_models();
+    build_models(settings);
     has_step_ = reader_.next(step_);
 }
 
@@ -118,7 +118,7 @@ Replay::~Replay() {
     for (std::uint32_t i = 0; i < servo_->state().hands; ++i) delete servo_->state().hand[i].model;
 }
 
-void Replay::build_models() {
+void Replay::build_models(const ReplaySettings& from) {
     const RecordingReader::About& about = reader_.about();
     StartOverrides overrides;
     {
@@ -135,6 +135,9 @@ void Replay::build_models() {
     const RecordedFiles files;
     if (!options_.config.empty()) options_.config = files.put("tact.toml", about.config);
     if (!options_.poses.empty()) options_.poses = files.put("poses.json", about.poses);
+    if (!options_.resume.empty())
+        options_.resume =
+            find_recorded_bone(options_.resume, options_.resume_identity, from.recording, from.bone);
     config_ = configure(options_, overrides);
 
     std::memset(static_cast<void*>(&*region_), 0, sizeof(RtRegion));

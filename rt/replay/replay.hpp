@@ -59,7 +59,8 @@ struct ReplayResult {
 
 struct ReplaySettings {
     std::filesystem::path recording;
-    std::filesystem::path scene;  // empty: the recorded one
+    std::filesystem::path scene;   // empty: the recorded one
+    std::filesystem::path bone{};  // drilled bone with which the run started; empty: the recorded one
 };
 
 class Replay {
@@ -83,7 +84,7 @@ public:
     [[nodiscard]] int shared_fd() const { return system_->fd(); }  // the system's own region; -1: none
 
 private:
-    void build_models();
+    void build_models(const ReplaySettings& from);
     void give_step();
     void fill_mailbox();
     void build_model_aside();

@@ -5,6 +5,7 @@
 #include <iterator>
 #include <string>
 
+#include "ipc/scene/bone/drilled_bone.hpp"
 #include "ipc/version/version.hpp"
 
 namespace tact {
@@ -33,6 +34,9 @@ std::uint32_t keep_file(const std::string& path, char (&to)[N]) {
 void tell_how_started(std::span<char* const> arguments, const StartOptions& options, RunText& text) {
     std::string all;
     for (const char* const argument : arguments) all.append(argument).push_back('\0');
+    if (!options.resume.empty() && options.resume_identity.empty())
+        for (const std::string& word : {std::string("--resume-identity"), file_identity(options.resume)})
+            all.append(word).push_back('\0');
     text.arguments_bytes = keep_text(all, text.arguments);
     text.config_bytes = keep_file(options.config, text.config);
     text.poses_bytes = keep_file(options.poses, text.poses);

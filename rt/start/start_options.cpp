@@ -68,6 +68,12 @@ void describe(CLI::App& app, StartOptions& o, StartOverrides& v) {
         ->excludes(offset)
         ->excludes(rotation)
         ->excludes(copies);
+    auto* const resume =
+        app.add_option("--resume", o.resume,
+                       "Start with the bone as it was drilled in an earlier run, which kept it in this file")
+            ->type_name("FILE.bone");
+    // Of a recorded run: its replay needs the file as it was.
+    app.add_option("--resume-identity", o.resume_identity)->needs(resume)->group("");
     app.add_option(
            "--flexible", o.flexible,
            "on: the body in the hand bends along the normal modes of its structure; the scene must be "

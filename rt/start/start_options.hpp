@@ -26,6 +26,7 @@ struct StartOptions {
     std::uint32_t copies = 1;
     std::string flexible = "off";
     std::string poses;
+    std::string resume, resume_identity;
     std::vector<std::string> levels;
     double tool_radius_mm = 0.0;
     SurfaceSettings surface;

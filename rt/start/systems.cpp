@@ -1,7 +1,8 @@
 #include "rt/start/systems.hpp"
 
-#include <spdlog/fmt/fmt.h>
+#include <spdlog/spdlog.h>
 
+#include <algorithm>
 #include <array>
 
 #include "ipc/base/error.hpp"
@@ -11,6 +12,7 @@
 #include "rt/force/field/field_model.hpp"
 #include "rt/force/pointer_model.hpp"
 #include "rt/force/surface/tool_model.hpp"
+#include "rt/start/resume_bone.hpp"
 #include "rt/start/start_bodies.hpp"
 #include "rt/start/start_drill.hpp"
 #include "rt/start/visual_paths.hpp"
@@ -62,15 +64,34 @@ Model make_field(const SystemInput& in, SharedScene* /*shared*/, std::uint32_t h
     return hand > 0 ? nullptr : load_field_model(in.scene);
 }
 
+void resume(const SystemInput& in, DrillBone& bone) {
+    const std::string& file = in.options.resume;
+    if (!in.options.resume_identity.empty() && file_identity(file) != in.options.resume_identity)
+        throw StartupError("starting with the bone of " + file,
+                           "the file changed since this run was recorded",
+                           "restore the file, or record another run");
+    const DrilledBoneSummary sum = resume_bone(file, in.scene, bone);
+    spdlog::info("bone drilled before: {} strokes, {:.1f} % of its bricks changed", sum.strokes,
+                 100.0 *
+                     static_cast<double>(std::count_if(bone.revision.begin(), bone.revision.end(),
+                                                       [](std::uint32_t r) { return r != 0; })) /
+                     static_cast<double>(bone.revision.size()));
+    if (sum.bytes_left_out > 0)
+        spdlog::warn("{}: the last {} bytes were not written whole and are left out", file,
+                     sum.bytes_left_out);
+}
+
 std::unique_ptr<SharedScene> share_bone(const SystemInput& in) {
-    return std::make_unique<DrillScene>(in.scene, in.config, in.region);
+    auto shared = std::make_unique<DrillScene>(in.scene, in.config, in.region);
+    if (!in.options.resume.empty()) resume(in, shared->bone());
+    return shared;
 }
 
 std::string summary_of_drilling(const RtRegion& region) {
     DrillTopic t{};
     if (!region.drill.read(t)) return {};
     return fmt::format("{:.1f} mm3 of bone removed",
-                       1e9 * static_cast<double>(t.hand[0].removed_levels) * t.level_m3);
+                       1e9 * static_cast<double>(t.removed_levels) * t.level_m3);
 }
 
 constexpr std::array kSystems{
@@ -102,7 +123,11 @@ const System& system_of(SceneKind kind) {
 SceneSystem::SceneSystem(const SystemInput& input)
     : input_(input),
       system_(system_of(read_meta(input.scene).kind)),
-      shared_(system_.share != nullptr ? system_.share(input) : nullptr) {}
+      shared_(system_.share != nullptr ? system_.share(input) : nullptr) {
+    if (!input.options.resume.empty() && shared_ == nullptr)
+        throw StartupError("starting with the bone of " + input.options.resume, "this scene has no bone",
+                           "remove --resume, or give the scene in which the bone was drilled");
+}
 
 std::unique_ptr<ForceModel> SceneSystem::make_model(std::uint32_t hand) const {
     std::unique_ptr<ForceModel> model = system_.make(input_, shared_.get(), hand);

@@ -69,6 +69,8 @@ if(TACT_SYSTEM_PYTHON3)
 endif()
 add_test(NAME replay_test COMMAND Python3::Interpreter ${CMAKE_CURRENT_SOURCE_DIR}/unit/replay_test.py $<TARGET_FILE_DIR:tact>)
 set_tests_properties(replay_test PROPERTIES TIMEOUT 900)
+add_test(NAME drilled_bone_test COMMAND Python3::Interpreter ${CMAKE_CURRENT_SOURCE_DIR}/unit/drilled_bone_test.py $<TARGET_FILE_DIR:tact>)
+set_tests_properties(drilled_bone_test PROPERTIES TIMEOUT 900)
 if(NOT TACT_SANITIZE)  # not with sanitizers, whose runtimes make system calls of their own and refuse strace
     add_test(NAME deploy_units_test COMMAND Python3::Interpreter ${CMAKE_CURRENT_SOURCE_DIR}/unit/deploy_units_test.py ${CMAKE_SOURCE_DIR}
         $<TARGET_FILE_DIR:tact> $<TARGET_FILE:write_small_scene>)

@@ -195,10 +195,9 @@ TEST(DrillMetrics, split_removed_bone_by_structure_and_nearness_and_count_injuri
     m.cycle(cycle(7000, 5e-3, 0.0, 0));
     EXPECT_EQ(m.brick(2, c.before, c.after, true), 1);
     EXPECT_EQ(m.brick(2, c.before, c.after, false), 0);  // not a new cut
-    // A structure that is not critical cannot be injured, and added bone is not removed bone.
+    // A structure that is not critical cannot be injured.
     Brick d;
     d.after[0] = 0;
-    d.after[1] = 255;
     EXPECT_EQ(m.brick(3, d.before, d.after, true), 0);
     EXPECT_EQ(m.brick(1000, d.before, d.after, true), 0);
     const DrillMetricsRow f = m.metrics();
@@ -210,6 +209,19 @@ TEST(DrillMetrics, split_removed_bone_by_structure_and_nearness_and_count_injuri
     EXPECT_EQ(f.structure[1].injuries, 2U);
     EXPECT_EQ(f.near_levels[0], 50U + 40U + 200U);  // inside the surface distances are negative
     EXPECT_GE(f.near_levels[1], f.near_levels[0]);
+    // Strokes are undone: the bone is no longer removed, and injuries stay. Bone that never was removed is no debt.
+    EXPECT_EQ(m.brick(3, d.after, d.before, true), 0);
+    EXPECT_EQ(m.brick(2, c.after, c.before, true), 0);
+    const DrillMetricsRow u = m.metrics();
+    EXPECT_EQ(u.structure[3].removed_levels, 0U);
+    EXPECT_EQ(u.structure[1].removed_levels, 30U);
+    EXPECT_EQ(u.removed_levels, 180U);
+    EXPECT_EQ(u.near_levels[0], 50U + 30U);
+    EXPECT_EQ(u.injuries, 2U);
+    for (int i = 0; i < 9; ++i) m.brick(3, d.after, d.before, true);
+    EXPECT_EQ(m.metrics().removed_levels, 0U);
+    EXPECT_EQ(m.metrics().structure[3].removed_levels, 0U);
+    EXPECT_EQ(m.metrics().near_levels[0], 0U);
 }
 
 TEST(DrillMetrics, bone_on_all_sides_counts_when_it_lasts) {

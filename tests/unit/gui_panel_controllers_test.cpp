@@ -11,6 +11,7 @@
 #include "gui/window/recent_scenes.hpp"
 #include "gui/window/scene_list.hpp"
 #include "ipc/base/error.hpp"
+#include "ipc/base/state_folder.hpp"
 #include "ipc/scene/file/scene_peek.hpp"
 #include "tests/unit/scene_samples.hpp"
 

@@ -28,6 +28,7 @@ tact_tests(threads_tests SOURCES
     USES base topics servo threads config SYSTEM spdlog::spdlog)
 tact_tests(start_tests SOURCES
         unit/start_scene_bone_test.cpp unit/start_bodies_test.cpp unit/start_systems_test.cpp unit/start_drill_test.cpp
+        unit/start_resume_bone_test.cpp
     USES base shm topics scene force start hal servo threads config)
 
 # The stages of a cycle, without a Servo.

@@ -10,7 +10,7 @@ tact_tests(scene_density_tests SOURCES
 tact_test(unit/scene_mesh_cut_test.cpp USES scene prep_mesh SYSTEM rapidcheck)
 tact_tests(scene_mesh_tests SOURCES
         unit/scene_mesh_parts_test.cpp unit/scene_progressive_mesh_test.cpp unit/scene_surface_mesh_test.cpp
-        unit/scene_bone_test.cpp
+        unit/scene_bone_test.cpp unit/scene_drilled_bone_test.cpp
     USES scene base prep_mesh prep_surface SYSTEM rapidcheck)
 tact_tests(scene_fit_tests SOURCES
         unit/scene_fit_metrics_test.cpp unit/scene_simulated_map_test.cpp unit/scene_refine_test.cpp

@@ -33,6 +33,8 @@ constexpr PassedOption kDrillController[] = {
     {"--burr-mm", "MM", "Burr diameter (mm)"},
     {"--burr-shape", "sphere|cylinder|cone", "Burr shape"},
     {"--burr-rpm", "RPM", "Burr speed (rpm)"},
+    {"--resume", "FILE.bone",
+     "Start with the bone as an earlier run kept it; last: the newest file of this scene"},
 };
 
 struct DrillOptions {

@@ -70,6 +70,24 @@ std::string critical_lines(const json& trainee) {
     return text;
 }
 
+std::string performance(const json& drilling) {
+    const json trainee = part(drilling, "trainee");
+    if (!trainee.is_object()) return line("bone removed: %.1f mm3\n", number(drilling, "removed_mm3"));
+    const json force = part(trainee, "force"), strokes = part(trainee, "strokes");
+    std::string text =
+        line("bone removed: %.1f mm3; drilling %.1f s, of which cutting %.1f s\n",
+             number(drilling, "removed_mm3"), number(trainee, "drilling_s"), number(trainee, "cutting_s"));
+    text += line("force while cutting: mean %.2f N, maximum %.2f N; above %.1f N for %.1f s\n",
+                 number(force, "mean_cutting_n"), number(force, "max_n"), number(force, "excess_above_n"),
+                 number(force, "excess_s"));
+    text += line("strokes: %.0f, mean length %.1f mm, mean speed %.1f mm/s\n", number(strokes, "count"),
+                 number(strokes, "mean_length_mm"), number(strokes, "mean_speed_mm_s"));
+    if (part(trainee, "burr_visible_share").is_number())
+        text += line("burr visible for %.0f %% of the time in which it turned in bone\n",
+                     100.0 * number(trainee, "burr_visible_share"));
+    return text + critical_lines(trainee);
+}
+
 }  // namespace
 
 json drilling_report(const RtRegion& region, const std::filesystem::path& trainee) {
@@ -87,21 +105,11 @@ json drilling_report(const RtRegion& region, const std::filesystem::path& traine
 
 std::string drilling_summary(const json& drilling) {
     if (!drilling.is_object()) return {};
-    const json trainee = part(drilling, "trainee");
-    if (!trainee.is_object()) return line("bone removed: %.1f mm3\n", number(drilling, "removed_mm3"));
-    const json force = part(trainee, "force"), strokes = part(trainee, "strokes");
-    std::string text =
-        line("bone removed: %.1f mm3; drilling %.1f s, of which cutting %.1f s\n",
-             number(drilling, "removed_mm3"), number(trainee, "drilling_s"), number(trainee, "cutting_s"));
-    text += line("force while cutting: mean %.2f N, maximum %.2f N; above %.1f N for %.1f s\n",
-                 number(force, "mean_cutting_n"), number(force, "max_n"), number(force, "excess_above_n"),
-                 number(force, "excess_s"));
-    text += line("strokes: %.0f, mean length %.1f mm, mean speed %.1f mm/s\n", number(strokes, "count"),
-                 number(strokes, "mean_length_mm"), number(strokes, "mean_speed_mm_s"));
-    if (part(trainee, "burr_visible_share").is_number())
-        text += line("burr visible for %.0f %% of the time in which it turned in bone\n",
-                     100.0 * number(trainee, "burr_visible_share"));
-    return text + critical_lines(trainee);
+    const json kept = part(drilling, "kept_in");
+    return performance(drilling) +
+           (kept.is_string() ? "the bone is kept in " + kept.get<std::string>() +
+                                   "\n  continue with it: --resume " + kept.get<std::string>() + "\n"
+                             : std::string());
 }
 
 }  // namespace tact::launch

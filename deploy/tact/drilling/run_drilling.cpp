@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "deploy/tact/drilling/drilling.hpp"
+#include "deploy/tact/drilling/kept_bone.hpp"
 #include "deploy/tact/drilling/report_drilling.hpp"
 #include "deploy/tact/observer.hpp"
 
@@ -12,6 +13,21 @@ namespace {
 
 class DrillingRun final : public SystemRun {
 public:
+    explicit DrillingRun(const SceneFile& scene) : scene_(scene.name()), scene_checksum_(scene.checksum()) {}
+
+    std::vector<std::string> keeper_arguments(RunOptions& options) override {
+        std::string resumed = options.controller_value("--resume");
+        if (resumed == "last") resumed = last_bone_file(scene_checksum_);
+        if (!resumed.empty()) {
+            resumed = std::filesystem::absolute(resumed);
+            options.set_controller_value("--resume", resumed);
+        }
+        kept_ = options.keep.empty() ? new_bone_file(scene_) : options.keep;
+        std::vector<std::string> words{"--bone", kept_.string(), "--session", options.session};
+        if (!resumed.empty()) words.insert(words.end(), {"--bone-from", resumed});
+        return words;
+    }
+
     std::vector<std::string> window_options(const std::function<std::filesystem::path()>& scratch) override {
         trainee_ = scratch() / "drilling.json";
         return {"--report", trainee_.string()};
@@ -30,18 +46,23 @@ public:
     }
 
     void report(const RtRegion& region, nlohmann::json& report) const override {
-        if (nlohmann::json drilling = drilling_report(region, trainee_); drilling.is_object())
-            report["drilling"] = std::move(drilling);
+        nlohmann::json drilling = drilling_report(region, trainee_);
+        if (!drilling.is_object()) return;
+        drilling["kept_in"] =
+            std::filesystem::exists(kept_) ? nlohmann::json(kept_.string()) : nlohmann::json(nullptr);
+        report["drilling"] = std::move(drilling);
     }
 
 private:
+    std::filesystem::path scene_, kept_;
+    std::uint64_t scene_checksum_;
     std::filesystem::path trainee_;  // written by the window; empty without one
 };
 
 }  // namespace
 
-std::unique_ptr<SystemRun> open_drilling_run(const SceneFile& /*scene*/) {
-    return std::make_unique<DrillingRun>();
+std::unique_ptr<SystemRun> open_drilling_run(const SceneFile& scene) {
+    return std::make_unique<DrillingRun>(scene);
 }
 
 std::string drilling_report_summary(const nlohmann::json& report) {

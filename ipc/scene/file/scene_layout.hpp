@@ -1,11 +1,10 @@
 // Header and section table of a scene file, shared by SceneFile and peek_scene().
 #pragma once
 
-#include <zlib.h>
-
 #include <cstddef>
 #include <cstdint>
 
+#include "ipc/scene/file/packing.hpp"
 #include "ipc/scene/file/scene_file.hpp"
 
 namespace tact::scene_layout {
@@ -32,9 +31,5 @@ struct TableRow {
     std::uint64_t offset, bytes;
 };
 static_assert(sizeof(TableRow) == 32);
-
-inline std::uint32_t crc_of(const std::byte* data, std::size_t size) {
-    return static_cast<std::uint32_t>(crc32_z(0, reinterpret_cast<const Bytef*>(data), size));
-}
 
 }  // namespace tact::scene_layout

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "ipc/base/error.hpp"
+#include "ipc/topics/command.hpp"
 #include "ipc/topics/event.hpp"
 #include "rt/force/drilling/drill_publisher.hpp"
 
@@ -59,10 +60,11 @@ void check_drill_settings(const DrillSettings& s) {
 DrillModel::DrillModel(const SceneMeta& meta, DrillBone& bone, const DrillSettings& settings)
     : meta_(meta),
       bone_(bone),
+      pushing_bit_(bone.add_tool()),
       settings_((check_drill_settings(settings), settings)),
       tool_(make_drill_tool(settings.tool)),
       kernels_(best_brick_kernels()),
-      erosion_(bone.octree, bone.density, bone.revision, settings.seed) {
+      erosion_(bone.octree, bone.density, bone.revision, settings.seed, &bone.strokes) {
     depths_.fill(-1.0);
     per_voxel_m_ = meta.world_per_model * bone.octree.bricks().voxel_m;
     if (!std::isfinite(per_voxel_m_) || !(per_voxel_m_ > 0.0))
@@ -179,11 +181,22 @@ void DrillModel::reset(const ToolState& tool) noexcept {
     asked_ = true;
     led_ = false;
     fade_.cut();
-    depths_.fill(-1.0);
-    ways_out_.fill(Vec3::Zero());
+    forget_depths();
     ++grips_;
     if (hand_is_there(tool.T_world_tool))
         T_model_tool_ = {meta_.to_model(tool.T_world_tool.p_m), tool.T_world_tool.q.normalized()};
+}
+
+void DrillModel::forget_depths() noexcept {
+    depths_.fill(-1.0);
+    ways_out_.fill(Vec3::Zero());
+}
+
+bool DrillModel::order(const ModelOrder& order) noexcept {
+    if (order.kind != ModelOrder::Kind::setting || !settings_.tool.cuts) return false;
+    const auto command = static_cast<CommandKind>(order.command);
+    if (command == CommandKind::undo_stroke) return bone_.strokes.undo();
+    return command == CommandKind::redo_stroke && bone_.strokes.redo();
 }
 
 ModelBodies DrillModel::bodies() const noexcept {
@@ -347,8 +360,11 @@ StepResult DrillModel::step(const ToolState& tool, const Budget& budget) noexcep
             led_ = false;
             ++jumps_;
         }
-        const bool clutch = (tool.buttons & 1U) != 0;
-        if (clutch)
+        const bool exchanging = bone_.strokes.exchanging(), held = exchanging || (tool.buttons & 1U) != 0;
+        if (exchanging) led_ = false;
+        if (exchanged_ && !exchanging) forget_depths();
+        exchanged_ = exchanging;
+        if (held)
             fade_.fall();
         else
             fade_.rise();
@@ -379,7 +395,7 @@ StepResult DrillModel::step(const ToolState& tool, const Budget& budget) noexcep
         else if (!(sum.elastic_n > 0.0))
             measured_.reset();
 
-        cuts_ = !clutch && drive_.burr_rad_s > 0.0;
+        cuts_ = !held && drive_.burr_rad_s > 0.0;
         bool late = sum.late || budget.deadline.passed();
         std::uint32_t groups_left = 0;
         if (!led_) {
@@ -422,6 +438,11 @@ StepResult DrillModel::step(const ToolState& tool, const Budget& budget) noexcep
                                         static_cast<double>(drill_cost(planned).count()));
             result.load.work_done = static_cast<float>(std::clamp(done / whole, 0.01, 1.0));
         }
+    }
+    bone_.pushing = fade_.gain() > 0.0 ? bone_.pushing | pushing_bit_ : bone_.pushing & ~pushing_bit_;
+    if (settings_.tool.cuts) {
+        if (bone_.strokes.exchanging() && bone_.pushing == 0) bone_.exchange();
+        bone_.strokes.step(drive_.step_s, erosion_.pass().removed > 0);
     }
     if (drive_.burr_rad_s > 0.0) result.trace_flags |= kTraceBurrTurns;
     if (erosion_.pass().removed > 0) result.trace_flags |= kTraceCuts;

@@ -15,8 +15,10 @@
 // Jumps    a tool that goes farther in a step than kJumpRadii of its radius, and 5 mm, was not led there by a hand: it
 //          cuts nothing on the way; counted.
 // Clutch   held, the force fades out and nothing is cut. Reset: the force fades in from zero, and cutting with it.
+// Undo     the tool that cuts takes the orders to undo and redo a stroke (stroke_history.hpp). All tools' forces fade out,
+//          bricks are exchanged where there is no force, and the forces fade in again.
 // Repeats  the same poses, drives and seed give the same forces and densities, bit by bit, where no step was late.
-// Bodies   one, the tool; orders are refused.
+// Bodies   one, the tool.
 // Frames   tool and wrench in world, the bone in model; SceneMeta maps one to the other.
 // Thread   constructed anywhere (may throw StartupError); then servo. Models of one bone belong to one thread. No
 //          allocation.
@@ -29,6 +31,7 @@
 #include "rt/force/drilling/ball_moments.hpp"
 #include "rt/force/drilling/burr_forces.hpp"
 #include "rt/force/drilling/burr_shapes.hpp"
+#include "rt/force/drilling/drill_bone.hpp"
 #include "rt/force/drilling/drill_load.hpp"
 #include "rt/force/drilling/drill_stiffness.hpp"
 #include "rt/force/drilling/erosion.hpp"
@@ -37,16 +40,6 @@
 #include "rt/force/force_model.hpp"
 
 namespace tact {
-
-// The bone that the tools of a scene share. The memory behind the spans must outlive it: densities in brick order, and
-// one revision a brick, which rises after each change of it (store: release).
-struct DrillBone {
-    DrillBone(const BoneBricks& bricks, std::span<std::uint8_t> densities, std::span<std::uint32_t> revisions)
-        : octree(bricks, densities), density(densities), revision(revisions) {}
-    MomentOctree octree;
-    std::span<std::uint8_t> density;
-    std::span<std::uint32_t> revision;
-};
 
 struct DrillSettings {
     DrillToolSettings tool;
@@ -84,6 +77,9 @@ public:
 
     // The bone must outlive the model.
     DrillModel(const SceneMeta& meta, DrillBone& bone, const DrillSettings& settings);
+    ~DrillModel() override { bone_.pushing &= ~pushing_bit_; }
+    DrillModel(const DrillModel&) = delete;
+    DrillModel& operator=(const DrillModel&) = delete;
 
     // Turns the burr at settings.burr_rad_s while its drive is on.
     void drive(const ToolDrive& drive) noexcept TACT_RT override;
@@ -96,6 +92,7 @@ public:
     }
     [[nodiscard]] PathLoad predict(float fidelity) const noexcept TACT_RT override;
     void reset(const ToolState& tool) noexcept TACT_RT override;
+    bool order(const ModelOrder& order) noexcept TACT_RT override;
     // The head's on a flat surface at force_n_max or, where bone on several sides makes it stiffer, as measured
     // (drill_stiffness.hpp).
     [[nodiscard]] ModelStiffness stiffness() const noexcept TACT_RT override {
@@ -122,7 +119,7 @@ public:
     [[nodiscard]] double head_radius_m() const noexcept TACT_RT { return head_radius_m_; }
     [[nodiscard]] const ToolDrive& driven() const noexcept TACT_RT { return driven_; }
     [[nodiscard]] double burr_rad_s() const noexcept TACT_RT { return drive_.burr_rad_s; }
-    // Since it was made.
+    // Since it was made, also in strokes that were undone.
     [[nodiscard]] std::uint64_t removed_levels() const noexcept TACT_RT { return erosion_.removed(); }
     // Of solid bone, in the world.
     [[nodiscard]] double removed_m3() const noexcept TACT_RT {
@@ -137,6 +134,7 @@ public:
     [[nodiscard]] const SceneMeta& meta() const { return meta_; }
     [[nodiscard]] const DrillSettings& settings() const { return settings_; }
     [[nodiscard]] const DrillTool& tool() const { return tool_; }
+    [[nodiscard]] const DrillBone& bone() const noexcept TACT_RT { return bone_; }
     [[nodiscard]] static BlockDetail detail_of(float fidelity) noexcept TACT_RT;
 
 private:
@@ -164,10 +162,12 @@ private:
     [[nodiscard]] double error_n(const BallForces& sum, const BlockDetail& detail,
                                  double pending) const noexcept TACT_RT;
     [[nodiscard]] DrillWork expected(float fidelity) const noexcept TACT_RT;
+    void forget_depths() noexcept TACT_RT;
     [[nodiscard]] Vec3 shaken_n(const ToolState& tool, double elastic_n) noexcept TACT_RT;
 
     SceneMeta meta_;
     DrillBone& bone_;
+    std::uint32_t pushing_bit_;
     DrillSettings settings_;
     DrillTool tool_;
     const BrickKernels& kernels_;
@@ -184,11 +184,12 @@ private:
     ErosionTurns turns_{1.0};
     BallForces last_;  // of the last step
     DrillStiffness measured_;
-    double lever_m_ = 0.0;  // farthest part of the tool from its origin
-    BallLook typical_;      // of the head in flat bone
-    bool cuts_ = false;     // the clutch is open
-    bool asked_ = false;    // reset() was called
-    bool led_ = false;      // now_voxels_ are of a tool that was led here
+    double lever_m_ = 0.0;    // farthest part of the tool from its origin
+    BallLook typical_;        // of the head in flat bone
+    bool cuts_ = false;       // the clutch is open
+    bool asked_ = false;      // reset() was called
+    bool led_ = false;        // now_voxels_ are of a tool that was led here
+    bool exchanged_ = false;  // a stroke, in the last step
     // h / R of the step before; below 0: unknown.
     std::array<double, DrillTool::kMax> depths_{};
     std::array<Vec3, DrillTool::kMax> ways_out_{};

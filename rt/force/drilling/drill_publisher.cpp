@@ -61,9 +61,17 @@ void DrillPublisher::add(const DrillModel& tool, const ModelCycle& cycle) noexce
     if (cycle.hand >= kDrillHands) return;
     if (cycle.hand == 0) touch_.publish(touch_of(tool, cycle));
     next_.hand[cycle.hand] = hand_of(tool, cycle, rates_);
-    next_.removed_levels += tool.removed_levels();
+    removed_ += static_cast<std::int64_t>(tool.removed_levels());
     next_.level_m3 = tool.level_m3();
     if (++added_ < tools_) return;
+    const StrokeHistory& strokes = tool.bone().strokes;
+    next_.removed_levels =
+        static_cast<std::uint64_t>(std::max(removed_ - tool.bone().returned_levels, std::int64_t{0}));
+    next_.strokes = strokes.strokes();
+    next_.undoable = static_cast<std::uint16_t>(strokes.undoable());
+    next_.redoable = static_cast<std::uint16_t>(strokes.redoable());
+    next_.stroke_under_way = strokes.under_way() ? 1 : 0;
+    next_.exchanging = strokes.exchanging() ? 1 : 0;
     next_.taken_at_ns = to_ns(cycle.now);
     next_.cycle = cycle.cycle;
     next_.burr_rad_s_most = static_cast<float>(rates_.burr_rad_s);
@@ -71,6 +79,7 @@ void DrillPublisher::add(const DrillModel& tool, const ModelCycle& cycle) noexce
     next_.suction_m3_s_most = static_cast<float>(rates_.suction_m3_s);
     drill_.publish(next_);
     next_ = {};
+    removed_ = 0;
     added_ = 0;
 }
 

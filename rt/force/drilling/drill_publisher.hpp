@@ -35,6 +35,7 @@ private:
     Latest<TouchTopic>& touch_;
     DrillRates rates_;
     DrillTopic next_{};
+    std::int64_t removed_ = 0;  // levels, by all tools
     std::uint32_t tools_ = 0, added_ = 0;
 };
 

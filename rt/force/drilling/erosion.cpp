@@ -2,11 +2,11 @@
 
 #include <algorithm>
 #include <array>
-#include <atomic>
 #include <cmath>
 
 #include "ipc/base/error.hpp"
 #include "ipc/base/random.hpp"
+#include "rt/force/drilling/drill_bone.hpp"
 
 namespace tact {
 
@@ -53,8 +53,13 @@ constexpr std::array<std::uint32_t, 8> kPlacesOfBlock{0, 1, 3, 4, 5, 6, 8, 9};
 }  // namespace
 
 Erosion::Erosion(MomentOctree& octree, std::span<std::uint8_t> density, std::span<std::uint32_t> revision,
-                 std::uint64_t seed)
-    : octree_(octree), density_(density), revision_(revision), seed_(seed), dust_(kDustMax) {
+                 std::uint64_t seed, StrokeHistory* strokes)
+    : octree_(octree),
+      density_(density),
+      revision_(revision),
+      seed_(seed),
+      strokes_(strokes),
+      dust_(kDustMax) {
     if (density.data() != octree.density().data() || density.size() != octree.density().size() ||
         revision.size() != octree.bricks().brick_count())
         throw StartupError("preparing the erosion of bone",
@@ -144,12 +149,13 @@ void Erosion::cut_brick(const Way& way, std::uint32_t x, std::uint32_t y, std::u
     for (int a = 0; a < 3; ++a) job.first[a] = static_cast<float>(8.0 * place[a] - way.from[a]);
     job.key = static_cast<std::uint32_t>(SeededRandom(way.key + i).next() >> 32U);
     ++pass_.visited;
-    const std::uint32_t levels = way.kernels->erode(job, density_.data() + i * BoneBricks::kVoxels);
+    std::uint8_t* const voxels = density_.data() + i * BoneBricks::kVoxels;
+    if (strokes_ != nullptr) strokes_->look(static_cast<std::uint32_t>(i), voxels);
+    const std::uint32_t levels = way.kernels->erode(job, voxels);
     if (levels == 0) return;
+    if (strokes_ != nullptr) strokes_->keep(static_cast<std::uint32_t>(i));
     const MomentOctree::Brick lost = octree_.refresh(x, y, z);
-    // A reader that sees the new number, with acquire, sees the densities too.
-    std::atomic_ref<std::uint32_t> revision(revision_[i]);
-    revision.store(revision.load(std::memory_order_relaxed) + 1, std::memory_order_release);
+    raise_revision(revision_[i]);
     pass_.removed += levels;
     removed_ += levels;
     ++pass_.bricks;

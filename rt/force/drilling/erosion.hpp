@@ -15,6 +15,7 @@
 
 #include "rt/force/drilling/brick_kernels.hpp"
 #include "rt/force/drilling/moment_octree.hpp"
+#include "rt/force/drilling/stroke_history.hpp"
 
 namespace tact {
 
@@ -47,10 +48,10 @@ class Erosion {
 public:
     static constexpr std::size_t kDustMax = 4096;
 
-    // Octree, densities (those of the octree) and revisions (one a brick) must outlive it. Fails by StartupError
-    // where sizes differ.
+    // Octree, densities (those of the octree), revisions (one a brick) and strokes must outlive it; null: they are not
+    // kept. Fails by StartupError where sizes differ.
     Erosion(MomentOctree& octree, std::span<std::uint8_t> density, std::span<std::uint32_t> revision,
-            std::uint64_t seed);
+            std::uint64_t seed, StrokeHistory* strokes = nullptr);
 
     // Begins a pass: the dust of the one before is forgotten.
     void begin() noexcept TACT_RT;
@@ -72,6 +73,7 @@ private:
     std::span<std::uint8_t> density_;
     std::span<std::uint32_t> revision_;
     std::uint64_t seed_;
+    StrokeHistory* strokes_;
     std::uint64_t passes_ = 0, removed_ = 0;
     std::uint32_t balls_ = 0;  // of this pass
     ErosionPass pass_;
