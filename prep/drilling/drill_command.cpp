@@ -16,6 +16,7 @@
 #include "prep/console/scene_report.hpp"
 #include "prep/console/target.hpp"
 #include "prep/drilling/bake_bone.hpp"
+#include "prep/drilling/bone_commands.hpp"
 #include "prep/drilling/import_bone.hpp"
 #include "prep/synthetic/temporal_bone.hpp"
 
@@ -206,6 +207,7 @@ void add_drill(CLI::App& app, CLI::App& demo) {
         o->import.voxel_mm = o->made_voxel_mm;
         drill(*o, o->synthetic);
     });
+    add_bone_commands(app);
     CLI::App* const made = demo.add_subcommand("drill", "Bake a synthetic temporal bone, right side");
     both(made);
     made->callback([o] { drill(*o, true); });

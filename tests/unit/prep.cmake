@@ -32,3 +32,5 @@ tact_tests(prep_scan_tests SOURCES
 tact_test(unit/prep_dicom_packed_test.cpp USES prep_drilling prep_volume base)
 target_link_libraries(prep_dicom_packed_test PRIVATE ${TACT_GDCM_MSFF} ${TACT_GDCM_DSED} ${TACT_GDCM_Common})
 target_include_directories(prep_dicom_packed_test SYSTEM PRIVATE ${TACT_GDCM_INCLUDE})
+add_test(NAME export_bone_test COMMAND Python3::Interpreter ${CMAKE_CURRENT_SOURCE_DIR}/unit/export_bone_test.py $<TARGET_FILE:tact-prep>)
+set_tests_properties(export_bone_test PROPERTIES TIMEOUT 300)
