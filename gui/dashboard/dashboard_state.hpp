@@ -43,7 +43,9 @@ struct SceneState {
     std::string title, file;
     std::uint32_t vertices_max = 0;
     double mesh_error_m = 0.0;
-    std::string warning;  // for example: the controller runs another scene
+    std::string warning;         // for example: the controller runs another scene
+    bool patient = false;        // it is known how the scene lies in the patient
+    float patient_axes[3][3]{};  // the patient's left, back and head, in the scene's axes
 };
 
 struct EventLine {

@@ -15,8 +15,10 @@ std::unique_ptr<SystemContent> read_bone_content(SceneFile file, SceneContent& c
     BoneLabelsView labels;
     if (has_bone_labels(file)) labels = read_bone_labels(file, bricks);
     std::vector<DistanceField> distances = read_distance_fields(file, labels.structure.size());
+    const std::optional<PatientFrame> patient = read_patient_frame(file);
     auto bone =
         std::make_unique<BoneContent>(std::move(file), volume, std::move(labels), std::move(distances));
+    bone->patient = patient;
     const BoneField field(bone->volume, bone->labels, bone->volume);
     bone->free_cells.assign(field.free_cells().begin(), field.free_cells().end());
     return bone;

@@ -3,12 +3,14 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "gui/render/scene_content.hpp"
 #include "ipc/scene/bone/bone_labels.hpp"
 #include "ipc/scene/bone/bone_volume.hpp"
 #include "ipc/scene/bone/distance_field.hpp"
+#include "ipc/scene/bone/patient_frame.hpp"
 
 namespace tact {
 
@@ -25,6 +27,7 @@ public:
     BoneVolumeView volume;
     BoneLabelsView labels;                 // none: no structures
     std::vector<DistanceField> distances;  // to the critical structures
+    std::optional<PatientFrame> patient;
     std::vector<std::uint8_t> free_cells;  // as baked (BoneField); empty: measured when first shown
 };
 

@@ -41,18 +41,18 @@ void undo(const Theme& theme, const DrillingState& d, DashboardState& state) {
         ImGui::EndDisabled();
         if (ImGui::IsItemHovered(ImGuiHoveredFlags_AllowWhenDisabled)) ImGui::SetTooltip("%s", help);
     };
-    button("Undo stroke", d.undoable, CommandKind::undo_stroke,
-           "bring back the bone of the last stroke, with the force faded out meanwhile (Ctrl+Z)\n"
-           "a stroke: bone taken without a pause of 0.3 s, at most 10 s");
+    button("Undo", d.undoable, CommandKind::undo_stroke,
+           "bring back the bone of the last cut; meanwhile there is no force (Ctrl+Z)\n"
+           "a cut: all bone taken without a pause of 0.3 s, for at most 10 s");
     ImGui::SameLine();
-    button("Redo stroke", d.redoable, CommandKind::redo_stroke,
-           "take the bone of the undone stroke (Ctrl+Y)");
+    button("Redo", d.redoable, CommandKind::redo_stroke,
+           "take the bone of the last undone cut again (Ctrl+Y)");
     ImGui::SameLine();
     ImGui::AlignTextToFramePadding();
     if (d.exchanging)
         text_coloured(colour::kWatch, "no force meanwhile");
     else
-        text_small(theme, colour::kDim, d.undoable > 0 ? format("%u can be undone", d.undoable) : "");
+        text_small(theme, colour::kDim, d.undoable > 0 ? format("%u cuts can be undone", d.undoable) : "");
 }
 
 void structure(const Theme& theme, const DrillingState& d, const DrillingState::Structure& s) {

@@ -8,6 +8,7 @@
 #include <string_view>
 #include <utility>
 
+#include "gui/drilling/patient_sides.hpp"
 #include "ipc/base/units.hpp"
 
 namespace tact {
@@ -33,6 +34,7 @@ void DrillingSystem::use(const std::shared_ptr<const SceneContent>& content,
     bone_.meet(context.controller);
     const BoneContent* const bone = content->of<BoneContent>();
     if (bone == nullptr || made == nullptr) return;
+    show_sides(bone->patient, context.state.scene);
     panels_.voxels = bone->volume.bricks.size;
     panels_.voxel_m = bone->volume.bricks.voxel_m;
     site_ = std::move(made->site);

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <vector>
 
+#include "gui/dashboard/axis_cross.hpp"
 #include "gui/dashboard/panels.hpp"
 #include "gui/dashboard/widgets.hpp"
 #include "gui/window/layout.hpp"
@@ -35,18 +36,13 @@ void axes(const OverlayPen& pen, const PanelState& state, const PixelRect& v) {
     const ImVec2 o{v.x + pen.theme.px(44.0F), v.y + v.height - pen.theme.px(46.0F)};
     static constexpr ImU32 kColours[3] = {IM_COL32(240, 112, 96, 255), IM_COL32(96, 200, 120, 255),
                                           IM_COL32(96, 160, 250, 255)};
-    static constexpr const char* kNames[3] = {"x", "y", "z"};
-    // Axes that point away first, so that near ones cover them.
-    int order[3] = {0, 1, 2};
-    std::sort(order, order + 3, [&](int a, int b) { return state.eye_axes[a][2] < state.eye_axes[b][2]; });
-    for (const int i : order) {
-        const float* const e = state.eye_axes[i];
-        const ImVec2 tip{o.x + r * e[0], o.y - r * e[1]};
-        pen.draw->AddLine(o, tip, kColours[i], pen.theme.px(2.0F));
+    for (const AxisEnd& end : axis_cross(state.eye_axes, state.scene)) {
+        const float long_side = end.negative ? 0.6F : 1.0F, at = (end.negative ? 0.92F : 1.32F) * r;
+        pen.draw->AddLine(o, {o.x + long_side * r * end.x, o.y - long_side * r * end.y}, kColours[end.axis],
+                          pen.theme.px(end.negative ? 1.0F : 2.0F));
         const float font = pen.theme.small->FontSize;
-        pen.text(pen.theme.small,
-                 {o.x + 1.32F * r * e[0] - 0.25F * font, o.y - 1.32F * r * e[1] - 0.5F * font}, kColours[i],
-                 kNames[i]);
+        pen.text(pen.theme.small, {o.x + at * end.x - 0.25F * font, o.y - at * end.y - 0.5F * font},
+                 kColours[end.axis], end.name);
     }
 }
 

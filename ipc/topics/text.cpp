@@ -254,9 +254,9 @@ const char* command_kind_text(CommandKind kind) noexcept {
         case CommandKind::set_together:
             return "copies together";
         case CommandKind::undo_stroke:
-            return "undo a stroke";
+            return "undo a cut";
         case CommandKind::redo_stroke:
-            return "redo a stroke";
+            return "redo a cut";
     }
     return kUnknown;
 }

@@ -1,14 +1,19 @@
 // Visible bone, order of tile updates, and instruments; without a display.
 #include <gtest/gtest.h>
 
+#include <Eigen/Geometry>
 #include <cmath>
+#include <map>
 #include <random>
 #include <set>
 
+#include "gui/dashboard/axis_cross.hpp"
 #include "gui/drilling/bone_field.hpp"
 #include "gui/drilling/bone_tiles.hpp"
 #include "gui/drilling/drill_hands.hpp"
+#include "gui/drilling/patient_sides.hpp"
 #include "gui/drilling/ray_pace.hpp"
+#include "ipc/base/random.hpp"
 #include "tests/support/bone_block.hpp"
 
 namespace tact::gui_bone_test {
@@ -127,6 +132,32 @@ TEST(BoneField, drilled_cells_open_and_restored_bone_is_detected) {
     EXPECT_TRUE(field.settle());
     EXPECT_EQ(field.free_cells()[middle], 0);
     expect_true_distances(field, two.now);
+}
+
+// Bricks are drilled and restored at random; cells are never farther from bone than they say.
+TEST(BoneField, distances_stay_true_while_bone_goes_and_comes_back) {
+    TwoBalls two;
+    BoneField field(two.baked, two.labels, two.now);
+    const std::vector<std::uint8_t> whole = two.drilled;
+    SeededRandom random(11);
+    const auto bricks = static_cast<std::uint32_t>(two.block.bricks.brick_count());
+    int shortened = 0;
+    for (int round = 0; round < 12; ++round) {
+        for (int k = 0; k < 40; ++k) {
+            const auto b = static_cast<std::uint32_t>(random.below(bricks));
+            const bool grows = random.below(3) == 0;
+            if (grows) {
+                const auto first = static_cast<std::ptrdiff_t>(b * BoneBricks::kVoxels);
+                std::copy_n(whole.begin() + first, BoneBricks::kVoxels, two.drilled.begin() + first);
+            } else {
+                two.drill(b);
+            }
+            field.changed(b, grows);
+        }
+        shortened += field.settle() ? 1 : 0;
+        expect_true_distances(field, two.now);
+    }
+    EXPECT_GT(shortened, 3);
 }
 
 TEST(BoneTiles, the_view_is_drawn_once_from_the_middle_outwards) {
@@ -275,6 +306,52 @@ TEST(DrillHands, tools_are_drawn_in_model_units_and_rotate_only_when_driven) {
     EXPECT_GT(once, 0.0);
     EXPECT_GT(twice, once);
     EXPECT_EQ(hands.follow(topic, meta)[1].turned_rad, 0.0);
+}
+
+// Any camera on any oblique scan: the letters point to where a step to that side of the patient goes on the screen.
+TEST(AxisCross, letters_point_to_the_patients_sides) {
+    SeededRandom random(5);
+    const auto turn = [&] {
+        return Eigen::Matrix3d(
+            Eigen::AngleAxisd(3.0 * random.uniform(), random.direction()).toRotationMatrix());
+    };
+    for (int n = 0; n < 50; ++n) {
+        PatientFrame frame;
+        frame.axes = turn();
+        frame.origin_mm = Vec3(40.0, -3.0, 700.0);
+        const Eigen::Matrix3d eye_from_model = turn();
+        float eye_axes[3][3];  // of each model axis
+        for (int i = 0; i < 3; ++i)
+            for (int k = 0; k < 3; ++k) eye_axes[i][k] = static_cast<float>(eye_from_model(k, i));
+        SceneState scene;
+        show_sides(frame, scene);
+        const std::vector<AxisEnd> ends = axis_cross(eye_axes, scene);
+        ASSERT_EQ(ends.size(), 6U);
+        const Vec3 here(31.0, 8.0, 690.0);  // LPS
+        const std::map<std::string, Vec3> sides{{"L", Vec3(10, 0, 0)}, {"R", Vec3(-10, 0, 0)},
+                                                {"P", Vec3(0, 10, 0)}, {"A", Vec3(0, -10, 0)},
+                                                {"H", Vec3(0, 0, 10)}, {"F", Vec3(0, 0, -10)}};
+        for (std::size_t i = 0; i < ends.size(); ++i) {
+            const Vec3 way = 100.0 * (eye_from_model *
+                                      (frame.model_m(here + sides.at(ends[i].name)) - frame.model_m(here)));
+            EXPECT_NEAR(ends[i].x, way.x(), 1e-5) << ends[i].name;
+            EXPECT_NEAR(ends[i].y, way.y(), 1e-5) << ends[i].name;
+            EXPECT_NEAR(ends[i].depth, way.z(), 1e-5) << ends[i].name;
+            if (i > 0) {
+                EXPECT_LE(ends[i - 1].depth, ends[i].depth);
+            }
+        }
+    }
+}
+
+TEST(AxisCross, without_a_patient_it_is_that_of_the_scene) {
+    const float eye_axes[3][3] = {{0, 0, 1}, {1, 0, 0}, {0, 1, 0}};
+    SceneState scene;
+    show_sides(std::nullopt, scene);
+    const std::vector<AxisEnd> ends = axis_cross(eye_axes, scene);
+    ASSERT_EQ(ends.size(), 3U);
+    EXPECT_STREQ(ends[2].name, "x");  // towards the eye
+    for (const AxisEnd& end : ends) EXPECT_FALSE(end.negative);
 }
 
 }  // namespace

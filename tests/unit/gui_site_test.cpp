@@ -97,6 +97,44 @@ TEST(SiteEffects, the_dust_equals_the_bone_removed) {
     EXPECT_EQ(site.particles().ledger().drilled, lost);
 }
 
+// A cut is undone: no particle is left in bone, none is lost from the ledger, and the wound there bleeds no more.
+TEST(SiteEffects, where_bone_comes_back_are_no_particles_and_no_wounds) {
+    Block bone;
+    SiteEffects site(bone.view, bone.labels, 1.0);
+    const std::vector<std::uint8_t> whole = bone.density;
+    for (std::uint32_t z = 23; z > 19; --z) {  // a vessel
+        static_cast<void>(bone.cut(5, 24, z, 255));
+        site.step(bone.frame());
+    }
+    bone.changes.clear();
+    for (int i = 0; i < 20; ++i) site.step(bone.frame());
+    ASSERT_GT(count(site, Matter::blood), 20U);
+    const auto in_bone = [&] {
+        const auto all = site.particles().all();
+        return std::count_if(all.begin(), all.end(), [&](const Particle& p) {
+            return site.particles().cells().bone(
+                {static_cast<int>(p.at[0]), static_cast<int>(p.at[1]), static_cast<int>(p.at[2])});
+        });
+    };
+    bone.before = bone.density;
+    bone.density = whole;
+    ASSERT_GT(in_bone(), 20);
+    bone.after = bone.density;
+    for (std::size_t i = 0; i < bone.view.bricks.brick_count(); ++i)
+        bone.changes.push_back({static_cast<std::uint32_t>(i),
+                                std::span<const std::uint8_t>(bone.before).subspan(i * kVoxels, kVoxels),
+                                std::span<const std::uint8_t>(bone.after).subspan(i * kVoxels, kVoxels),
+                                true});
+    site.step(bone.frame());
+    EXPECT_EQ(in_bone(), 0);
+    EXPECT_GT(site.particles().ledger().buried, 0U);
+    EXPECT_TRUE(site.particles().ledger().balances());
+    bone.changes.clear();
+    const std::size_t blood = count(site, Matter::blood);
+    for (int i = 0; i < 20; ++i) site.step(bone.frame());
+    EXPECT_LE(count(site, Matter::blood), blood);
+}
+
 TEST(SiteEffects, water_flows_during_irrigation_within_the_limit_of_the_particles) {
     Block bone;
     SiteEffects site(bone.view, bone.labels, 1.0);
