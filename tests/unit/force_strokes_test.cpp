@@ -46,6 +46,7 @@ struct Site {
     std::unique_ptr<DrillBone> shared;
     std::unique_ptr<DrillModel> burr_model, tube_model;
     double largest_step_n = 0.0;  // of the forces of both
+    float fidelity = 1.0F;
     Vec3 burr_n = Vec3::Zero(), tube_n = Vec3::Zero();
 
     Site() {
@@ -63,7 +64,7 @@ struct Site {
         burr_model->turn_burr({kFullRadS, kStepS});
         tube_model->turn_burr({0.0, kStepS});
         Budget budget;
-        budget.fidelity = 1.0F;
+        budget.fidelity = fidelity;
         budget.deadline = Deadline(Instant::max());
         const Vec3 b = burr_model->step(at(burr_m), budget).wrench_world.force_n,
                    t = tube_model->step(at(tube_m), budget).wrench_world.force_n;
@@ -178,6 +179,23 @@ TEST(Strokes, the_forces_of_both_hands_make_no_step_and_nothing_is_cut) {
     EXPECT_GT(s.burr_model->removed_levels(), removed);  // it cuts again
 }
 
+// At a low level groups of bricks wait to be cut. What waits when a stroke is undone is not cut any more.
+TEST(Strokes, what_waits_to_be_cut_is_forgotten_with_the_stroke) {
+    Site s;
+    const auto whole = s.bone.density;
+    s.fidelity = 0.0F;
+    for (int i = 0; i < 300; ++i) s.step({0.0, 0.0, 5e-3});
+    for (int i = 0; i < 301; ++i) s.step({0.0, 0.0, 1.7e-3});
+    const std::uint64_t removed = s.burr_model->removed_levels();
+    ASSERT_GT(removed, 1000U);
+    ASSERT_TRUE(s.burr_model->order(order_of(CommandKind::undo_stroke)));
+    for (int i = 0; i < 320; ++i) s.step({0.0, 0.0, i < 200 ? 1.7e-3 : 5e-3});
+    EXPECT_EQ(s.burr_model->removed_levels(), removed);
+    EXPECT_EQ(s.bone.density, whole);
+    EXPECT_EQ(s.shared->strokes.strokes(), 0U);
+    EXPECT_EQ(s.shared->strokes.redoable(), 1U);
+}
+
 // While one tool is felt no brick is exchanged, whatever the other's fade.
 TEST(Strokes, bone_does_not_come_back_under_a_tool_that_is_felt) {
     Site s;
@@ -274,6 +292,25 @@ TEST(Strokes, agree_with_copies_of_everything_until_the_room_is_full) {
     }
     EXPECT_GT(undos, 300);
     EXPECT_GT(forgotten, 300);
+}
+
+TEST(Strokes, the_oldest_of_very_many_are_forgotten) {
+    constexpr std::uint32_t kMany = StrokeHistory::kStrokesMost + 100;
+    StrokeHistory h(1, 2 * kMany);
+    std::vector<std::uint8_t> density(BoneBricks::kVoxels);
+    for (std::uint32_t k = 0; k < kMany; ++k) {
+        h.look(0, density.data());
+        ++density[k % 7];
+        h.keep(0);
+        h.end_stroke();
+    }
+    EXPECT_EQ(h.strokes(), kMany);
+    EXPECT_EQ(h.undoable(), StrokeHistory::kStrokesMost);
+    std::uint32_t undone = 0;
+    for (; h.undo(); ++undone)
+        while (h.exchanging()) h.exchange(density, [](std::uint32_t) {});
+    EXPECT_EQ(undone, StrokeHistory::kStrokesMost);
+    EXPECT_EQ(std::accumulate(density.begin(), density.end(), 0U), 100U);
 }
 
 TEST(Strokes, one_that_is_larger_than_the_room_cannot_be_undone_and_the_next_one_can) {
