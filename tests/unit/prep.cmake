@@ -34,3 +34,5 @@ target_link_libraries(prep_dicom_packed_test PRIVATE ${TACT_GDCM_MSFF} ${TACT_GD
 target_include_directories(prep_dicom_packed_test SYSTEM PRIVATE ${TACT_GDCM_INCLUDE})
 add_test(NAME export_bone_test COMMAND Python3::Interpreter ${CMAKE_CURRENT_SOURCE_DIR}/unit/export_bone_test.py $<TARGET_FILE:tact-prep>)
 set_tests_properties(export_bone_test PROPERTIES TIMEOUT 300)
+add_test(NAME awkward_scans_test COMMAND Python3::Interpreter ${CMAKE_CURRENT_SOURCE_DIR}/unit/awkward_scans_test.py $<TARGET_FILE:tact-prep>)
+set_tests_properties(awkward_scans_test PROPERTIES TIMEOUT 300)
