@@ -10,6 +10,8 @@ namespace {
 
 std::string mm_text(double m) { return fixed(1e3 * m, 1) + " mm"; }
 
+std::string mm3_text(double m3) { return fixed(1e9 * m3, 1e9 * m3 < 99.95 ? 1 : 0); }
+
 void tools(const Theme& theme, const DrillingState& d) {
     static constexpr const char* kShapes[] = {"ball", "cylinder", "cone"};
     const std::string size = mm_text(d.burr.diameter_m) + " " + kShapes[std::clamp(d.burr.shape, 0, 2)];
@@ -25,6 +27,14 @@ void tools(const Theme& theme, const DrillingState& d) {
 void metrics(const Theme& theme, const DrillingState& d) {
     row(theme, "Bone removed", fixed(1e9 * d.removed_m3, 1) + " mm³",
         format("in %.0f s of drilling", d.drilling_s));
+    std::string gone = mm3_text(d.dust.sucked_m3) + " sucked, " + mm3_text(d.dust.flown_m3) + " away";
+    if (d.dust.buried_m3 > 0.0) gone += ", " + mm3_text(d.dust.buried_m3) + " undone";
+    row(theme, "Dust", fixed(1e9 * d.dust.here_m3, 1) + " mm³", gone);
+    if (ImGui::IsItemHovered())
+        ImGui::SetTooltip(
+            "mm³ of the removed bone: in dust and paste at the site, sucked away, flown or washed out of the "
+            "site,\n"
+            "and where bone came back. Together they are all that was removed while the window was open.");
     StatusText force = force_status(d.force_n, d.excess_s);
     if (d.held_in && force.grade == Grade::good) force.text = "reduced: bone on all sides";
     row(theme, "Force", fixed(d.force_n, 2) + " N", force);

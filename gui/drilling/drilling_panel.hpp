@@ -31,7 +31,14 @@ struct DrillingState {
         double burr_m = 0.0, closing_m_s = 0.0;  // below zero: inside
         double suction_tube_m = 1e9;
     };
+    // Of the bone that was removed since the window opened; the sum of all is what was removed.
+    struct Dust {
+        double here_m3 = 0.0;  // as dust and paste
+        double sucked_m3 = 0.0, flown_m3 = 0.0;
+        double buried_m3 = 0.0;  // where bone came back
+    };
     bool known = false, labelled = false;
+    Dust dust;
     ToolDescription burr, suction_tube;
     bool held_in = false;  // bone on all sides of the burr
     double removed_m3 = 0.0, force_n = 0.0, drilling_s = 0.0, excess_s = 0.0;
@@ -49,7 +56,7 @@ public:
     std::array<std::uint32_t, 3> voxels{};
     double voxel_m = 0.0;  // edge
 
-    [[nodiscard]] CardSize card_size() const override { return {328.0F, 0.40F}; }
+    [[nodiscard]] CardSize card_size() const override { return {347.0F, 0.42F}; }
     void draw_card(const Theme& theme, const PixelRect& card, DashboardState& state) const override;
     void draw_in_scene_card(const Theme& theme, DashboardState& state) override;
     [[nodiscard]] std::string drawn_text(const DashboardState& state) const override;

@@ -8,6 +8,7 @@
 #include <string_view>
 #include <utility>
 
+#include "gui/drilling/dust_state.hpp"
 #include "gui/drilling/patient_sides.hpp"
 #include "ipc/base/units.hpp"
 
@@ -99,6 +100,8 @@ void DrillingSystem::move(double frame_s, const Vec3& eye_model_m, const SystemC
     const Controller& controller = context.controller;
     if (const PathLevel* const path = controller.level(kParticlesPath)) particles_level_ = path->level;
     const bool told = controller.attached() && controller.have_drill;
+    panels_.drilling.dust =
+        told ? dust_of(site_->particles().ledger(), controller.drill.level_m3) : DrillingState::Dust{};
     site_->step({frame_s, told ? &controller.drill : nullptr, bone_.changes(), particles_share(context),
                  eye_model_m});
 }
@@ -179,10 +182,9 @@ void DrillingSystem::finish(const SystemContext& context) {
         spdlog::info(
             "bone density levels: {} removed by the controller, {} received while shown: {} sucked, {} "
             "carried, "
-            "{} left, {} "
-            "discarded, {} in bone that came back, {} too few for a grain",
+            "{} left, {} in bone that came back, {} too few for a grain",
             controller.have_drill ? controller.drill.removed_levels : 0, l.drilled, l.sucked, l.carried,
-            l.left, l.given_up, l.buried, l.pooled);
+            l.left, l.buried, l.pooled);
     }
     controller_.save(options_.report, visibility);
 }

@@ -21,16 +21,17 @@ constexpr int kFinest = 2, kCoarsestPixel = 8;
 
 constexpr char kGrainVertex[] = R"(
 layout(location = 0) in vec3 at;
-layout(location = 1) in vec4 look;  // matter, shade, 0, 0
-uniform vec2 u_size;  // radius; pixels per length at distance 1
+layout(location = 1) in vec4 look;  // matter, shade, size (kDotSize), 0
+uniform vec2 u_size;  // radius of a grain; pixels per length at distance 1
 flat out vec3 v_colour;
 flat out vec4 v_ground;  // background colour, fraction of haze
 void main() {
     vec4 p = u_eye * vec4(at, 1.0);
     v_colour = mix(vec3(0.84, 0.79, 0.68), vec3(1.0, 0.97, 0.90), look.y / 255.0);
     // The depth test uses its front, not its centre.
-    gl_Position = u_projection * vec4(p.xy, p.z + 0.7 * u_size.x, 1.0);
-    gl_PointSize = clamp(2.0 * u_size.x * u_size.y / max(-p.z, 1e-3), 1.5, 64.0);
+    float radius = u_size.x * look.z / 32.0;
+    gl_Position = u_projection * vec4(p.xy, p.z + 0.7 * radius, 1.0);
+    gl_PointSize = clamp(2.0 * radius * u_size.y / max(-p.z, 1e-3), 1.5, 64.0);
     v_ground = vec4(mix(u_ground_bottom, u_ground_top, 0.5 + 0.5 * gl_Position.y / gl_Position.w),
                     haze_at(-p.z));
 }

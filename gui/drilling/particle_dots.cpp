@@ -1,10 +1,13 @@
 #include "gui/drilling/particle_dots.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 namespace tact {
 namespace {
+
+constexpr std::uint32_t kGrain = 255;  // levels, as ParticleSettings::grain_levels
 
 bool wet(const Particle& p) { return p.matter != Matter::dust; }
 
@@ -19,6 +22,13 @@ std::uint8_t shade_of(const std::array<float, 3>& at) {
     return static_cast<std::uint8_t>(bits >> 24U);
 }
 
+// Most grains have one grain's mass, which needs no root.
+std::uint8_t size_of(std::uint32_t mass) {
+    if (mass <= kGrain) return static_cast<std::uint8_t>(kDotSize);
+    return static_cast<std::uint8_t>(
+        std::min(kDotSize * std::cbrt(static_cast<float>(mass) / static_cast<float>(kGrain)), 255.0F));
+}
+
 }  // namespace
 
 DotRanges build_dots(std::span<const Particle> particles, std::vector<ParticleDot>& dots) {
@@ -31,7 +41,7 @@ DotRanges build_dots(std::span<const Particle> particles, std::vector<ParticleDo
     for (const Particle& p : particles) {
         const bool fluid = wet(p);
         ParticleDot& dot = dots[fluid ? --back : ranges.grains++];
-        dot = {p.at, p.matter, shade_of(p.at), {}};
+        dot = {p.at, p.matter, shade_of(p.at), size_of(p.mass), 0};
         if (!fluid) continue;
         for (std::size_t i = 0; i < 3; ++i) {
             ranges.fluids_low[i] = std::min(ranges.fluids_low[i], p.at[i]);

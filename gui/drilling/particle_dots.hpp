@@ -13,11 +13,14 @@
 
 namespace tact {
 
+inline constexpr float kDotSize = 32.0F;
+
 struct ParticleDot {
     std::array<float, 3> at;
     Matter matter;
     std::uint8_t shade;  // 0 to 255: variation of brightness among its kind
-    std::uint8_t reserved[2];
+    std::uint8_t size;   // of kDotSize: edge of its bone over that of a grain
+    std::uint8_t reserved;
 };
 static_assert(sizeof(ParticleDot) == 16);
 

@@ -18,7 +18,7 @@ constexpr double kPassByShare = 0.1, kGiveUpShare = 0.25;  // of the budget
 constexpr std::uint32_t kRoomShare = 50;
 constexpr int kRounds = 4;
 constexpr double kLongestBudgetS = 10.0;
-constexpr std::size_t kSamples = 128;
+constexpr std::size_t kSamples = 128, kHeirs = 8;
 constexpr double kDrawnFrom = 3.0;                       // radii of the tip
 constexpr double kDrawnSpeed = 0.6;                      // of the fastest, at the tip's radius
 constexpr float kFlungOut = 0.25F, kFlungAlong = 0.35F;  // of the fastest
@@ -83,7 +83,7 @@ bool Particles::emit(Matter matter, const Vec3& at_m, const Vec3& velocity_m_s) 
     return spawn(matter, cells_.to_cells(at_m), velocity_m_s / cells_.cell_m(), 0);
 }
 
-bool Particles::spawn(Matter matter, const Vec3& at, const Vec3& velocity, std::uint16_t mass) noexcept {
+bool Particles::spawn(Matter matter, const Vec3& at, const Vec3& velocity, std::uint32_t mass) noexcept {
     if (particle_.size() >= most_) return false;
     const auto size = cells_.size();
     for (Eigen::Index i = 0; i < 3; ++i)
@@ -231,6 +231,25 @@ float Particles::importance_below(double share, const std::array<float, 3>& look
     return sample[at];
 }
 
+// To the nearest of a few others that carry bone; what finds none is left for the pool.
+void Particles::hand_mass_on(std::uint32_t from) noexcept {
+    Particle& p = particle_[from];
+    if (p.mass == 0) return;
+    Particle* heir = nullptr;
+    float nearest = 0.0F;
+    for (std::size_t k = 0; k < kHeirs; ++k) {
+        Particle& other = particle_[random_.below(particle_.size())];
+        if (&other == &p || other.mass == 0) continue;
+        const float away = distance(other.at, p.at);
+        if (heir != nullptr && away >= nearest) continue;
+        heir = &other;
+        nearest = away;
+    }
+    if (heir == nullptr) return;
+    heir->mass += p.mass;
+    p.mass = 0;
+}
+
 void Particles::give_up(std::size_t count, const Vec3& looked_at, Instant deadline,
                         ParticleStep& step) noexcept {
     const auto centre = floats(looked_at);
@@ -250,7 +269,8 @@ void Particles::give_up(std::size_t count, const Vec3& looked_at, Instant deadli
                    CellState::free);
         ++step.given_up;
         --count;
-        remove(static_cast<std::uint32_t>(given_up_), ledger_.given_up);
+        hand_mass_on(static_cast<std::uint32_t>(given_up_));
+        remove(static_cast<std::uint32_t>(given_up_), ledger_.pooled);
     }
 }
 

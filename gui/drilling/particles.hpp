@@ -3,11 +3,12 @@
 //
 // Step     the number of moves is the budget left after suction over the measured cost of a move. It is divided
 //          among groups of speed (speed_groups.hpp); each particle moves for the time since its own last move. If
-//          less than a tenth could move, the least important are discarded: slow ones, far from the point looked at.
+//          less than a tenth could move, the least important are given up: slow ones, far from the point looked at.
 // Rules    particle_rules.cpp: flight with drag, rest, toppling, spreading of liquids, dust and water to paste,
 //          suction.
 // Mass     in levels of bone density (255 per solid voxel). Removed bone is pooled until it makes a grain; Ledger
-//          accounts for all of it, and its sum is constant.
+//          accounts for all of it, and its sum is constant. A particle that is given up hands its mass to one nearby, or
+//          to the pool: fewer and heavier grains, and no bone is lost.
 // Frame    model, metres; cells internally
 // Thread   one; no allocation after construction
 #pragma once
@@ -29,7 +30,7 @@ enum class Matter : std::uint8_t { dust, water, blood, paste };
 struct Particle {
     std::array<float, 3> at, velocity;  // cells, cells per second
     double moved_s;                     // time of the last move, on the clock of the steps
-    std::uint16_t mass;                 // levels of bone; 0: none
+    std::uint32_t mass;                 // levels of bone; 0: none
     Matter matter;
 };
 
@@ -57,10 +58,10 @@ struct Stir {
 };
 
 struct Ledger {  // levels of bone
-    std::uint64_t drilled = 0, pooled = 0, carried = 0, sucked = 0, left = 0, given_up = 0,
+    std::uint64_t drilled = 0, pooled = 0, carried = 0, sucked = 0, left = 0,
                   buried = 0;  // in bone that came back
     [[nodiscard]] bool balances() const noexcept {
-        return drilled == pooled + carried + sucked + left + given_up + buried;
+        return drilled == pooled + carried + sucked + left + buried;
     }
 };
 
@@ -105,12 +106,13 @@ public:
 private:
     enum class Fate : std::uint8_t { stays, left };
 
-    bool spawn(Matter matter, const Vec3& at, const Vec3& velocity, std::uint16_t mass) noexcept;
+    bool spawn(Matter matter, const Vec3& at, const Vec3& velocity, std::uint32_t mass) noexcept;
     void remove(std::uint32_t i, std::uint64_t& account) noexcept;
     void move_group(std::size_t group, std::size_t moves, std::size_t between_looks, Instant deadline,
                     ParticleStep& step) noexcept;
     void pass_by(const Suction& suction, const Stir& stir, Instant deadline, ParticleStep& step) noexcept;
     void fling(Particle& p, const std::array<float, 3>& off, const std::array<float, 3>& spin) const noexcept;
+    void hand_mass_on(std::uint32_t from) noexcept;
     void give_up(std::size_t count, const Vec3& looked_at, Instant deadline, ParticleStep& step) noexcept;
     [[nodiscard]] float importance(const Particle& p, const std::array<float, 3>& looked_at) const noexcept;
     [[nodiscard]] float importance_below(double share, const std::array<float, 3>& looked_at) noexcept;

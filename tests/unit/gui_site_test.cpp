@@ -7,6 +7,7 @@
 
 #include "gui/drilling/bench_particles.hpp"
 #include "gui/drilling/burr_sight.hpp"
+#include "gui/drilling/dust_state.hpp"
 #include "gui/drilling/site_effects.hpp"
 
 namespace tact::gui_site_test {
@@ -95,6 +96,45 @@ TEST(SiteEffects, the_dust_equals_the_bone_removed) {
     static_cast<void>(bone.cut(24, 24, 12, 200, false));
     site.step(bone.frame());
     EXPECT_EQ(site.particles().ledger().drilled, lost);
+}
+
+// What the panel shows adds up to what was removed, while grains are given up, sucked, washed away and buried.
+TEST(SiteEffects, dust_that_is_shown_is_all_of_the_bone_that_was_removed) {
+    Block bone;
+    SiteEffects site(bone.view, bone.labels, 1.0);
+    constexpr double kLevelM3 = 1e-13;
+    bone.drill.hand[1].kind = DrillKind::suction_tube;
+    bone.drill.hand[1].radius_m = 1e-3F;
+    const Vec3 tip = bone.view.bricks.to_model(Vec3(24, 24, 25));
+    std::copy(tip.begin(), tip.end(), bone.drill.hand[1].pos_model_m);
+    const std::vector<std::uint8_t> whole = bone.density;
+    std::uint64_t lost = 0;
+    const auto sum_m3 = [&] {
+        const DrillingState::Dust d = dust_of(site.particles().ledger(), kLevelM3);
+        return d.here_m3 + d.sucked_m3 + d.flown_m3 + d.buried_m3;
+    };
+    for (int i = 0; i < 60; ++i) {
+        lost += bone.cut(14 + static_cast<std::uint32_t>(i % 20), 24, 23 - static_cast<std::uint32_t>(i / 10),
+                         200);
+        bone.drill.hand[1].suction = i > 30 ? 1.0F : 0.0F;
+        SiteEffects::Frame frame = bone.frame();
+        frame.level = i % 3 == 0 ? 1e-4F : 1.0F;  // hardly any particle may stay
+        site.step(frame);
+        ASSERT_NEAR(sum_m3(), kLevelM3 * static_cast<double>(lost), 1e-9 * kLevelM3) << i;
+    }
+    bone.before = bone.density;
+    bone.after = bone.density = whole;
+    bone.changes.clear();
+    for (std::size_t i = 0; i < bone.view.bricks.brick_count(); ++i)
+        bone.changes.push_back({static_cast<std::uint32_t>(i),
+                                std::span<const std::uint8_t>(bone.before).subspan(i * kVoxels, kVoxels),
+                                std::span<const std::uint8_t>(bone.after).subspan(i * kVoxels, kVoxels),
+                                true});
+    site.step(bone.frame());
+    EXPECT_NEAR(sum_m3(), kLevelM3 * static_cast<double>(lost), 1e-9 * kLevelM3);
+    const DrillingState::Dust d = dust_of(site.particles().ledger(), kLevelM3);
+    EXPECT_GT(d.sucked_m3, 0.0);
+    EXPECT_GT(d.here_m3, 0.0);
 }
 
 // A cut is undone: no particle is left in bone, none is lost from the ledger, and the wound there bleeds no more.
