@@ -68,13 +68,9 @@ public:
         written_ = Monotonic::now();
         if (waiting_.empty() || written_ < again_) return;
         try {
-            if (!file_) {
-                file_.emplace(settings_.file, head());
-                if (!settings_.resumed.empty()) file_->copy_frames(settings_.resumed, resumed_bytes_);
-            }
+            if (!file_) make_file();
             file_->write(stroke_, waiting_.bricks(), waiting_.densities());
         } catch (const StartupError& e) {
-            if (!file_) throw;  // no file can be made
             if (again_ == Instant{}) say_(e.what());
             again_ = Monotonic::now() + kTryAgain;
             return;
@@ -95,6 +91,18 @@ public:
     }
 
 private:
+    // Whole with what it continues, or not at all.
+    void make_file() {
+        file_.emplace(settings_.file, head());
+        if (settings_.resumed.empty()) return;
+        try {
+            file_->copy_frames(settings_.resumed, resumed_bytes_);
+        } catch (const StartupError&) {
+            file_.reset();
+            std::filesystem::remove(settings_.file);
+            throw;
+        }
+    }
     [[nodiscard]] DrilledBoneHead head() const {
         const BoneRegionHead& h = watched_.bone().head();
         BoneBricks bricks;

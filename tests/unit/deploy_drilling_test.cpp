@@ -1,13 +1,17 @@
 // The drilling part of a run's report, and the files of a scan.
 #include <gtest/gtest.h>
+#include <unistd.h>
 
+#include <chrono>
 #include <cmath>
+#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <memory>
 #include <nlohmann/json.hpp>
 
 #include "deploy/tact/drilling/drilling.hpp"
+#include "deploy/tact/drilling/kept_bone.hpp"
 #include "deploy/tact/drilling/report_drilling.hpp"
 #include "deploy/tact/files.hpp"
 #include "deploy/tact/run_options.hpp"
@@ -139,6 +143,43 @@ TEST(LetTheHandsDrill, unless_another_hand_or_device_is_requested) {
     one.controller = {"--hand2", "passive"};
     let_the_hands_drill(one);
     EXPECT_EQ(one.controller.size(), 4U);
+}
+
+// The oldest files of drilled bone make room for the next one, but never the one that a run starts with.
+TEST(KeptBone, the_newest_files_stay_and_so_does_the_resumed_one) {
+    namespace fs = std::filesystem;
+    const fs::path state = fs::temp_directory_path() / ("tact-kept-" + std::to_string(getpid()));
+    fs::remove_all(state);
+    const char* const before = std::getenv("XDG_STATE_HOME");
+    const std::string was = before != nullptr ? before : "";
+    setenv("XDG_STATE_HOME", state.c_str(), 1);
+    const fs::path folder = state / "tact" / "drilled";
+    fs::create_directories(folder);
+    const auto now = fs::file_time_type::clock::now();
+    constexpr int kFiles = 25;
+    for (int i = 0; i < kFiles; ++i) {
+        const fs::path file = folder / (std::to_string(i) + ".bone");
+        std::ofstream(file) << "bone";
+        fs::last_write_time(file, now - std::chrono::minutes(kFiles - i));
+    }
+    std::ofstream(folder / "notes.txt") << "of a person";
+    const fs::path next = new_bone_file("/scenes/left ear.tact", folder / "0.bone");
+    EXPECT_EQ(next.parent_path(), folder);
+    EXPECT_EQ(next.filename().string().rfind("left ear-", 0), 0U);
+    EXPECT_FALSE(fs::exists(next));
+    for (int i = 0; i < kFiles; ++i)
+        EXPECT_EQ(fs::exists(folder / (std::to_string(i) + ".bone")),
+                  i == 0 || i > kFiles - static_cast<int>(kBoneFilesKept))
+            << i;
+    EXPECT_TRUE(fs::exists(folder / "notes.txt"));
+    std::ofstream(next) << "bone";
+    EXPECT_NE(new_bone_file("/scenes/left ear.tact", {}), next);  // in the same second, too
+    EXPECT_THROW(static_cast<void>(last_bone_file(7)), StartupError);
+    if (before != nullptr)
+        setenv("XDG_STATE_HOME", was.c_str(), 1);
+    else
+        unsetenv("XDG_STATE_HOME");
+    fs::remove_all(state);
 }
 
 }  // namespace

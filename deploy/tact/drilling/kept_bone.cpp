@@ -38,10 +38,11 @@ std::vector<fs::path> bone_files() {
 
 }  // namespace
 
-fs::path new_bone_file(const fs::path& scene) {
+fs::path new_bone_file(const fs::path& scene, const fs::path& resumed) {
     const std::vector<fs::path> files = bone_files();
     std::error_code failed;
-    for (std::size_t i = kBoneFilesKept - 1; i < files.size(); ++i) fs::remove(files[i], failed);
+    for (std::size_t i = kBoneFilesKept - 1; i < files.size(); ++i)
+        if (!fs::equivalent(files[i], resumed, failed)) fs::remove(files[i], failed);
     const std::time_t now = std::time(nullptr);
     std::tm local{};
     localtime_r(&now, &local);

@@ -22,7 +22,7 @@ public:
             resumed = std::filesystem::absolute(resumed);
             options.set_controller_value("--resume", resumed);
         }
-        kept_ = options.keep.empty() ? new_bone_file(scene_) : options.keep;
+        kept_ = options.keep.empty() ? new_bone_file(scene_, resumed) : options.keep;
         std::vector<std::string> words{"--bone", kept_.string(), "--session", options.session};
         if (!resumed.empty()) words.insert(words.end(), {"--bone-from", resumed});
         return words;

@@ -193,6 +193,7 @@ DrilledBoneWriter::DrilledBoneWriter(const std::filesystem::path& path, const Dr
         append({reinterpret_cast<const std::uint8_t*>(&head), sizeof head});
     } catch (...) {
         close(fd_);
+        unlink(path.c_str());
         throw;
     }
 }
