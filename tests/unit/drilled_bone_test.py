@@ -59,6 +59,11 @@ class Runs:
         children = subprocess.run(["pgrep", "-P", str(run.pid), "tact-rt"], text=True, capture_output=True).stdout.split()
         return int(children[0])
 
+    def forget_socket(self, session):
+        """Of a controller that was killed: a new one has the same."""
+        if os.path.exists(self.path("tact-%s.sock" % session)):
+            os.remove(self.path("tact-%s.sock" % session))
+
     def close(self):
         shutil.rmtree(self.dir)
 
@@ -78,6 +83,7 @@ def densities(pid):
 def bone_of(runs, *words):
     """Starts a controller that rests, and returns its bone."""
     session = "looked-at"
+    runs.forget_socket(session)
     controller = subprocess.Popen([os.path.join(runs.programs, "tact-rt"), runs.path("bone.tact"), "--session", session, *words], env=runs.env,
                                   text=True, stderr=subprocess.PIPE)
     try:
@@ -165,6 +171,7 @@ def part_of(first, second):
 
 
 def bone_of_last(runs, start):
+    runs.forget_socket("default")
     run = runs.start("--quiet", "--resume", "last", "--seconds", "60")
     end = time.monotonic() + PATIENCE_S
     while time.monotonic() < end:

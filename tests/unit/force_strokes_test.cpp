@@ -42,7 +42,7 @@ DrillSettings burr(bool cuts = true) {
 // A burr and a suction tube over a block whose upper half is empty.
 struct Site {
     BoneBlock bone{kEdge, kVoxelM, [](const Vec3& p) { return p.z() < 0.5 * kEdge - 0.5 ? 1.0 : 0.0; }, 1};
-    SceneMeta meta;
+    SceneMeta meta{};
     std::unique_ptr<DrillBone> shared;
     std::unique_ptr<DrillModel> burr_model, tube_model;
     double largest_step_n = 0.0;  // of the forces of both

@@ -56,7 +56,7 @@ struct Site {
         revision.assign(baked.bricks.brick_count(), 0);
         seen = revision;
         bone = std::make_unique<DrillBone>(baked.bricks, density, revision);
-        SceneMeta meta;
+        SceneMeta meta{};
         meta.kind = SceneKind::drilling;
         meta.world_per_model = 1.0;
         DrillSettings s;
