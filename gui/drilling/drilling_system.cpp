@@ -69,15 +69,20 @@ void DrillingSystem::follow(const SystemContext& context) {
 
 bool DrillingSystem::perform(KeyAction what, std::size_t place, const SystemContext& context) {
     static_cast<void>(place);
+    // As the buttons, which are greyed without a cut.
+    const auto order = [&](CommandKind kind, std::uint32_t cuts) {
+        if (context.controller.attached() && cuts > 0 && !panels_.drilling.exchanging)
+            context.state.requests.push_back({kind, 0.0, {}});
+    };
     switch (what) {
         case KeyAction::approach_burr:
             approach_burr(context);
             return true;
         case KeyAction::undo:
+            order(CommandKind::undo_stroke, panels_.drilling.undoable);
+            return true;
         case KeyAction::redo:
-            if (context.controller.attached())
-                context.state.requests.push_back(
-                    {what == KeyAction::undo ? CommandKind::undo_stroke : CommandKind::redo_stroke, 0.0, {}});
+            order(CommandKind::redo_stroke, panels_.drilling.redoable);
             return true;
         default:
             return false;
