@@ -32,8 +32,8 @@ double BoneField::reach_voxels(const Vec3& centre) const {
     double most = 0.0;
     for (std::size_t i = 0; i < free_.size(); ++i) {
         if (free_[i] != 0) continue;
-        const Vec3 at(static_cast<double>(i % cells_[0]), static_cast<double>(i / cells_[0] % cells_[1]),
-                      static_cast<double>(i / cells_[0] / cells_[1]));
+        const std::size_t x = i % cells_[0], y = i / cells_[0] % cells_[1], z = i / cells_[0] / cells_[1];
+        const Vec3 at(static_cast<double>(x), static_cast<double>(y), static_cast<double>(z));
         most = std::max(most, ((at.array() + 0.5) * double{kCell} - centre.array()).matrix().norm());
     }
     return most;
@@ -115,12 +115,13 @@ void BoneField::mark_own() {
     std::array<std::uint8_t, BoneBricks::kVoxels> voxels{};
     for (std::uint32_t b = 0; b < now_.bricks.brick_count(); ++b) {
         solids(b, voxels);
-        const std::uint32_t bx = b % n[0], by = b / n[0] % n[1], bz = b / n[0] / n[1];
+        const std::size_t bx = b % n[0], by = b / n[0] % n[1], bz = b / n[0] / n[1];
         for (std::uint32_t i = 0; i < voxels.size(); ++i) {
             if (voxels[i] < kSurface) continue;
-            const std::uint32_t x = i % 8 / kCell, y = i / 8 % 8 / kCell, z = i / 64 / kCell;
-            free_[(std::size_t{bz * kCellsOfBrick + z} * cells_[1] + by * kCellsOfBrick + y) * cells_[0] +
-                  bx * kCellsOfBrick + x] = 0;
+            const std::size_t x = bx * kCellsOfBrick + i % 8 / kCell,
+                              y = by * kCellsOfBrick + i / 8 % 8 / kCell,
+                              z = bz * kCellsOfBrick + i / 64 / kCell;
+            free_[(z * cells_[1] + y) * cells_[0] + x] = 0;
         }
     }
 }

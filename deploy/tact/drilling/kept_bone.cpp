@@ -32,6 +32,7 @@ std::vector<fs::path> bone_files() {
             found.emplace_back(entry.last_write_time(failed), entry.path());
     std::sort(found.rbegin(), found.rend());
     std::vector<fs::path> files;
+    files.reserve(found.size());
     for (auto& [time, path] : found) files.push_back(std::move(path));
     return files;
 }

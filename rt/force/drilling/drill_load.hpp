@@ -10,6 +10,7 @@
 // Thread   any; constant time, no allocation
 #pragma once
 
+#include <cmath>
 #include <cstdint>
 
 #include "ipc/base/clock.hpp"
@@ -40,7 +41,7 @@ struct DrillWork {
     }
     // Balls, blocks and voxels.
     [[nodiscard]] std::uint32_t items() const noexcept {
-        return static_cast<std::uint32_t>(balls + blocks + 512.0 * (summed + cut) + 0.5);
+        return static_cast<std::uint32_t>(std::lround(balls + blocks + 512.0 * (summed + cut)));
     }
 };
 

@@ -29,7 +29,7 @@ public:
 
     explicit ErosionTurns(double head_radius_voxels) noexcept {
         const double size = head_radius_voxels / kGroupVoxels;
-        while (groups_ < kGroupsMost && size * size > groups_ / kGroupsLeast) groups_ *= 2;
+        while (groups_ < kGroupsMost && size * size * kGroupsLeast > groups_) groups_ *= 2;
     }
     [[nodiscard]] std::uint32_t groups() const noexcept TACT_RT { return groups_; }
     // Cut in a step of step_s at a level: 1 to groups(), in proportion from step to step of the knob.
