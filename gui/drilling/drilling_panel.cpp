@@ -10,7 +10,7 @@ namespace {
 
 std::string mm_text(double m) { return fixed(1e3 * m, 1) + " mm"; }
 
-std::string mm3_text(double m3) { return fixed(1e9 * m3, 1e9 * m3 < 99.95 ? 1 : 0); }
+std::string mm3_text(double m3) { return fixed(1e9 * m3, 1e9 * m3 < 9.95 ? 1 : 0); }
 
 void tools(const Theme& theme, const DrillingState& d) {
     static constexpr const char* kShapes[] = {"ball", "cylinder", "cone"};
@@ -27,7 +27,7 @@ void tools(const Theme& theme, const DrillingState& d) {
 void metrics(const Theme& theme, const DrillingState& d) {
     row(theme, "Bone removed", fixed(1e9 * d.removed_m3, 1) + " mm³",
         format("in %.0f s of drilling", d.drilling_s));
-    std::string gone = mm3_text(d.dust.sucked_m3) + " sucked, " + mm3_text(d.dust.flown_m3) + " away";
+    std::string gone = mm3_text(d.dust.sucked_m3) + " sucked, " + mm3_text(d.dust.flown_m3) + " out";
     if (d.dust.buried_m3 > 0.0) gone += ", " + mm3_text(d.dust.buried_m3) + " undone";
     row(theme, "Dust", fixed(1e9 * d.dust.here_m3, 1) + " mm³", gone);
     if (ImGui::IsItemHovered())

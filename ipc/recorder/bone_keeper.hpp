@@ -1,7 +1,7 @@
 // Keeps the drilled bone of a controller in a file (ipc/scene/bone/drilled_bone.hpp) while it is drilled.
 //
 // Killed    controller: the bone stays in shared memory until its last brick is written. Keeper: what was drilled in the
-//           last kWriteEvery is lost.
+//           last kBoneWriteEvery is lost.
 // Strokes   bricks are written with the stroke that changed them. A keeper that gets no time for more than the pause
 //           between two strokes takes both for one.
 // File      made with the first brick. A full disk is reported, and writing goes on when there is space.

@@ -138,7 +138,7 @@ int keep_drilled_bone(Requests& w) {
     const std::string name = w.bone.file.string();
     if (w.json)
         std::printf("%s\n", nlohmann::json{{"file", kept.drilled ? name : ""},
-                                           {"strokes", kept.strokes},
+                                           {"cuts", kept.strokes},
                                            {"bytes", kept.bytes},
                                            {"complete", kept.complete}}
                                 .dump()
@@ -146,7 +146,7 @@ int keep_drilled_bone(Requests& w) {
     else if (!kept.drilled)
         std::printf("no bone was drilled: no file was written\n");
     else
-        std::printf("%s: %u strokes, %.1f MB\n", name.c_str(), kept.strokes,
+        std::printf("%s: %u cuts, %.1f MB\n", name.c_str(), kept.strokes,
                     1e-6 * static_cast<double>(kept.bytes));
     if (kept.complete) return 0;
     std::fprintf(stderr, "tact-record: the last changes of the bone could not be written to %s\n",

@@ -71,7 +71,7 @@ void resume(const SystemInput& in, DrillBone& bone) {
                            "the file changed since this run was recorded",
                            "restore the file, or record another run");
     const DrilledBoneSummary sum = resume_bone(file, in.scene, bone);
-    spdlog::info("bone drilled before: {} strokes, {:.1f} % of its bricks changed", sum.strokes,
+    spdlog::info("bone drilled before: {} cuts, {:.1f} % of its bricks changed", sum.strokes,
                  100.0 *
                      static_cast<double>(std::count_if(bone.revision.begin(), bone.revision.end(),
                                                        [](std::uint32_t r) { return r != 0; })) /

@@ -62,13 +62,22 @@ struct Block {
                 v = static_cast<std::uint8_t>(v - off);
                 lost += off;
             }
+        tell(now);
+        return lost;
+    }
+    // Bone comes back.
+    void restore(const std::vector<std::uint8_t>& whole) {
+        before = density;
+        density = whole;
+        tell(true);
+    }
+    void tell(bool now) {
         after = density;
         changes.clear();
         for (std::size_t i = 0; i < view.bricks.brick_count(); ++i)
             changes.push_back({static_cast<std::uint32_t>(i),
                                std::span<const std::uint8_t>(before).subspan(i * kVoxels, kVoxels),
                                std::span<const std::uint8_t>(after).subspan(i * kVoxels, kVoxels), now});
-        return lost;
     }
     SiteEffects::Frame frame() const {
         return {0.02, &drill, changes, 1.0F, view.bricks.to_model(Vec3(24, 24, 200))};
@@ -122,14 +131,7 @@ TEST(SiteEffects, dust_that_is_shown_is_all_of_the_bone_that_was_removed) {
         site.step(frame);
         ASSERT_NEAR(sum_m3(), kLevelM3 * static_cast<double>(lost), 1e-9 * kLevelM3) << i;
     }
-    bone.before = bone.density;
-    bone.after = bone.density = whole;
-    bone.changes.clear();
-    for (std::size_t i = 0; i < bone.view.bricks.brick_count(); ++i)
-        bone.changes.push_back({static_cast<std::uint32_t>(i),
-                                std::span<const std::uint8_t>(bone.before).subspan(i * kVoxels, kVoxels),
-                                std::span<const std::uint8_t>(bone.after).subspan(i * kVoxels, kVoxels),
-                                true});
+    bone.restore(whole);
     site.step(bone.frame());
     EXPECT_NEAR(sum_m3(), kLevelM3 * static_cast<double>(lost), 1e-9 * kLevelM3);
     const DrillingState::Dust d = dust_of(site.particles().ledger(), kLevelM3);
@@ -156,15 +158,8 @@ TEST(SiteEffects, where_bone_comes_back_are_no_particles_and_no_wounds) {
                 {static_cast<int>(p.at[0]), static_cast<int>(p.at[1]), static_cast<int>(p.at[2])});
         });
     };
-    bone.before = bone.density;
-    bone.density = whole;
+    bone.restore(whole);
     ASSERT_GT(in_bone(), 20);
-    bone.after = bone.density;
-    for (std::size_t i = 0; i < bone.view.bricks.brick_count(); ++i)
-        bone.changes.push_back({static_cast<std::uint32_t>(i),
-                                std::span<const std::uint8_t>(bone.before).subspan(i * kVoxels, kVoxels),
-                                std::span<const std::uint8_t>(bone.after).subspan(i * kVoxels, kVoxels),
-                                true});
     site.step(bone.frame());
     EXPECT_EQ(in_bone(), 0);
     EXPECT_GT(site.particles().ledger().buried, 0U);

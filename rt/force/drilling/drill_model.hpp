@@ -138,6 +138,7 @@ public:
     [[nodiscard]] static BlockDetail detail_of(float fidelity) noexcept TACT_RT;
 
 private:
+    static constexpr BlockDetail kLate{.block = kBlockMost, .rough = 1.0};
     struct BallForces {
         Wrench wrench;           // at the tool's origin, world, before limits
         double elastic_n = 0.0;  // sum of sizes
