@@ -25,6 +25,7 @@ ToolDescription describe_tool(const DrillHand& hand) {
     ToolDescription t;
     t.valid = hand.kind != DrillKind::none;
     t.shape = static_cast<int>(hand.shape);
+    t.grit = hand.grit;
     t.diameter_m = 2.0 * static_cast<double>(hand.radius_m);
     t.length_m = static_cast<double>(hand.length_m);
     t.rpm = static_cast<double>(hand.burr_rad_s) * 60.0 / (2.0 * std::numbers::pi);
@@ -76,6 +77,10 @@ void DrillController::show(const DrillTopic& drill, DashboardState& dashboard, D
     state.undoable = drill.undoable;
     state.redoable = drill.redoable;
     state.exchanging = drill.exchanging != 0;
+    state.changing_burr = drill.changing_burr != 0;
+    state.burr_rad_s_most = static_cast<double>(drill.burr_rad_s_most);
+    state.irrigation_m3_s = static_cast<double>(drill.irrigation_m3_s_most);
+    state.suction_m3_s = static_cast<double>(drill.suction_m3_s_most);
     state.removed_m3 = drill.level_m3 * static_cast<double>(drill.removed_levels);
     const auto by_burr = watch_->look(drill, 0), by_suction_tube = watch_->look(drill, 1);
     state.structures.clear();
@@ -101,6 +106,11 @@ void DrillController::show(const DrillTopic& drill, DashboardState& dashboard, D
     }
     std::sort(state.structures.begin(), state.structures.end(),
               [](const auto& a, const auto& b) { return a.burr_m < b.burr_m; });
+    const double nearest_m = state.structures.empty() ? 1e9 : state.structures.front().burr_m;
+    state.nearness = !(state.burr.rpm > 0.0)      ? Grade::good
+                     : nearest_m < kDrillNearM[0] ? Grade::bad
+                     : nearest_m < kDrillNearM[1] ? Grade::watch
+                                                  : Grade::good;
 }
 
 void DrillController::follow(Controller& controller, std::span<const BrickChange> changes,

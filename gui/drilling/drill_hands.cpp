@@ -28,6 +28,7 @@ std::span<const DrawnDrillTool> DrillHands::follow(const DrillTopic& topic, cons
                  : h.shape == DrillShape::cylinder ? DrillHead::cylinder
                  : h.shape == DrillShape::cone     ? DrillHead::cone
                                                    : DrillHead::sphere;
+        d.diamond = h.grit == DrillGrit::diamond;
         if (h.burr_rad_s > 0.0F)
             turned_rad_[i] = std::fmod(turned_rad_[i] + kTurnAPictureRad, 2.0 * std::numbers::pi);
         d.turned_rad = turned_rad_[i];

@@ -25,6 +25,25 @@ void DrillMetrics::tools(const DrillTopic& drill) {
     if (!head_known_) return;
     head_ = head_balls(burr, meta_.world_per_model);
     head_at_m_ = Vec3(burr.pos_model_m[0], burr.pos_model_m[1], burr.pos_model_m[2]);
+    // What went since the last call went by the burr that was in the hand then: one that is changed cuts nothing.
+    if (!metrics_.burr.empty() && burr.removed_levels > burr_levels_)
+        metrics_.burr[burr_].removed_levels += burr.removed_levels - burr_levels_;
+    burr_levels_ = burr.removed_levels;
+    burr_ = index_of(burr);
+}
+
+std::size_t DrillMetrics::index_of(const DrillHand& burr) {
+    constexpr double kSameM = 1e-5;
+    const BurrUse now{
+        .shape = burr.shape, .grit = burr.grit, .diameter_m = 2.0 * static_cast<double>(burr.radius_m)};
+    std::vector<BurrUse>& all = metrics_.burr;
+    const auto found = std::find_if(all.begin(), all.end(), [&now](const BurrUse& b) {
+        return b.shape == now.shape && b.grit == now.grit && std::abs(b.diameter_m - now.diameter_m) < kSameM;
+    });
+    if (found != all.end()) return static_cast<std::size_t>(found - all.begin());
+    if (all.size() == kBurrsMost) return all.size() - 1;
+    all.push_back(now);
+    return all.size() - 1;
 }
 
 void DrillMetrics::cycle(const TraceTopic& t) {
@@ -49,6 +68,7 @@ void DrillMetrics::cycle(const TraceTopic& t) {
     held_in_share_ += std::min(dt_s / kHeldInS, 1.0) * (held_in - held_in_share_);
     if (!turns) return;
     f.drilling_s += dt_s;
+    if (!f.burr.empty()) f.burr[burr_].drilling_s += dt_s;
     if (way_m > kPathStepM) {  // ignores encoder steps
         f.path_m += way_m;
         path_at_m_ = at_m;
@@ -57,6 +77,7 @@ void DrillMetrics::cycle(const TraceTopic& t) {
     if (force_n > kForceExcessN) f.excess_s += dt_s;
     if (cuts) {
         f.cutting_s += dt_s;
+        if (!f.burr.empty()) f.burr[burr_].cutting_s += dt_s;
         f.force_cutting_n_s += dt_s * force_n;
     }
     if (!head_known_) return;

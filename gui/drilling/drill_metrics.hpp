@@ -34,6 +34,15 @@ struct StructureMetrics {
     std::array<double, kDrillNearM.size()> near_s{};  // drilling time within; critical ones only
 };
 
+// A burr that was in the hand.
+struct BurrUse {
+    DrillShape shape = DrillShape::sphere;
+    DrillGrit grit = DrillGrit::cutting;
+    double diameter_m = 0.0;
+    double drilling_s = 0.0, cutting_s = 0.0;
+    std::uint64_t removed_levels = 0;  // also in strokes that were undone
+};
+
 struct DrillMetricsRow {
     double seen_s = 0.0, drilling_s = 0.0, cutting_s = 0.0;
     std::uint64_t unseen_cycles = 0;
@@ -44,6 +53,7 @@ struct DrillMetricsRow {
     std::array<std::uint64_t, kDrillNearM.size()> near_levels{};
     std::array<double, kDrillNearM.size()> near_s{};  // drilling time within, any critical structure
     std::uint64_t injuries = 0;
+    std::vector<BurrUse> burr;                // in the order of their first use; kBurrsMost at most
     std::vector<StructureMetrics> structure;  // by label; the first is unlabelled bone
     double level_m3 = 0.0;
 
@@ -79,7 +89,12 @@ private:
     SceneMeta meta_;
     DrillMetricsRow metrics_;
     Strokes strokes_;
-    HeadBalls head_;  // of the burr, at the last call of tools()
+    static constexpr std::size_t kBurrsMost = 64;
+    [[nodiscard]] std::size_t index_of(const DrillHand& burr);  // in metrics_.burr, added if it is new
+
+    std::size_t burr_ = 0;           // index of the one in the hand
+    std::uint64_t burr_levels_ = 0;  // removed by the hand, as of the last call of tools()
+    HeadBalls head_;                 // of the burr, at the last call of tools()
     Vec3 head_at_m_ = Vec3::Zero();
     bool head_known_ = false, seen_ = false;
     double cycle_s_ = 0.0, held_in_share_ = 0.0;

@@ -1,5 +1,6 @@
 #include "gui/drilling/drill_report.hpp"
 
+#include <array>
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
@@ -12,10 +13,22 @@ namespace tact {
 
 using nlohmann::json;
 
+namespace {
+constexpr std::array kShapes{"sphere", "cylinder", "cone"};  // as DrillShape
+}  // namespace
+
 json drill_report(const DrillMetricsRow& f, const BoneLabelsView& labels,
                   const std::optional<BurrVisibility>& visibility) {
     const auto mm3 = [&f](std::uint64_t levels) { return 1e9 * f.level_m3 * static_cast<double>(levels); };
     const auto share = [](double part, double of) { return of > 0.0 ? json(part / of) : json(nullptr); };
+    json burrs = json::array();
+    for (const BurrUse& b : f.burr)
+        burrs.push_back({{"diameter_mm", 1e3 * b.diameter_m},
+                         {"shape", kShapes[static_cast<std::size_t>(b.shape)]},
+                         {"grit", b.grit == DrillGrit::diamond ? "diamond" : "cutting"},
+                         {"drilling_s", b.drilling_s},
+                         {"cutting_s", b.cutting_s},
+                         {"removed_mm3", mm3(b.removed_levels)}});
     bool critical = false;
     json structures = json::array();
     for (std::size_t label = 1; label < f.structure.size(); ++label) {
@@ -49,7 +62,8 @@ json drill_report(const DrillMetricsRow& f, const BoneLabelsView& labels,
           {"mean_length_mm", f.strokes.count > 0 ? json(1e3 * f.strokes.mean_length_m()) : json(nullptr)},
           {"mean_speed_mm_s",
            f.strokes.time_s > 0.0 ? json(1e3 * f.strokes.mean_speed_m_s()) : json(nullptr)}}},
-        {"path_mm", 1e3 * f.path_m}};
+        {"path_mm", 1e3 * f.path_m},
+        {"burrs", burrs}};
     j["burr_visible_share"] = visibility ? share(visibility->seen_s, visibility->drilling_s) : json(nullptr);
     // Without labels, no structure is known to be critical.
     j["near_critical"] = !critical ? json(nullptr)

@@ -18,7 +18,7 @@ namespace tact {
 namespace {
 
 constexpr Rgb8 kSteel{190, 196, 206}, kEdgeSteel{232, 236, 242}, kGroove{122, 127, 138}, kGrip{58, 66, 80},
-    kInside{24, 26, 30};
+    kInside{24, 26, 30}, kBond{148, 128, 84}, kGrain{238, 226, 188};
 constexpr int kFlutes = 10, kAround = 64, kRings = 20;
 constexpr float kGrooveDepth = 0.10F, kTwistRad = 0.9F;
 constexpr float kPi = std::numbers::pi_v<float>;
@@ -61,13 +61,21 @@ Rgb8 blend(const Rgb8& a, const Rgb8& b, float share) {
     return c;
 }
 
-void add_fluted_head(TubeMesh& mesh, const DrawnDrillTool& t) {
+// Grains of diamond in their bond: from 0 to 1, another number in each place.
+float grain(int ring, int column) {
+    std::uint32_t n = static_cast<std::uint32_t>(ring) * 0x9E3779B1U +
+                      static_cast<std::uint32_t>(column % kAround) * 0x85EBCA77U;
+    n = (n ^ (n >> 15U)) * 0x2C1B3C6DU;
+    return static_cast<float>((n >> 16U) & 0xFFU) / 255.0F;
+}
+
+void add_head(TubeMesh& mesh, const DrawnDrillTool& t) {
     const auto point = [&](float s, float around) {
         const Profile p = profile(t, s);
         const float ridge = flute(kFlutes * around + kTwistRad * s * kFlutes / (2.0F * kPi));
         // The grooves end at both poles.
         const float deep = kGrooveDepth * std::min(1.0F, 4.0F * std::min(s, 1.0F - s));
-        const float r = p.radius * (1.0F - deep * (1.0F - ridge));
+        const float r = t.diamond ? p.radius : p.radius * (1.0F - deep * (1.0F - ridge));
         const float a = 2.0F * kPi * around;
         return Eigen::Vector3f(r * std::cos(a), r * std::sin(a), p.z);
     };
@@ -82,7 +90,8 @@ void add_fluted_head(TubeMesh& mesh, const DrawnDrillTool& t) {
             const Eigen::Vector3f across = point(s, around + kStep) - point(s, around - kStep);
             const Eigen::Vector3f n = across.cross(along).normalized();
             const float ridge = flute(kFlutes * around + kTwistRad * s * kFlutes / (2.0F * kPi));
-            const Rgb8 c = blend(kGroove, kEdgeSteel, ridge * ridge);
+            const Rgb8 c =
+                t.diamond ? blend(kBond, kGrain, grain(i, k)) : blend(kGroove, kEdgeSteel, ridge * ridge);
             mesh.vertex.push_back({{p.x(), p.y(), p.z()}, {n.x(), n.y(), n.z()}, {c[0], c[1], c[2], 255}});
         }
     for (std::uint32_t i = 0; i < kRings; ++i)
@@ -119,7 +128,7 @@ TubeMesh build_drill_tool(const DrawnDrillTool& t) {
                      origin, z, kGrip);
         return mesh;
     }
-    add_fluted_head(mesh, t);
+    add_head(mesh, t);
     const float top = profile(t, 1.0F).z, shaft = in_a(t.shaft_radius_m);
     if (!(shaft > 0.0F)) return mesh;
     // The shaft, its collet and the handpiece, with the proportions of a drill.

@@ -13,13 +13,14 @@ enum class DrillHead : std::uint8_t { sphere, cylinder, cone, tube };
 struct DrawnDrillTool {
     Pose T_model_tool;
     DrillHead head = DrillHead::sphere;
+    bool diamond = false;  // grains instead of flutes
     // Lengths of the model, metres.
     double radius_m = 0.0, length_m = 0.0, tip_radius_m = 0.0, shaft_radius_m = 0.0, shaft_length_m = 0.0;
     double turned_rad = 0.0;  // about +z, as drawn
 
     // True if the same mesh serves.
     [[nodiscard]] bool same_shape(const DrawnDrillTool& o) const {
-        return head == o.head && radius_m == o.radius_m && length_m == o.length_m &&
+        return head == o.head && diamond == o.diamond && radius_m == o.radius_m && length_m == o.length_m &&
                tip_radius_m == o.tip_radius_m && shaft_radius_m == o.shaft_radius_m &&
                shaft_length_m == o.shaft_length_m;
     }

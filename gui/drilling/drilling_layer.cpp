@@ -20,7 +20,9 @@ void DrillingLayer::draw_structures(const LayerPass& pass) {
         Pose turned = tool.T_model_tool;
         turned.q = turned.q * Quat(Eigen::AngleAxisd(tool.turned_rad, Vec3::UnitZ()));
         pass.programs.use_lit(pass.eye_from_scene * scene_from_body(turned, centre_model_m_), pass.projection,
-                              pass.haze, {});
+                              pass.haze,
+                              {.tint = tool.head == DrillHead::tube ? Eigen::Vector4f(Eigen::Vector4f::Zero())
+                                                                    : frame.burr_glow});
         hand.mesh.draw();
     }
 }

@@ -25,6 +25,7 @@ public:
         double bone_fill_s = 1e9;     // limit to upload bone
         std::span<const DrawnDrillTool> tools;
         const Particles* particles = nullptr;
+        Eigen::Vector4f burr_glow = Eigen::Vector4f::Zero();  // colour, and its share of the burr's own
         bool time_particles = false;  // waits for the renderer, see particles_draw_s()
     };
 

@@ -1,24 +1,30 @@
 // Drilling card: tools, bone removed, force, and the distance of the burr from each critical structure.
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "gui/dashboard/widgets.hpp"
+#include "gui/drilling/burr_menu.hpp"
 #include "gui/drilling/drilling_panel.hpp"
 
 namespace tact {
 namespace {
+
+constexpr double kFlashHz = 2.0;
+constexpr std::int64_t kMinuteNs = 60'000'000'000;
 
 std::string mm_text(double m) { return fixed(1e3 * m, 1) + " mm"; }
 
 std::string mm3_text(double m3) { return fixed(1e9 * m3, 1e9 * m3 < 9.95 ? 1 : 0); }
 
 void tools(const Theme& theme, const DrillingState& d) {
-    static constexpr const char* kShapes[] = {"ball", "cylinder", "cone"};
-    const std::string size = mm_text(d.burr.diameter_m) + " " + kShapes[std::clamp(d.burr.shape, 0, 2)];
+    static constexpr const char* kShapes[] = {"", " cylinder", " cone"};
+    const char* const grit = d.burr.grit == DrillGrit::diamond ? " diamond" : " cutting";
+    const std::string size = mm_text(d.burr.diameter_m) + grit + kShapes[std::clamp(d.burr.shape, 0, 2)];
     std::string does =
         d.burr.rpm > 0.0 ? grouped(static_cast<std::uint64_t>(std::llround(d.burr.rpm))) + " rpm" : "stopped";
     if (d.burr.water) does += ", water";
-    row(theme, "Burr", size, does);
+    row(theme, "Burr", size, d.changing_burr ? std::string("changing") : does);
     if (d.suction_tube.valid)
         row(theme, "Suction tube", mm_text(d.suction_tube.diameter_m),
             d.suction_tube.suction ? "suction on" : "suction off");
@@ -58,11 +64,20 @@ void undo(const Theme& theme, const DrillingState& d, DashboardState& state) {
     button("Redo", d.redoable, CommandKind::redo_stroke,
            "take the bone of the last undone cut again (Ctrl+Y)");
     ImGui::SameLine();
+    ImGui::BeginDisabled(!state.attached);
+    if (ImGui::Button("Burr ...")) ImGui::OpenPopup(kBurrMenu);
+    ImGui::EndDisabled();
+    if (ImGui::IsItemHovered(ImGuiHoveredFlags_AllowWhenDisabled))
+        ImGui::SetTooltip(
+            "another burr, its speed, water and suction\n[ and ]: a smaller or larger one, G: the other "
+            "grit");
+    burr_menu(theme, d, state);
+    ImGui::SameLine();
     ImGui::AlignTextToFramePadding();
-    if (d.exchanging)
-        text_coloured(colour::kWatch, "no force meanwhile");
+    if (d.exchanging || d.changing_burr)
+        text_coloured(colour::kWatch, "no force");
     else
-        text_small(theme, colour::kDim, d.undoable > 0 ? format("%u cuts can be undone", d.undoable) : "");
+        text_small(theme, colour::kDim, d.undoable > 0 ? format("%u cuts", d.undoable) : "");
 }
 
 void structure(const Theme& theme, const DrillingState& d, const DrillingState::Structure& s) {
@@ -126,6 +141,22 @@ void DrillingPanels::draw_in_scene_card(const Theme& theme, DashboardState& stat
     ImGui::Checkbox("Frame times", &state.toggles.frame_times);
     ImGui::SameLine(theme.px(130.0F));
     ImGui::Checkbox("Smooth edges", &state.toggles.smooth_edges);
+    ImGui::Checkbox("Force arrow", &state.toggles.force);
+}
+
+void DrillingPanels::draw_over_view(const OverlayPen& pen, const DashboardState& state,
+                                    const PixelRect& v) const {
+    if (drilling.nearness == Grade::good || !state.attached) return;
+    const bool red = drilling.nearness == Grade::bad;
+    // Slower than three times a second, for those whom flashing harms.
+    const double phase =
+        2.0 * std::numbers::pi * kFlashHz * 1e-9 * static_cast<double>(state.now_ns % kMinuteNs);
+    const float bright = red ? 0.65F + 0.35F * static_cast<float>(std::cos(phase)) : 0.8F;
+    const float width = pen.theme.px(red ? 8.0F : 4.0F);
+    const ImU32 edge = (red ? colour::kBad : colour::kWatch) & ~IM_COL32_A_MASK;
+    pen.draw->AddRect({v.x + 0.5F * width, v.y + 0.5F * width},
+                      {v.x + v.width - 0.5F * width, v.y + v.height - 0.5F * width},
+                      edge | (static_cast<ImU32>(255.0F * bright) << IM_COL32_A_SHIFT), 0.0F, 0, width);
 }
 
 std::string DrillingPanels::drawn_text(const DashboardState& state) const {

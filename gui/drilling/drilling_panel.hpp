@@ -11,6 +11,7 @@
 #include "gui/dashboard/pixel_rect.hpp"
 #include "gui/dashboard/theme.hpp"
 #include "gui/system/system_panels.hpp"
+#include "ipc/topics/drill.hpp"
 
 namespace tact {
 
@@ -18,6 +19,7 @@ namespace tact {
 struct ToolDescription {
     bool valid = false;
     int shape = 0;  // ball, cylinder, cone
+    DrillGrit grit = DrillGrit::cutting;
     double diameter_m = 0.0, length_m = 0.0;
     double rpm = 0.0;  // 0: stopped
     bool water = false, suction = false;
@@ -46,7 +48,10 @@ struct DrillingState {
     double stroke_m = 0.0, stroke_m_s = 0.0;
     std::uint32_t undoable = 0, redoable = 0;  // strokes of bone taken
     bool exchanging = false;                   // one is being undone or redone: no force
-    std::vector<Structure> structures;         // critical ones, nearest first
+    bool changing_burr = false;                // another burr was ordered: no force until it is in the hand
+    double burr_rad_s_most = 0.0, irrigation_m3_s = 0.0, suction_m3_s = 0.0;  // of the drives, as set
+    Grade nearness = Grade::good;       // of the turning burr to the critical structure that is nearest
+    std::vector<Structure> structures;  // critical ones, nearest first
 };
 
 class DrillingPanels : public SystemPanels {
@@ -59,6 +64,9 @@ public:
     [[nodiscard]] CardSize card_size() const override { return {347.0F, 0.42F}; }
     void draw_card(const Theme& theme, const PixelRect& card, DashboardState& state) const override;
     void draw_in_scene_card(const Theme& theme, DashboardState& state) override;
+    // An edge around the view while the turning burr is near a critical structure.
+    void draw_over_view(const OverlayPen& pen, const DashboardState& state,
+                        const PixelRect& view) const override;
     [[nodiscard]] std::string drawn_text(const DashboardState& state) const override;
 };
 

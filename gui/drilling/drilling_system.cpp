@@ -17,7 +17,14 @@ namespace {
 
 constexpr double kFillS = 12e-3;       // per frame, to upload bone
 constexpr float kBurrsShown = 4.0F;    // radii around a burr in close view
-constexpr float kArrowShare = 0.012F;  // thickness of the force arrow, which must not hide the burr
+constexpr float kArrowShare = 0.006F;  // thickness of the force arrow, which stands beside the burr
+constexpr float kBesideRadii = 1.8F;   // of the burr
+
+Eigen::Vector4f glow_of(Grade nearness) {
+    if (nearness == Grade::bad) return {1.0F, 0.16F, 0.10F, 0.75F};
+    if (nearness == Grade::watch) return {1.0F, 0.72F, 0.16F, 0.6F};
+    return Eigen::Vector4f::Zero();
+}
 
 }  // namespace
 
@@ -78,6 +85,15 @@ bool DrillingSystem::perform(KeyAction what, std::size_t place, const SystemCont
         case KeyAction::approach_burr:
             approach_burr(context);
             return true;
+        case KeyAction::smaller_burr:
+            take_burr(next_burr(in_hand(), -1), context);
+            return true;
+        case KeyAction::larger_burr:
+            take_burr(next_burr(in_hand(), 1), context);
+            return true;
+        case KeyAction::other_grit:
+            take_burr(other_grit(in_hand()), context);
+            return true;
         case KeyAction::undo:
             order(CommandKind::undo_stroke, panels_.drilling.undoable);
             return true;
@@ -87,6 +103,18 @@ bool DrillingSystem::perform(KeyAction what, std::size_t place, const SystemCont
         default:
             return false;
     }
+}
+
+TrayBurr DrillingSystem::in_hand() const {
+    const ToolDescription& burr = panels_.drilling.burr;
+    return {burr.grit, static_cast<DrillShape>(burr.shape), burr.diameter_m, burr.length_m};
+}
+
+void DrillingSystem::take_burr(const TrayBurr& burr, const SystemContext& context) const {
+    const DrillingState& d = panels_.drilling;
+    const bool other = burr.grit != d.burr.grit || burr.diameter_m != d.burr.diameter_m;
+    if (context.controller.attached() && d.known && d.burr.valid && other && !d.changing_burr)
+        context.state.requests.push_back(burr_request(burr));
 }
 
 void DrillingSystem::approach_burr(const SystemContext& context) const {
@@ -146,6 +174,9 @@ void DrillingSystem::prepare(std::int64_t now_ns, bool sharp, ViewFrame& frame,
         if (!drawn.tools.empty()) {
             frame.force_at_model_m = drawn.tools.front().T_model_tool.p_m;
             frame.force_thickness = kArrowShare;
+            frame.force_beside_a =
+                kBesideRadii * static_cast<float>(drawn.tools.front().radius_m / kAngstromM);
+            drawn.burr_glow = glow_of(panels_.drilling.nearness);
         }
     }
     if (near_burr_wanted_ && controller.have_drill && controller.drill.hand[0].depth > 0.0F) {

@@ -11,6 +11,7 @@
 #include <string>
 
 #include "gui/drilling/bone_controller.hpp"
+#include "gui/drilling/burr_tray.hpp"
 #include "gui/drilling/drill_controller.hpp"
 #include "gui/drilling/drill_hands.hpp"
 #include "gui/drilling/drill_start.hpp"
@@ -54,6 +55,8 @@ private:
     [[nodiscard]] std::uint32_t rays_most(const ViewFrame& frame, bool sharp, const SystemContext& context);
     [[nodiscard]] float particles_share(const SystemContext& context) const;
     void approach_burr(const SystemContext& context) const;
+    [[nodiscard]] TrayBurr in_hand() const;
+    void take_burr(const TrayBurr& burr, const SystemContext& context) const;
 
     const DrillingOptions options_;
     DrillingPanels panels_;

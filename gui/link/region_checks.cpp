@@ -80,7 +80,8 @@ bool sensible(const DrillTopic& t) noexcept {
         return false;
     return std::all_of(t.hand, t.hand + kDrillHands, [&within](const DrillHand& h) {
         if (h.kind == DrillKind::none) return true;
-        return h.kind <= DrillKind::suction_tube && h.shape <= DrillShape::cone && near(h.pos_model_m) &&
+        return h.kind <= DrillKind::suction_tube && h.shape <= DrillShape::cone &&
+               h.grit <= DrillGrit::diamond && near(h.pos_model_m) &&
                unit_quaternion(h.quat_model_tool_xyzw) && h.radius_m > 0.0F && within(h.radius_m, 1.0F) &&
                within(h.length_m, 1.0F) && within(h.tip_radius_m, 1.0F) && within(h.shaft_radius_m, 1.0F) &&
                within(h.shaft_length_m, 1.0F) && within(h.burr_rad_s, 1e6F) && within(h.suction, 1.0F) &&

@@ -122,8 +122,10 @@ Haze SceneView::haze_of(const EyeView& eye, const ViewOptions& options) const {
 }
 
 void SceneView::draw_force(const LayerPass& pass, const ViewFrame& frame) {
+    const Eigen::Vector3f right = pass.eye_from_scene.topLeftCorner<1, 3>().transpose().normalized();
     const Eigen::Vector3f from =
-        ((*frame.force_at_model_m - content_->centre_model_m) / kAngstromM).cast<float>();
+        ((*frame.force_at_model_m - content_->centre_model_m) / kAngstromM).cast<float>() +
+        frame.force_beside_a * right;
     Eigen::Vector3f along = frame.force_world_n.cast<float>() * pass.arrow_a_per_n;
     const float most = 3.0F * pass.size_a;
     if (along.norm() > most) along *= most / along.norm();

@@ -35,6 +35,7 @@ struct ViewFrame {
     Vec3 force_world_n = Vec3::Zero();
     std::optional<Vec3> force_at_model_m;  // point of application; none: not drawn
     float force_thickness = 0.02F;         // of the arrow, in radii of the scene
+    float force_beside_a = 0.0F;           // it begins so far to the viewer's right of that place
     std::optional<DrawnHand> hand;
     std::size_t eye = 0, eyes = 1;  // index and number of eyes
     PassClock* passes = nullptr;    // times each pass; null: none

@@ -40,8 +40,14 @@ enum class CommandKind : std::uint16_t {
     // The last stroke of the burr, and the last one that was undone.
     undo_stroke,
     redo_stroke,
+    // The burr in the first hand. body: DrillShape + 256 x DrillGrit, value: diameter (m), pos_model_m[0]: length of the
+    // head (m) of a cylinder or cone.
+    set_burr,
+    set_burr_speed,  // value: rad/s while its drive is on
+    set_irrigation,  // value: m3/s
+    set_suction,     // value: m3/s
 };
-inline constexpr CommandKind kLastCommand = CommandKind::redo_stroke;
+inline constexpr CommandKind kLastCommand = CommandKind::set_suction;
 // True for commands that the force model executes or refuses; all others concern the loop.
 [[nodiscard]] constexpr bool is_for_model(CommandKind kind) {
     return kind >= CommandKind::select_body && kind <= kLastCommand && kind != CommandKind::mark;

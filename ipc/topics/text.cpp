@@ -257,6 +257,14 @@ const char* command_kind_text(CommandKind kind) noexcept {
             return "undo a cut";
         case CommandKind::redo_stroke:
             return "redo a cut";
+        case CommandKind::set_burr:
+            return "change the burr";
+        case CommandKind::set_burr_speed:
+            return "burr speed";
+        case CommandKind::set_irrigation:
+            return "water";
+        case CommandKind::set_suction:
+            return "suction";
     }
     return kUnknown;
 }

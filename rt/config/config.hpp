@@ -94,6 +94,7 @@ struct RtConfig {
     struct Drilling {
         double burr_diameter_mm = 6.0;
         std::string burr_shape = "sphere";  // or "cylinder", "cone"
+        std::string burr_grit = "cutting";  // or "diamond"
         double burr_length_mm = 8.0;        // head length of a cylinder or cone
         double shaft_diameter_mm = 2.4;     // 0: no shaft
         double burr_rpm = 60000.0;          // while the pedal is pressed
@@ -104,7 +105,9 @@ struct RtConfig {
         std::string suction = "button";  // second button of the second stylus; or "line", "always"
         double suction_l_min = 20.0;
         double rate_per_s = 40.0;  // erosion rate at 60 000 rpm
-        double vibration = 0.0;    // amplitude while the burr runs, as a fraction of the elastic force
+        double diamond_share =
+            0.3;                 // a diamond burr's erosion rate and vibration over those of a cutting one
+        double vibration = 0.0;  // amplitude while the burr runs, as a fraction of the elastic force
     } drilling;
     struct Safety {
         double force_n_max = 3.3;

@@ -59,9 +59,10 @@ struct ModelBodies {
     std::array<std::uint32_t, kMax> id{};         // from 1, never reused
     std::array<std::uint16_t, kMax> structure{};  // index in the scene
     std::array<std::uint16_t, kMax> flags{};
-    std::uint64_t grips = 0;          // increases when the tool grips a body (start of a gesture)
-    std::uint64_t placements = 0;     // increases when an order places, adds or removes a body
-    std::uint64_t others = 0;         // increases when a body other than the active one changes
+    std::uint64_t grips = 0;       // increases when the tool grips a body (start of a gesture)
+    std::uint64_t placements = 0;  // increases when an order places, adds or removes a body
+    std::uint64_t others = 0;      // increases when a body other than the active one changes
+    std::uint64_t tools = 0;  // increases when the tool is exchanged for one whose steps cost something else
     std::uint32_t options = 0;        // options in use; the model defines the bits
     std::uint32_t options_asked = 0;  // options ordered; they differ from options during a rebuild
     // Places found for the held body, the one that it leans to, and the size of the pull towards them.

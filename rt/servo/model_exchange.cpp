@@ -54,6 +54,11 @@ void report_bodies(CycleState& c, const ServoSettings& settings, const ServoIo& 
     if (now.placements != before.placements || now.options != before.options)
         report(c, io.region, EventCode::bodies_changed, static_cast<double>(now.count),
                static_cast<double>(now.options));
+    if (now.tools != before.tools) {
+        govern_anew(c, settings);
+        ++c.report.levels_sequence;
+        publish_levels(c, settings, io.region);
+    }
     if (id_in_hand(now) == id_in_hand(before)) return;
     report(c, io.region, EventCode::body_selected, static_cast<double>(id_in_hand(now)),
            static_cast<double>(model.items(1.0F)));

@@ -27,8 +27,7 @@ DrillScene::DrillScene(const SceneFile& scene, const RtConfig& config, RtRegion&
 
 DrillRates drill_rates(const RtConfig& config) {
     const RtConfig::Drilling& d = config.drilling;
-    return {.burr_rad_s = burr_rad_s(config),
-            .irrigation_m3_s = d.irrigation_ml_min * 1e-6 / 60.0,
+    return {.irrigation_m3_s = d.irrigation_ml_min * 1e-6 / 60.0,
             .irrigation_always = d.irrigation == "always",
             .suction_m3_s = d.suction_l_min * 1e-3 / 60.0};
 }
@@ -52,6 +51,8 @@ DrillSettings burr_settings(const RtConfig& config, std::uint64_t seed) {
         std::max(s.tool.shaft_length_m, s.tool.radius_m + s.tool.length_m + kShaftBeyondHeadM);
     s.burr_rad_s = burr_rad_s(config);
     s.rate_per_s = d.rate_per_s;
+    s.diamond_share = d.diamond_share;
+    s.grit = d.burr_grit == kBurrGritNames[1] ? BurrGrit::diamond : BurrGrit::cutting;
     s.vibration = d.vibration;
     s.force_n_max = std::clamp(config.safety.force_n_max, 0.1, 100.0);
     s.seed = seed;
@@ -66,15 +67,6 @@ DrillSettings suction_tube_settings(const RtConfig& config, std::uint64_t seed) 
     s.tool.radius_m = s.tool.shaft_radius_m = 0.5e-3 * config.drilling.suction_tube_diameter_mm;
     s.tool.shaft_length_m = std::min(kTubeM, 2.0 * kTubeBalls * s.tool.radius_m);
     return s;
-}
-
-bool fit_to_voxels(DrillSettings& s, const SceneMeta& meta, const BoneBricks& bricks) {
-    const double least_m = kRadiusLeast * (1.0 + 1e-9) * meta.world_per_model * bricks.voxel_m;
-    if (!(s.tool.shaft_radius_m > 0.0) || s.tool.shaft_radius_m >= least_m) return false;
-    if (!s.tool.cuts) s.tool.radius_m = least_m;
-    if (least_m > s.tool.radius_m) return false;
-    s.tool.shaft_radius_m = least_m;
-    return true;
 }
 
 std::unique_ptr<DrillModel> load_drill(const SceneFile& scene, const RtConfig& config, std::uint64_t seed,

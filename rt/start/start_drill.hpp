@@ -35,10 +35,6 @@ private:
 // The switch of the burr (hand 0) or of the suction (hand 1).
 [[nodiscard]] DriveInput drill_switch(const RtConfig& config, std::uint32_t hand);
 
-// Widens a shaft or tube that is thinner than a voxel to one voxel; returns true if it did. Leaves a head that is too
-// small unchanged; the model then refuses it.
-[[nodiscard]] bool fit_to_voxels(DrillSettings& settings, const SceneMeta& meta, const BoneBricks& bricks);
-
 // Loads the tool of a hand. The shared scene must outlive it.
 [[nodiscard]] std::unique_ptr<DrillModel> load_drill(const SceneFile& scene, const RtConfig& config,
                                                      std::uint64_t seed, DrillScene& shared,

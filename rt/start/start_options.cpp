@@ -94,6 +94,8 @@ void describe(CLI::App& app, StartOptions& o, StartOverrides& v) {
         ->type_name("button|line|always");
     app.add_option("--burr-mm", v.burr_mm, "Burr diameter (mm)")->type_name("MM");
     app.add_option("--burr-shape", v.burr_shape, "Burr shape")->type_name("sphere|cylinder|cone");
+    app.add_option("--burr-grit", v.burr_grit, "Burr with flutes or with grains of diamond")
+        ->type_name("cutting|diamond");
     app.add_option("--burr-rpm", v.burr_rpm, "Burr speed (rpm)")->type_name("RPM");
     app.add_option("--tool-radius-mm", o.tool_radius_mm,
                    "Radius of the ball that touches a surface (mm in the workspace); 0: a point. For a mesh "
@@ -145,6 +147,7 @@ RtConfig configure(const StartOptions& o, const StartOverrides& v) {
     if (v.pedal) c.drilling.pedal = *v.pedal;
     if (v.burr_mm) c.drilling.burr_diameter_mm = *v.burr_mm;
     if (v.burr_shape) c.drilling.burr_shape = *v.burr_shape;
+    if (v.burr_grit) c.drilling.burr_grit = *v.burr_grit;
     if (v.burr_rpm) c.drilling.burr_rpm = *v.burr_rpm;
     if (v.surface_mode) c.surface.mode = *v.surface_mode;
     if (v.goal_hz) c.governor.goal_hz = *v.goal_hz;

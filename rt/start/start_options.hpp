@@ -35,7 +35,7 @@ struct StartOptions {
 // Values of the command line, which override those of the configuration file.
 struct StartOverrides {
     std::optional<double> rate_hz, goal_hz, display_goal_hz, force_scale;
-    std::optional<std::string> law, hand, hand2, surface_mode, pedal, burr_shape;
+    std::optional<std::string> law, hand, hand2, surface_mode, pedal, burr_shape, burr_grit;
     std::optional<double> burr_mm, burr_rpm;
     std::vector<double> hand_at_mm;
     std::optional<int> core, priority;

@@ -6,6 +6,7 @@
 #include <iterator>
 
 #include "ipc/topics/bodies.hpp"
+#include "ipc/topics/drill.hpp"
 #include "rt/govern/law.hpp"
 
 namespace tact {
@@ -24,6 +25,9 @@ bool read_pose(const CommandTopic& command, ServoOrder& order) {
         order.quat_model_body_xyzw[i] = command.quat_model_body_xyzw[i] / std::sqrt(square);
     return true;
 }
+
+// False: also for what is not a number.
+bool within(double value, double least, double most) { return value >= least && value <= most; }
 
 // Which bodies there are only the servo knows.
 bool read_body_order(const CommandTopic& command, ServoOrder& order) {
@@ -46,6 +50,18 @@ bool read_body_order(const CommandTopic& command, ServoOrder& order) {
         case CommandKind::set_detail_filter:  // how wide a filter may be the model knows
             order.pos_model_m[0] = command.pos_model_m[0];
             return command.body <= 0xFFU && std::isfinite(command.pos_model_m[0]);
+        case CommandKind::set_burr:  // whether the bone's voxels allow it the model knows
+            order.pos_model_m[0] = command.pos_model_m[0];
+            return (command.body & 0xFFU) <= static_cast<std::uint32_t>(DrillShape::cone) &&
+                   (command.body >> 8U) <= static_cast<std::uint32_t>(DrillGrit::diamond) &&
+                   within(command.value, kBurrDiameterLeastM, kBurrDiameterMostM) &&
+                   within(command.pos_model_m[0], 0.0, kBurrLengthMostM);
+        case CommandKind::set_burr_speed:
+            return within(command.value, 0.0, kBurrRadSMost);
+        case CommandKind::set_irrigation:
+            return within(command.value, 0.0, kIrrigationM3SMost);
+        case CommandKind::set_suction:
+            return within(command.value, 0.0, kSuctionM3SMost);
         default:  // options
             return yes_or_no;
     }

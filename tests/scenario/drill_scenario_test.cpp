@@ -18,8 +18,7 @@ struct DrillScenario {
     DrillBone bone{block.bricks, block.density, block.revision};
     DrillModel model{meta(), bone, burr()};
     Lockstep loop;
-    DrillPublisher publisher{
-        loop.region_->drill, loop.region_->touch, {.burr_rad_s = 6283.0, .irrigation_m3_s = 3e-7}};
+    DrillPublisher publisher{loop.region_->drill, loop.region_->touch, {.irrigation_m3_s = 3e-7}};
 
     explicit DrillScenario(bool pedal)
         : loop({}, sim(), nullptr, &model, {},
@@ -121,8 +120,7 @@ struct TwoHands {
     DrillModel burr{meta(), bone, turning()}, suction_tube{meta(), bone, tube()};
     SimLines lines;
     Lockstep loop;
-    DrillPublisher publisher{
-        loop.region_->drill, loop.region_->touch, {.burr_rad_s = 6283.0, .suction_m3_s = 3e-4}};
+    DrillPublisher publisher{loop.region_->drill, loop.region_->touch, {.suction_m3_s = 3e-4}};
 
     explicit TwoHands(DriveSwitch burr_switch = DriveSwitch::button,
                       DriveSwitch suction_switch = DriveSwitch::button)

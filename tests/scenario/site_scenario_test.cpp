@@ -52,8 +52,7 @@ struct WatchedDrill {
         sim.hand.script = "drill";
         sim.hand.press_m = 0.012;
         loop.emplace(servo, sim, nullptr, &*model, SecondHand{}, DriveInput{DriveSwitch::always});
-        publisher.emplace(loop->region_->drill, loop->region_->touch,
-                          DrillRates{.burr_rad_s = 6283.0, .irrigation_m3_s = 3e-7});
+        publisher.emplace(loop->region_->drill, loop->region_->touch, DrillRates{.irrigation_m3_s = 3e-7});
         model->publish_to(*publisher);
         std::string refusal;
         mapped = MappedBoneRegion::map(FileDescriptor(fcntl(region.fd(), F_DUPFD_CLOEXEC, 0)), refusal);

@@ -32,6 +32,7 @@ constexpr PassedOption kDrillController[] = {
      "Switch of the burr: stylus button, foot pedal on an input line, or always on"},
     {"--burr-mm", "MM", "Burr diameter (mm)"},
     {"--burr-shape", "sphere|cylinder|cone", "Burr shape"},
+    {"--burr-grit", "cutting|diamond", "Burr with flutes or with grains of diamond"},
     {"--burr-rpm", "RPM", "Burr speed (rpm)"},
     {"--resume", "FILE.bone",
      "Start with the bone as an earlier run kept it; last: the newest file of this scene"},

@@ -25,6 +25,7 @@ json tool_json(const DrillTopic& drill, const DrillHand& hand) {
     static constexpr std::array kShapes{"sphere", "cylinder", "cone"};
     const auto shape = static_cast<std::size_t>(hand.shape);
     j["shape"] = shape < kShapes.size() ? json(kShapes[shape]) : json(nullptr);
+    j["grit"] = hand.grit == DrillGrit::diamond ? "diamond" : "cutting";
     j["length_mm"] = mm(hand.length_m);
     j["shaft_diameter_mm"] = 2.0 * mm(hand.shaft_radius_m);
     j["rpm"] = static_cast<double>(drill.burr_rad_s_most) * 60.0 / (2.0 * std::numbers::pi);
@@ -82,6 +83,12 @@ std::string performance(const json& drilling) {
                  number(force, "excess_s"));
     text += line("strokes: %.0f, mean length %.1f mm, mean speed %.1f mm/s\n", number(strokes, "count"),
                  number(strokes, "mean_length_mm"), number(strokes, "mean_speed_mm_s"));
+    const json burrs = part(trainee, "burrs");
+    if (burrs.is_array() && burrs.size() > 1)
+        for (const json& b : burrs)
+            text += line("  %.1f mm %s %s: drilling %.1f s, %.1f mm3\n", number(b, "diameter_mm"),
+                         b.value("grit", "").c_str(), b.value("shape", "").c_str(), number(b, "drilling_s"),
+                         number(b, "removed_mm3"));
     if (part(trainee, "burr_visible_share").is_number())
         text += line("burr visible for %.0f %% of the time in which it turned in bone\n",
                      100.0 * number(trainee, "burr_visible_share"));

@@ -17,11 +17,14 @@ void check(double value_m, double least_m, double most_m, const std::string& nam
         "choose from " + std::to_string(1e3 * least_m) + " to " + std::to_string(1e3 * most_m) + " mm");
 }
 
+[[noreturn]] void fail_too_long() {
+    throw StartupError("making a drill",
+                       "its shape needs more than " + std::to_string(DrillTool::kMax) + " balls",
+                       "make head or shaft shorter, or thicker");
+}
+
 void add(DrillTool& tool, double z_m, double radius_m, bool cuts) {
-    if (tool.count == DrillTool::kMax)
-        throw StartupError("making a drill",
-                           "its shape needs more than " + std::to_string(DrillTool::kMax) + " balls",
-                           "make head or shaft shorter, or thicker");
+    if (tool.count == DrillTool::kMax) fail_too_long();
     tool.ball[tool.count++] = {Vec3(0.0, 0.0, z_m), radius_m, 1.0, cuts};
 }
 
@@ -30,7 +33,7 @@ void add_row(DrillTool& tool, double from_m, double from_radius_m, double to_m, 
              bool cuts) {
     const double step_m = 0.5 * std::min(from_radius_m, to_radius_m);
     const double steps = std::max(1.0, std::ceil((to_m - from_m) / step_m - 1e-9));
-    if (!(steps <= DrillTool::kMax)) return add_row(tool, 0.0, 1.0, DrillTool::kMax, 1.0, cuts);  // says so
+    if (!(steps <= DrillTool::kMax)) fail_too_long();
     for (int i = 0; i <= static_cast<int>(steps); ++i) {
         const double s = i / steps;
         add(tool, std::lerp(from_m, to_m, s), std::lerp(from_radius_m, to_radius_m, s), cuts);

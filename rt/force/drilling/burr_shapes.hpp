@@ -29,6 +29,8 @@ struct DrillTool {
 
 enum class BurrShape : std::uint8_t { sphere, cylinder, cone };
 inline constexpr std::array kBurrShapeNames{"sphere", "cylinder", "cone"};
+enum class BurrGrit : std::uint8_t { cutting, diamond };  // flutes, or grains of diamond
+inline constexpr std::array kBurrGritNames{"cutting", "diamond"};
 
 struct DrillToolSettings {
     BurrShape shape = BurrShape::sphere;

@@ -125,7 +125,7 @@ Vec3 DrillModel::shaken_n(const ToolState& tool, double elastic_n) noexcept {
     if (!(settings_.vibration > 0.0) || !(drive_.burr_rad_s > 0.0)) return Vec3::Zero();
     const double turn_rad = std::min(drive_.burr_rad_s * drive_.step_s, 0.2 * std::numbers::pi);
     phase_rad_ = std::fmod(phase_rad_ + turn_rad, 2.0 * std::numbers::pi);
-    return settings_.vibration * std::min(elastic_n, settings_.force_n_max) *
+    return grit_share() * settings_.vibration * std::min(elastic_n, settings_.force_n_max) *
            (tool.T_world_tool.q.normalized() * Vec3(std::cos(phase_rad_), std::sin(phase_rad_), 0.0));
 }
 

@@ -6,7 +6,6 @@
 #include <string>
 
 #include "ipc/base/error.hpp"
-#include "ipc/topics/command.hpp"
 #include "ipc/topics/event.hpp"
 #include "rt/force/drilling/drill_publisher.hpp"
 
@@ -52,13 +51,20 @@ void check_drill_settings(const DrillSettings& s) {
     check_range(s.soft, 1.0, 20.0, "soft");
     check_range(s.force_n_max, 0.1, 100.0, "force_n_max");
     check_range(s.vibration, 0.0, 0.5, "vibration");
+    check_range(s.diamond_share, 0.0, 1.0, "diamond_share");
 }
 
 DrillModel::DrillModel(const SceneMeta& meta, DrillBone& bone, const DrillSettings& settings)
+    : DrillModel(meta, bone, settings, bone.add_tool()) {}
+
+DrillModel::DrillModel(const SceneMeta& meta, DrillBone& bone, const DrillSettings& settings,
+                       std::uint32_t hand)
     : meta_(meta),
       bone_(bone),
-      pushing_bit_(bone.add_tool()),
+      pushing_bit_(hand),
       settings_((check_drill_settings(settings), settings)),
+      started_(settings),
+      spin_rad_s_(settings.burr_rad_s),
       tool_(make_drill_tool(settings.tool)),
       kernels_(best_brick_kernels()),
       erosion_(bone.octree, bone.density, bone.revision, settings.seed, &bone.strokes) {
@@ -96,7 +102,9 @@ DrillModel::DrillModel(const SceneMeta& meta, DrillBone& bone, const DrillSettin
 void DrillModel::drive(const ToolDrive& drive) noexcept {
     ForceModel::drive(drive);
     driven_ = drive;
-    turn_burr({.burr_rad_s = drive.on ? settings_.burr_rad_s : 0.0, .step_s = drive.step_s});
+    const double most = kSpinRadS2 * std::clamp(drive.step_s, 0.0, kStepSMost);
+    spin_rad_s_ += std::clamp(settings_.burr_rad_s - spin_rad_s_, -most, most);
+    turn_burr({.burr_rad_s = drive.on ? spin_rad_s_ : 0.0, .step_s = drive.step_s});
 }
 
 void DrillModel::turn_burr(const BurrDrive& drive) noexcept {
@@ -120,7 +128,9 @@ KnobSpec DrillModel::knob() const noexcept {
 }
 
 double DrillModel::rate_per_s() const noexcept {
-    return cuts_ ? settings_.rate_per_s * drive_.burr_rad_s / settings_.rate_at_rad_s * fade_.gain() : 0.0;
+    return cuts_ ? grit_share() * settings_.rate_per_s * drive_.burr_rad_s / settings_.rate_at_rad_s *
+                       fade_.gain()
+                 : 0.0;
 }
 
 DrillWork DrillModel::expected(float fidelity) const noexcept {
@@ -189,19 +199,13 @@ void DrillModel::forget_depths() noexcept {
     ways_out_.fill(Vec3::Zero());
 }
 
-bool DrillModel::order(const ModelOrder& order) noexcept {
-    if (order.kind != ModelOrder::Kind::setting || !settings_.tool.cuts) return false;
-    const auto command = static_cast<CommandKind>(order.command);
-    if (command == CommandKind::undo_stroke) return bone_.strokes.undo();
-    return command == CommandKind::redo_stroke && bone_.strokes.redo();
-}
-
 ModelBodies DrillModel::bodies() const noexcept {
     ModelBodies list;
     list.count = 1;
     list.T_model_body[0] = T_model_tool_;
     list.id[0] = 1;
     list.grips = grips_;
+    list.tools = tools_;
     return list;
 }
 
@@ -241,7 +245,8 @@ StepResult DrillModel::step(const ToolState& tool, const Budget& budget) noexcep
             led_ = false;
             ++jumps_;
         }
-        const bool exchanging = bone_.strokes.exchanging(), held = exchanging || (tool.buttons & 1U) != 0;
+        const bool exchanging = bone_.strokes.exchanging(),
+                   held = exchanging || burr_asked_ || (tool.buttons & 1U) != 0;
         if (exchanging) led_ = false;
         if (exchanged_ && !exchanging) forget_depths();
         exchanged_ = exchanging;

@@ -15,6 +15,8 @@
 // Jumps    a tool that goes farther in a step than kJumpRadii of its radius, and 5 mm, was not led there by a hand: it
 //          cuts nothing on the way; counted.
 // Clutch   held, the force fades out and nothing is cut. Reset: the force fades in from zero, and cutting with it.
+// Burr     an order gives the hand another head: the force fades out, a model of the new tool is built aside (rebuild())
+//          and continues from the old one (adopt()): its force fades in. Its speed follows orders by kSpinRadS2.
 // Undo     the tool that cuts takes the orders to undo and redo a stroke (stroke_history.hpp). All tools' forces fade out,
 //          bricks are exchanged where there is no force, and the forces fade in again.
 // Repeats  the same poses, drives and seed give the same forces and densities, bit by bit, where no step was late.
@@ -28,6 +30,7 @@
 #include <span>
 
 #include "ipc/scene/file/scene_meta.hpp"
+#include "ipc/topics/command.hpp"
 #include "rt/force/drilling/ball_moments.hpp"
 #include "rt/force/drilling/burr_forces.hpp"
 #include "rt/force/drilling/burr_shapes.hpp"
@@ -43,6 +46,8 @@ namespace tact {
 
 struct DrillSettings {
     DrillToolSettings tool;
+    BurrGrit grit = BurrGrit::cutting;
+    double diamond_share = 0.3;  // of a diamond burr: its rate and vibration over those of a cutting one
     BurrLaw law;
     // c_e of each ball by elastic_for(); 0: law.elastic_pa of all.
     double depth_at_1_n_m = 1.25e-3;
@@ -65,6 +70,9 @@ class DrillPublisher;
 
 // Fails by StartupError where one is out of range.
 void check_drill_settings(const DrillSettings& settings);
+// Widens a shaft or tube that is thinner than a voxel to one voxel; returns true if it did. Leaves a head that is too
+// small unchanged; the model then refuses it.
+[[nodiscard]] bool fit_to_voxels(DrillSettings& settings, const SceneMeta& meta, const BoneBricks& bricks);
 
 class DrillModel : public ForceModel {
 public:
@@ -74,10 +82,13 @@ public:
     static constexpr double kJumpRadii = 4.0, kJumpM = 5e-3;
     static constexpr double kRadiusMost = 200.0;  // voxels
     static constexpr double kStepSMost = 0.1;     // that a step, or steps that were late, can stand for
+    static constexpr double kSpinRadS2 = 2e4;     // of the burr, to a speed that was ordered
+    static constexpr double kNeckShare = 0.8;     // of a small head's radius: its shaft's
+    static constexpr double kShaftBallsMost =
+        18.0;  // of a burr that was ordered: a thin shaft is felt over less of its length
 
     // The bone must outlive the model.
     DrillModel(const SceneMeta& meta, DrillBone& bone, const DrillSettings& settings);
-    ~DrillModel() override { bone_.pushing &= ~pushing_bit_; }
     DrillModel(const DrillModel&) = delete;
     DrillModel& operator=(const DrillModel&) = delete;
 
@@ -93,6 +104,11 @@ public:
     [[nodiscard]] PathLoad predict(float fidelity) const noexcept TACT_RT override;
     void reset(const ToolState& tool) noexcept TACT_RT override;
     bool order(const ModelOrder& order) noexcept TACT_RT override;
+    // Another burr was ordered.
+    [[nodiscard]] bool stale() const noexcept TACT_RT override { return burr_asked_; }
+    [[nodiscard]] std::unique_ptr<ForceModel> rebuild(const ModelBodies& bodies) const override;
+    bool adopt(const ForceModel& old) noexcept TACT_RT override;
+    void give_up() noexcept TACT_RT override { burr_asked_ = false; }
     // The head's on a flat surface at force_n_max or, where bone on several sides makes it stiffer, as measured
     // (drill_stiffness.hpp).
     [[nodiscard]] ModelStiffness stiffness() const noexcept TACT_RT override {
@@ -138,6 +154,15 @@ public:
     [[nodiscard]] static BlockDetail detail_of(float fidelity) noexcept TACT_RT;
 
 private:
+    // hand: a bit of DrillBone::pushing.
+    DrillModel(const SceneMeta& meta, DrillBone& bone, const DrillSettings& settings, std::uint32_t hand);
+    // A head that voxels and sizes allow. Another one is not asked for before it is in the hand.
+    [[nodiscard]] bool ask_for_burr(const ModelOrder& order) noexcept TACT_RT;
+    [[nodiscard]] bool set_drive(CommandKind kind, double value) noexcept TACT_RT;
+    [[nodiscard]] double grit_share() const noexcept TACT_RT {
+        return settings_.grit == BurrGrit::diamond ? settings_.diamond_share : 1.0;
+    }
+
     static constexpr BlockDetail kLate{.block = kBlockMost, .rough = 1.0};
     struct BallForces {
         Wrench wrench;           // at the tool's origin, world, before limits
@@ -169,7 +194,14 @@ private:
     SceneMeta meta_;
     DrillBone& bone_;
     std::uint32_t pushing_bit_;
-    DrillSettings settings_;
+    DrillSettings settings_, started_;  // of this tool; of the one that the scene began with
+    struct Burr {
+        BurrShape shape = BurrShape::sphere;
+        BurrGrit grit = BurrGrit::cutting;
+        double radius_m = 0.0, length_m = 0.0;
+    } burr_;                   // asked for
+    bool burr_asked_ = false;  // burr_ stays as it is while this holds: rebuild() reads it
+    double spin_rad_s_ = 0.0;  // while the drive is on; settings_.burr_rad_s is where it goes
     DrillTool tool_;
     const BrickKernels& kernels_;
     Erosion erosion_;
@@ -198,7 +230,7 @@ private:
     double depth_ = 0.0, elastic_n_ = 0.0, phase_rad_ = 0.0;
     BurrForce head_;  // of the deepest ball of the head
     Pose T_model_tool_;
-    std::uint64_t grips_ = 0, postponed_ = 0, jumps_ = 0;
+    std::uint64_t grips_ = 0, tools_ = 0, postponed_ = 0, jumps_ = 0;
 };
 
 }  // namespace tact

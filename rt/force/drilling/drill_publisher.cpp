@@ -9,7 +9,9 @@ namespace {
 
 static_assert(static_cast<int>(BurrShape::sphere) == static_cast<int>(DrillShape::sphere) &&
               static_cast<int>(BurrShape::cylinder) == static_cast<int>(DrillShape::cylinder) &&
-              static_cast<int>(BurrShape::cone) == static_cast<int>(DrillShape::cone));
+              static_cast<int>(BurrShape::cone) == static_cast<int>(DrillShape::cone) &&
+              static_cast<int>(BurrGrit::cutting) == static_cast<int>(DrillGrit::cutting) &&
+              static_cast<int>(BurrGrit::diamond) == static_cast<int>(DrillGrit::diamond));
 
 TouchTopic touch_of(const DrillModel& tool, const ModelCycle& cycle) noexcept {
     TouchTopic t{};
@@ -50,6 +52,7 @@ DrillHand hand_of(const DrillModel& tool, const ModelCycle& cycle, const DrillRa
     h.cut_levels = static_cast<std::uint32_t>(tool.cut().removed);
     h.kind = s.cuts ? DrillKind::burr : DrillKind::suction_tube;
     h.shape = static_cast<DrillShape>(s.shape);
+    h.grit = static_cast<DrillGrit>(tool.settings().grit);
     h.irrigation = s.cuts && wet ? 1.0F : 0.0F;
     h.suction = !s.cuts && sucks ? 1.0F : 0.0F;
     return h;
@@ -63,6 +66,10 @@ void DrillPublisher::add(const DrillModel& tool, const ModelCycle& cycle) noexce
     next_.hand[cycle.hand] = hand_of(tool, cycle, rates_);
     removed_ += static_cast<std::int64_t>(tool.removed_levels());
     next_.level_m3 = tool.level_m3();
+    if (tool.settings().tool.cuts) {
+        next_.burr_rad_s_most = static_cast<float>(tool.settings().burr_rad_s);
+        next_.changing_burr = tool.stale() ? 1 : 0;
+    }
     if (++added_ < tools_) return;
     const StrokeHistory& strokes = tool.bone().strokes;
     next_.removed_levels =
@@ -74,7 +81,6 @@ void DrillPublisher::add(const DrillModel& tool, const ModelCycle& cycle) noexce
     next_.exchanging = strokes.exchanging() ? 1 : 0;
     next_.taken_at_ns = to_ns(cycle.now);
     next_.cycle = cycle.cycle;
-    next_.burr_rad_s_most = static_cast<float>(rates_.burr_rad_s);
     next_.irrigation_m3_s_most = static_cast<float>(rates_.irrigation_m3_s);
     next_.suction_m3_s_most = static_cast<float>(rates_.suction_m3_s);
     drill_.publish(next_);

@@ -16,7 +16,6 @@ class DrillModel;
 
 // What the drives give; shown, and felt by nobody.
 struct DrillRates {
-    double burr_rad_s = 0.0;
     double irrigation_m3_s = 0.0;    // of water on the burr while it turns
     bool irrigation_always = false;  // also while it stands
     double suction_m3_s = 0.0;
@@ -28,6 +27,7 @@ public:
         : drill_(drill), touch_(touch), rates_(rates) {}
 
     void attach() { ++tools_; }
+    [[nodiscard]] DrillRates& rates() noexcept TACT_RT { return rates_; }
     void add(const DrillModel& tool, const ModelCycle& cycle) noexcept TACT_RT;
 
 private:

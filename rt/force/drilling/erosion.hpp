@@ -53,6 +53,11 @@ public:
     Erosion(MomentOctree& octree, std::span<std::uint8_t> density, std::span<std::uint32_t> revision,
             std::uint64_t seed, StrokeHistory* strokes = nullptr);
 
+    // Continues where another left off: its random numbers, and what it removed.
+    void follow(const Erosion& before) noexcept TACT_RT {
+        passes_ = before.passes_;
+        removed_ = before.removed_;
+    }
     // Begins a pass: the dust of the one before is forgotten.
     void begin() noexcept TACT_RT;
     void cut(const BrickKernels& kernels, const CuttingBall& ball) noexcept TACT_RT;
