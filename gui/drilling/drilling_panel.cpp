@@ -23,7 +23,7 @@ void tools(const Theme& theme, const DrillingState& d) {
     const std::string size = mm_text(d.burr.diameter_m) + grit + kShapes[std::clamp(d.burr.shape, 0, 2)];
     std::string does =
         d.burr.rpm > 0.0 ? grouped(static_cast<std::uint64_t>(std::llround(d.burr.rpm))) + " rpm" : "stopped";
-    if (d.burr.water) does += ", water";
+    if (d.burr.water) does += ", wet";
     row(theme, "Burr", size, d.changing_burr ? std::string("changing") : does);
     if (d.suction_tube.valid)
         row(theme, "Suction tube", mm_text(d.suction_tube.diameter_m),

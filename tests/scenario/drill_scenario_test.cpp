@@ -1,11 +1,14 @@
 // Drilling in the whole loop, in lockstep: when and how much is cut, two hands on one bone, pedals, published data.
 #include <gtest/gtest.h>
+#include <poll.h>
+#include <unistd.h>
 
 #include <numeric>
 
 #include "hal/sim/sim_lines.hpp"
 #include "rt/force/drilling/drill_model.hpp"
 #include "rt/force/drilling/drill_publisher.hpp"
+#include "rt/threads/model_builder.hpp"
 #include "tests/scenario/lockstep.hpp"
 #include "tests/support/bone_block.hpp"
 
@@ -244,6 +247,58 @@ TEST(TwoHandsScenario, a_lost_suction_tube_stops_both_hands) {
     EXPECT_EQ(t.loop.state(), RunState::fault);
     EXPECT_EQ(t.loop.drill().hand[0].burr_rad_s, 0.0F);
     EXPECT_EQ(t.loop.shown_n(), 0.0);
+}
+
+// An order to the servo, a model from the builder's thread: another burr, at the level that fits it, in a run that goes on.
+TEST(DrillScenario, another_burr_is_built_aside_and_taken_while_the_hand_drills) {
+    BoneBlock block{64, 5e-4, [](const Vec3& v) { return v.z() < 22.0 ? 1.0 : 0.0; }, 1};
+    DrillBone bone{block.bricks, block.density, block.revision};
+    auto first = std::make_unique<DrillModel>(DrillScenario::meta(), bone, DrillScenario::burr());
+    DrillModel* const burr = first.get();
+    Lockstep loop({}, DrillScenario::sim(), nullptr, burr, {}, {DriveSwitch::always, kLineBurr});
+    DrillPublisher publisher{loop.region_->drill, loop.region_->touch, {}};
+    burr->publish_to(publisher);
+    ModelBuilder builder(loop.mailbox_, gettid());
+    loop.active();
+    loop.cycles(1500);
+    const std::uint64_t removed = loop.drill().removed_levels, levels = loop.levels().sequence;
+    ASSERT_GT(removed, 0U);
+    const auto order = [&](double diameter_m) {
+        loop.mailbox_.orders.push({.sequence = ++loop.sequence_,
+                                   .value = diameter_m,
+                                   .kind = static_cast<std::uint32_t>(CommandKind::set_burr),
+                                   .index = 0,
+                                   .body = 256U * static_cast<std::uint32_t>(DrillGrit::diamond)});
+        loop.cycles(1);
+        return static_cast<CommandResult>(loop.health().command_result & 0xFFFFU);
+    };
+    EXPECT_EQ(order(0.5e-3), CommandResult::refused_value);  // below a voxel
+    EXPECT_EQ(order(6e-3), CommandResult::done);
+    EXPECT_EQ(loop.drill().changing_burr, 1);
+    EXPECT_EQ(order(5e-3), CommandResult::refused_value);  // one at a time
+    for (int i = 0; i < 20000 && loop.drill().changing_burr == 1; ++i) {
+        builder.poll();
+        static_cast<void>(first.release());  // the servo gave it back, and collect() frees it
+        loop.mailbox_.model.collect().reset();
+        loop.cycles(2);
+        ::poll(nullptr, 0, 1);
+    }
+    DrillTopic t = loop.drill();
+    EXPECT_FLOAT_EQ(t.hand[0].radius_m, 3e-3F);
+    EXPECT_EQ(t.hand[0].grit, DrillGrit::diamond);
+    EXPECT_EQ(loop.said(EventCode::model_swapped), 1);
+    EXPECT_GT(loop.levels().sequence, levels);  // the governor knows the new cost
+    loop.cycles(2000);
+    loop.mailbox_.model.collect().reset();
+    EXPECT_EQ(loop.state(), RunState::active);
+    t = loop.drill();
+    EXPECT_GT(t.removed_levels, removed);
+    // Every level that is missing was published, whichever burr took it.
+    const auto whole = std::uint64_t{255} * 64 * 64 * 22;
+    EXPECT_EQ(t.removed_levels,
+              whole - std::accumulate(block.density.begin(), block.density.end(), std::uint64_t{0}));
+    // The last model is the servo's, until the loop ends.
+    const std::unique_ptr<ForceModel> last(loop.servo_->state().hand[0].model);
 }
 
 }  // namespace
