@@ -47,6 +47,7 @@ struct PassedFlag {
 };
 constexpr PassedFlag kVisualFlags[] = {
     {"--traces", "Start with traces of every servo cycle instead of the plots"},
+    {"--mute", "No sound of the drill"},
     {"--swap-eyes", "Swap the images of the two eyes"},
     {"--test-picture", "Start with the stereo test image, which checks eyes, scale and tool"},
 };

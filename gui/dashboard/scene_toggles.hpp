@@ -9,6 +9,7 @@ struct SceneToggles {
     bool depth_cue = true;
     bool smooth_edges = true;  // initially as the renderer allows; not saved
     bool frame_times = false;  // the table of passes
+    bool sound = true;         // of the drill
     bool detail = false;       // edge lengths as colour, if the scene has a forest
     int molecule = 1;          // trace, tube, sticks, spheres
     int colouring = 0;         // by chain, element, body

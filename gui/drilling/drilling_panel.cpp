@@ -142,6 +142,12 @@ void DrillingPanels::draw_in_scene_card(const Theme& theme, DashboardState& stat
     ImGui::SameLine(theme.px(130.0F));
     ImGui::Checkbox("Smooth edges", &state.toggles.smooth_edges);
     ImGui::Checkbox("Force arrow", &state.toggles.force);
+    ImGui::SameLine(theme.px(130.0F));
+    ImGui::BeginDisabled(!sound.empty());
+    ImGui::Checkbox("Sound", &state.toggles.sound);
+    ImGui::EndDisabled();
+    if (!sound.empty() && ImGui::IsItemHovered(ImGuiHoveredFlags_AllowWhenDisabled))
+        ImGui::SetTooltip("no sound: %s", sound.c_str());
 }
 
 void DrillingPanels::draw_over_view(const OverlayPen& pen, const DashboardState& state,

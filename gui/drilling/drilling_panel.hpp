@@ -60,6 +60,7 @@ public:
     float bone_shown = 1.0F;  // fraction of the bone in graphics memory
     std::array<std::uint32_t, 3> voxels{};
     double voxel_m = 0.0;  // edge
+    std::string sound;     // why there is none; empty: there is
 
     [[nodiscard]] CardSize card_size() const override { return {347.0F, 0.42F}; }
     void draw_card(const Theme& theme, const PixelRect& card, DashboardState& state) const override;

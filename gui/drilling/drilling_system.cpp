@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <optional>
 #include <string_view>
 #include <utility>
@@ -18,7 +19,9 @@ namespace {
 constexpr double kFillS = 12e-3;       // per frame, to upload bone
 constexpr float kBurrsShown = 4.0F;    // radii around a burr in close view
 constexpr float kArrowShare = 0.006F;  // thickness of the force arrow, which stands beside the burr
-constexpr float kBesideRadii = 1.8F;   // of the burr
+constexpr double kLoadM3S = 12e-9;     // of bone: two thirds of the load that is heard
+constexpr double kLoadS = 0.05;
+constexpr float kBesideRadii = 1.8F;  // of the burr
 
 Eigen::Vector4f glow_of(Grade nearness) {
     if (nearness == Grade::bad) return {1.0F, 0.16F, 0.10F, 0.75F};
@@ -49,6 +52,7 @@ void DrillingSystem::use(const std::shared_ptr<const SceneContent>& content,
     site_->keep(options_.particles);
     layer_->show_bone(*bone, *bone_.volume());
     reach_a_ = layer_->bone()->reach_a();
+    if (!options_.mute && sound_ == nullptr) sound_ = std::make_unique<SoundDevice>(voice_);
 }
 
 void DrillingSystem::close() {
@@ -58,6 +62,8 @@ void DrillingSystem::close() {
     site_.reset();
     bone_.use(nullptr);
     controller_.use(nullptr);
+    sound_.reset();
+    voice_.set({});
     content_.reset();
     reach_a_ = 0.0F;
     panels_.drilling = {};
@@ -72,6 +78,7 @@ void DrillingSystem::attach(const SystemContext& context) {
 void DrillingSystem::follow(const SystemContext& context) {
     bone_.follow();
     controller_.follow(context.controller, bone_.changes(), context.state, panels_.drilling);
+    sound(context);
 }
 
 bool DrillingSystem::perform(KeyAction what, std::size_t place, const SystemContext& context) {
@@ -103,6 +110,36 @@ bool DrillingSystem::perform(KeyAction what, std::size_t place, const SystemCont
         default:
             return false;
     }
+}
+
+void DrillingSystem::sound(const SystemContext& context) {
+    panels_.sound = options_.mute                                                         ? "muted by --mute"
+                    : sound_ == nullptr || sound_->state() == SoundDevice::State::opening ? "no scene"
+                    : sound_->state() == SoundDevice::State::none                         ? sound_->problem()
+                                                                                          : std::string();
+    if (sound_ == nullptr) return;
+    sound_->mute(!context.state.toggles.sound);
+    const Controller& controller = context.controller;
+    if (!controller.attached() || !controller.have_drill) return voice_.set({});
+    const DrillHand &burr = controller.drill.hand[0], &tube = controller.drill.hand[1];
+    const double dt_s = 1e-9 * static_cast<double>(controller.drill.taken_at_ns - heard_ns_);
+    if (dt_s > 0.0) {
+        const double taken_m3 =
+            burr.removed_levels >= heard_levels_
+                ? controller.drill.level_m3 * static_cast<double>(burr.removed_levels - heard_levels_)
+                : 0.0;
+        load_ += (1.0 - std::exp(-std::min(dt_s, 1.0) / kLoadS)) *
+                 (1.0 - std::exp(-taken_m3 / std::min(dt_s, 1.0) / kLoadM3S) - load_);
+        heard_levels_ = burr.removed_levels;
+        heard_ns_ = controller.drill.taken_at_ns;
+    }
+    const Grade near = panels_.drilling.nearness;
+    voice_.set({.turns_hz = burr.burr_rad_s / (2.0F * std::numbers::pi_v<float>),
+                .load = static_cast<float>(load_),
+                .suction = tube.suction,
+                .signal = near == Grade::bad     ? NearSignal::close
+                          : near == Grade::watch ? NearSignal::near
+                                                 : NearSignal::none});
 }
 
 TrayBurr DrillingSystem::in_hand() const {

@@ -20,6 +20,7 @@
 #include "gui/drilling/particle_pace.hpp"
 #include "gui/drilling/ray_pace.hpp"
 #include "gui/drilling/site_effects.hpp"
+#include "gui/drilling/sound/sound_device.hpp"
 #include "gui/system/scene_system.hpp"
 
 namespace tact {
@@ -28,6 +29,7 @@ struct DrillingOptions {
     std::string report;           // JSON, at the end; empty: none
     std::uint32_t particles = 0;  // always this many over the bone (SiteEffects::keep()); 0: off
     bool near_burr = false;       // moves the view to the burr once it is in bone
+    bool mute = false;            // no sound
 };
 
 class DrillingSystem : public SceneSystem {
@@ -55,6 +57,7 @@ private:
     [[nodiscard]] std::uint32_t rays_most(const ViewFrame& frame, bool sharp, const SystemContext& context);
     [[nodiscard]] float particles_share(const SystemContext& context) const;
     void approach_burr(const SystemContext& context) const;
+    void sound(const SystemContext& context);
     [[nodiscard]] TrayBurr in_hand() const;
     void take_burr(const TrayBurr& burr, const SystemContext& context) const;
 
@@ -73,6 +76,11 @@ private:
     bool near_burr_wanted_ = options_.near_burr;
     DrillController controller_;
     DrillHands hands_;
+    DrillVoice voice_;
+    std::unique_ptr<SoundDevice> sound_;  // plays the voice; null: muted, or no scene
+    std::uint64_t heard_levels_ = 0;      // removed by the burr
+    std::int64_t heard_ns_ = 0;
+    double load_ = 0.0;
 };
 
 }  // namespace tact

@@ -32,6 +32,7 @@ bool parse_gui_options(int argc, const char* const* argv, GuiOptions& options, i
         ->check(CLI::Range(0.0, 1e7));
     app.add_option("--screenshot", options.screenshot, "Write a PNG of the last frame at the end")
         ->type_name("FILE.png");
+    app.add_flag("--mute", options.mute, "No sound, whatever the window's settings say");
     app.add_option("--report", options.report, "Write a report of a drilling scene as JSON at the end")
         ->type_name("FILE.json");
     app.add_option("--frames", options.frames,

@@ -37,6 +37,7 @@ struct GuiOptions {
     MoleculeLook look;                             // of all bodies at the start
     std::vector<ContourOption> contours;           // empty: the scene's own
     bool depth_cue = true;
+    bool mute = false;             // no sound
     bool near_burr = false;        // close view once it is in bone
     std::uint32_t particles = 0;   // constant number over bone
     bool bench_particles = false;  // instead of a window

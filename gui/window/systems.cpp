@@ -32,7 +32,7 @@ std::unique_ptr<SceneSystem> make_surface(const GuiOptions& options) {
 
 std::unique_ptr<SceneSystem> make_drilling(const GuiOptions& options) {
     return std::make_unique<DrillingSystem>(
-        DrillingOptions{options.report, options.particles, options.near_burr});
+        DrillingOptions{options.report, options.particles, options.near_burr, options.mute});
 }
 
 std::unique_ptr<SceneSystem> make_field(const GuiOptions& options) {

@@ -80,6 +80,10 @@ protected:
         t.taken_at_ns = 1'000'000LL * ms_;
         t.level_m3 = std::pow(kVoxelM, 3) / 255.0;
         t.removed_levels = 2550;
+        t.burr_rad_s_most = 5000.0F;
+        t.irrigation_m3_s_most = 3e-7F;
+        t.suction_m3_s_most = 2e-4F;
+        t.changing_burr = 1;
         DrillHand& h = t.hand[0];
         h.kind = DrillKind::burr;
         h.pos_model_m[0] = x_m;
@@ -137,6 +141,11 @@ TEST_F(DrillControllerTest, shows_tools_and_distances_in_world_units) {
     EXPECT_NEAR(d.burr.rpm, 60000.0, 0.1);
     EXPECT_TRUE(d.burr.water && !d.burr.suction);
     EXPECT_TRUE(d.suction_tube.valid && d.suction_tube.suction && !d.suction_tube.water);
+    EXPECT_EQ(d.burr.grit, DrillGrit::cutting);
+    EXPECT_NEAR(d.burr_rad_s_most, 5000.0, 1e-3);
+    EXPECT_NEAR(d.irrigation_m3_s, 3e-7, 1e-12);
+    EXPECT_NEAR(d.suction_m3_s, 2e-4, 1e-9);
+    EXPECT_TRUE(d.changing_burr);
     EXPECT_NEAR(d.removed_m3, 10.0 * std::pow(kVoxelM, 3), 1e-15);
     ASSERT_EQ(d.structures.size(), 1U);
     EXPECT_EQ(d.structures[0].name, "facial nerve");
@@ -149,13 +158,17 @@ TEST_F(DrillControllerTest, reports_once_that_the_burr_is_near_and_again_only_af
     attach();
     burr(6.2e-3, false);  // 1.8 mm away, burr off
     EXPECT_TRUE(state_.events.empty());
+    EXPECT_EQ(drilling_.nearness, Grade::good);
     burr(5e-3, true);
+    EXPECT_EQ(drilling_.nearness, Grade::good);
     for (int i = 0; i < 5; ++i) burr(6.2e-3, true);
     EXPECT_EQ(message("burr 1.8 mm from the facial nerve"), 1);
     EXPECT_EQ(state_.events.front().grade, Grade::watch);
+    EXPECT_EQ(drilling_.nearness, Grade::watch);
     for (int i = 0; i < 5; ++i) burr(7.1e-3, true);
     EXPECT_EQ(message("burr 0.9 mm from the facial nerve"), 1);
     EXPECT_EQ(state_.events.front().grade, Grade::bad);
+    EXPECT_EQ(drilling_.nearness, Grade::bad);
     burr(6.9e-3, true);  // 1.1 mm: not far enough
     burr(7.1e-3, true);
     EXPECT_EQ(state_.events.size(), 2U);

@@ -225,6 +225,50 @@ TEST(DrillMetrics, split_removed_bone_by_structure_and_nearness_and_count_injuri
     EXPECT_EQ(m.metrics().near_levels[0], 0U);
 }
 
+TEST(DrillMetrics, each_burr_has_its_own_times_and_bone) {
+    Ear ear;
+    DrillMetrics m(ear.bricks, ear.labels, ear.fields, ear.meta);
+    DrillTopic t = tools(5e-3);
+    const auto use = [&](float radius_m, DrillGrit grit, std::uint64_t levels) {
+        t.hand[0].radius_m = radius_m;
+        t.hand[0].grit = grit;
+        t.hand[0].removed_levels += levels;
+        m.tools(t);
+    };
+    int ms = 0;
+    const auto drill = [&](int cycles, std::uint32_t flags) {
+        for (int i = 0; i < cycles; ++i) m.cycle(cycle(++ms, 5e-3, 0.5, flags));
+    };
+    t.hand[0].removed_levels = 1000;  // by a burr before the window looked
+    use(2e-3F, DrillGrit::cutting, 0);
+    drill(101, kTraceBurrTurns | kTraceCuts);
+    use(2e-3F, DrillGrit::cutting, 300);
+    use(1e-3F, DrillGrit::diamond, 20);  // the last of the first burr
+    drill(200, kTraceBurrTurns);
+    use(1e-3F, DrillGrit::diamond, 7);
+    use(2e-3F, DrillGrit::cutting, 0);
+    drill(50, kTraceBurrTurns | kTraceCuts);
+    use(2e-3F, DrillGrit::cutting, 5);
+    const std::vector<BurrUse> burrs = m.metrics().burr;
+    ASSERT_EQ(burrs.size(), 2U);
+    EXPECT_NEAR(burrs[0].diameter_m, 4e-3, 1e-9);
+    EXPECT_EQ(burrs[0].grit, DrillGrit::cutting);
+    EXPECT_NEAR(burrs[0].drilling_s, 0.150, 1e-9);
+    EXPECT_NEAR(burrs[0].cutting_s, 0.150, 1e-9);
+    EXPECT_EQ(burrs[0].removed_levels, 325U);
+    EXPECT_EQ(burrs[1].grit, DrillGrit::diamond);
+    EXPECT_NEAR(burrs[1].drilling_s, 0.200, 1e-9);
+    EXPECT_EQ(burrs[1].cutting_s, 0.0);
+    EXPECT_EQ(burrs[1].removed_levels, 7U);
+    const nlohmann::json j = drill_report(m.metrics(), ear.labels, {});
+    EXPECT_EQ(j["burrs"][1]["grit"], "diamond");
+    EXPECT_EQ(j["burrs"][0]["shape"], "sphere");
+    EXPECT_NEAR(j["burrs"][0]["removed_mm3"].get<double>(), 325.0 * 1e9 * m.metrics().level_m3, 1e-9);
+    // More kinds than a run ever has: the table stays bounded.
+    for (int i = 0; i < 1000; ++i) use(1e-3F + 2e-5F * static_cast<float>(i), DrillGrit::cutting, 1);
+    EXPECT_LE(m.metrics().burr.size(), 64U);
+}
+
 TEST(DrillMetrics, bone_on_all_sides_counts_when_it_lasts) {
     Ear ear;
     DrillMetrics m(ear.bricks, ear.labels, ear.fields, ear.meta);
