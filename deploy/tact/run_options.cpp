@@ -37,6 +37,9 @@ constexpr PassedOption kVisual[] = {
     {"--stereo", "off|anaglyph|side-by-side|top-bottom|two-windows|quad-buffer", "Stereo mode of the window"},
     {"--window-state", "FILE.toml",
      "Settings of the window (TOML), read at the start if the file exists and written at the end"},
+    {"--training", "FILE.toml", "Training task of a drilling scene; see deploy/tact/drilling/README.md"},
+    {"--trainee", "NAME", "Name of the trainee, for the report"},
+    {"--training-folder", "DIR", "Folder of training reports; default: in $XDG_STATE_HOME/tact"},
     {"--stage", "FILE.toml", "Positions of screen, eyes and workspace (TOML); see gui/stereo/README.md"},
     {"--stage-screenshot", "FILE.png", "Screenshot of the stereo image at the end"},
 };
@@ -116,6 +119,9 @@ void RunOptions::settle() {
     }
     if (!gui && !screenshot.empty())
         throw StartupError("reading the options", "--screenshot needs a window, and --no-gui starts none",
+                           "remove one of the two; --headless draws without a screen");
+    if (!gui && std::find(visual.begin(), visual.end(), "--training") != visual.end())
+        throw StartupError("reading the options", "--training needs a window, and --no-gui starts none",
                            "remove one of the two; --headless draws without a screen");
     if (!json.empty()) json = std::filesystem::absolute(json);
     if (!flight.empty()) flight = std::filesystem::absolute(flight);

@@ -139,9 +139,12 @@ void DrillController::follow(Controller& controller, std::span<const BrickChange
     }
 }
 
-void DrillController::save(const std::string& path, const std::optional<BurrVisibility>& visibility) const {
+void DrillController::save(const std::string& path, const std::optional<BurrVisibility>& visibility,
+                           const nlohmann::json& more) const {
     if (path.empty() || !metrics_) return;
-    write_drill_report(path, drill_report(metrics_->metrics(), bone_->labels, visibility));
+    nlohmann::json report = drill_report(metrics_->metrics(), bone_->labels, visibility);
+    if (more.is_object()) report.update(more);
+    write_drill_report(path, report);
 }
 
 }  // namespace tact

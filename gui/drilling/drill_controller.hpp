@@ -6,6 +6,7 @@
 
 #include <array>
 #include <memory>
+#include <nlohmann/json.hpp>
 #include <optional>
 #include <span>
 #include <string>
@@ -26,8 +27,13 @@ public:
     void meet() { missed_ = 0; }
     void follow(Controller& controller, std::span<const BrickChange> changes, DashboardState& dashboard,
                 DrillingState& state);
-    // Does nothing for an empty path or a scene without bone. Throws StartupError.
-    void save(const std::string& path, const std::optional<BurrVisibility>& visibility) const;
+    // None in a scene without bone.
+    [[nodiscard]] std::optional<DrillMetricsRow> metrics() const {
+        return metrics_ ? std::optional(metrics_->metrics()) : std::nullopt;
+    }
+    // Does nothing for an empty path or a scene without bone. more: added to the report. Throws StartupError.
+    void save(const std::string& path, const std::optional<BurrVisibility>& visibility,
+              const nlohmann::json& more = nullptr) const;
 
 private:
     enum class Nearness : std::uint8_t { far, amber, red };

@@ -152,6 +152,7 @@ void DrillingPanels::draw_in_scene_card(const Theme& theme, DashboardState& stat
 
 void DrillingPanels::draw_over_view(const OverlayPen& pen, const DashboardState& state,
                                     const PixelRect& v) const {
+    draw_training(pen, training, v);
     if (drilling.nearness == Grade::good || !state.attached) return;
     const bool red = drilling.nearness == Grade::bad;
     // Slower than three times a second, for those whom flashing harms.

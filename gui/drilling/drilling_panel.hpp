@@ -10,6 +10,7 @@
 
 #include "gui/dashboard/pixel_rect.hpp"
 #include "gui/dashboard/theme.hpp"
+#include "gui/drilling/training/training_panel.hpp"
 #include "gui/system/system_panels.hpp"
 #include "ipc/topics/drill.hpp"
 
@@ -61,11 +62,12 @@ public:
     std::array<std::uint32_t, 3> voxels{};
     double voxel_m = 0.0;  // edge
     std::string sound;     // why there is none; empty: there is
+    TrainingShown training;
 
     [[nodiscard]] CardSize card_size() const override { return {347.0F, 0.42F}; }
     void draw_card(const Theme& theme, const PixelRect& card, DashboardState& state) const override;
     void draw_in_scene_card(const Theme& theme, DashboardState& state) override;
-    // An edge around the view while the turning burr is near a critical structure.
+    // The checklist of a training task, and an edge around the view while the turning burr is near a critical structure.
     void draw_over_view(const OverlayPen& pen, const DashboardState& state,
                         const PixelRect& view) const override;
     [[nodiscard]] std::string drawn_text(const DashboardState& state) const override;

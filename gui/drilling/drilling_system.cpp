@@ -52,6 +52,7 @@ void DrillingSystem::use(const std::shared_ptr<const SceneContent>& content,
     site_->keep(options_.particles);
     layer_->show_bone(*bone, *bone_.volume());
     reach_a_ = layer_->bone()->reach_a();
+    begin_training(*bone);
     if (!options_.mute && sound_ == nullptr) sound_ = std::make_unique<SoundDevice>(voice_);
 }
 
@@ -64,6 +65,9 @@ void DrillingSystem::close() {
     controller_.use(nullptr);
     sound_.reset();
     voice_.set({});
+    training_.reset();
+    before_.clear();
+    panels_.training = {};
     content_.reset();
     reach_a_ = 0.0F;
     panels_.drilling = {};
@@ -78,6 +82,7 @@ void DrillingSystem::attach(const SystemContext& context) {
 void DrillingSystem::follow(const SystemContext& context) {
     bone_.follow();
     controller_.follow(context.controller, bone_.changes(), context.state, panels_.drilling);
+    train(context);
     sound(context);
 }
 
@@ -216,6 +221,7 @@ void DrillingSystem::prepare(std::int64_t now_ns, bool sharp, ViewFrame& frame,
             drawn.burr_glow = glow_of(panels_.drilling.nearness);
         }
     }
+    if (training_ && before_.empty() && layer_->bone() != nullptr) before_ = pictures();
     if (near_burr_wanted_ && controller.have_drill && controller.drill.hand[0].depth > 0.0F) {
         near_burr_wanted_ = false;
         approach_burr(context);
@@ -248,9 +254,7 @@ void DrillingSystem::add_to(LoadTopic& load) const {
 
 void DrillingSystem::finish(const SystemContext& context) {
     const Controller& controller = context.controller;
-    std::optional<BurrVisibility> visibility;
     if (site_) {
-        visibility = {site_->metrics().drilling_s, site_->metrics().seen_s};
         const Ledger& l = site_->particles().ledger();
         spdlog::info(
             "bone density levels: {} removed by the controller, {} received while shown: {} sucked, {} "
@@ -259,7 +263,7 @@ void DrillingSystem::finish(const SystemContext& context) {
             controller.have_drill ? controller.drill.removed_levels : 0, l.drilled, l.sucked, l.carried,
             l.left, l.buried, l.pooled);
     }
-    controller_.save(options_.report, visibility);
+    controller_.save(options_.report, visibility(), end_training());
 }
 
 }  // namespace tact

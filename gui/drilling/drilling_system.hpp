@@ -21,6 +21,7 @@
 #include "gui/drilling/ray_pace.hpp"
 #include "gui/drilling/site_effects.hpp"
 #include "gui/drilling/sound/sound_device.hpp"
+#include "gui/drilling/training/training.hpp"
 #include "gui/system/scene_system.hpp"
 
 namespace tact {
@@ -30,6 +31,7 @@ struct DrillingOptions {
     std::uint32_t particles = 0;  // always this many over the bone (SiteEffects::keep()); 0: off
     bool near_burr = false;       // moves the view to the burr once it is in bone
     bool mute = false;            // no sound
+    TrainingOptions training;
 };
 
 class DrillingSystem : public SceneSystem {
@@ -58,6 +60,11 @@ private:
     [[nodiscard]] float particles_share(const SystemContext& context) const;
     void approach_burr(const SystemContext& context) const;
     void sound(const SystemContext& context);
+    void begin_training(const BoneContent& bone);
+    void train(const SystemContext& context);
+    [[nodiscard]] std::vector<TrainingPicture> pictures();
+    [[nodiscard]] std::optional<BurrVisibility> visibility() const;
+    [[nodiscard]] nlohmann::json end_training();
     [[nodiscard]] TrayBurr in_hand() const;
     void take_burr(const TrayBurr& burr, const SystemContext& context) const;
 
@@ -81,6 +88,8 @@ private:
     std::uint64_t heard_levels_ = 0;      // removed by the burr
     std::int64_t heard_ns_ = 0;
     double load_ = 0.0;
+    std::unique_ptr<Training> training_;  // null: none
+    std::vector<TrainingPicture> before_;
 };
 
 }  // namespace tact

@@ -32,6 +32,13 @@ bool parse_gui_options(int argc, const char* const* argv, GuiOptions& options, i
         ->check(CLI::Range(0.0, 1e7));
     app.add_option("--screenshot", options.screenshot, "Write a PNG of the last frame at the end")
         ->type_name("FILE.png");
+    app.add_option("--training", options.training.plan, "Training task of a drilling scene (TOML)")
+        ->type_name("FILE.toml");
+    app.add_option("--trainee", options.training.trainee, "Name of the trainee, for the report")
+        ->type_name("NAME");
+    app.add_option("--training-folder", options.training.folder,
+                   "Folder of training reports; default: in $XDG_STATE_HOME/tact")
+        ->type_name("DIR");
     app.add_flag("--mute", options.mute, "No sound, whatever the window's settings say");
     app.add_option("--report", options.report, "Write a report of a drilling scene as JSON at the end")
         ->type_name("FILE.json");
@@ -122,6 +129,7 @@ bool parse_gui_options(int argc, const char* const* argv, GuiOptions& options, i
         if (!options.stage_file.empty() &&
             !(options.calibrate && !std::filesystem::exists(options.stage_file)))
             options.stage = read_stage_file(options.stage_file);
+        if (!options.training.plan.empty()) static_cast<void>(read_training_plan(options.training.plan));
         if (!options.window_state_file.empty()) {
             options.window_state = read_window_state_file(options.window_state_file);
             options.traces = options.traces || options.window_state.traces;

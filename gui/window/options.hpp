@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "gui/docking/contour_option.hpp"
+#include "gui/drilling/training/training.hpp"
 #include "gui/render/looks.hpp"
 #include "gui/stereo/stage_file.hpp"
 #include "gui/window/window_state.hpp"
@@ -38,6 +39,7 @@ struct GuiOptions {
     std::vector<ContourOption> contours;           // empty: the scene's own
     bool depth_cue = true;
     bool mute = false;             // no sound
+    TrainingOptions training;      // of a drilling scene
     bool near_burr = false;        // close view once it is in bone
     std::uint32_t particles = 0;   // constant number over bone
     bool bench_particles = false;  // instead of a window

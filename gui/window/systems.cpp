@@ -31,8 +31,8 @@ std::unique_ptr<SceneSystem> make_surface(const GuiOptions& options) {
 }
 
 std::unique_ptr<SceneSystem> make_drilling(const GuiOptions& options) {
-    return std::make_unique<DrillingSystem>(
-        DrillingOptions{options.report, options.particles, options.near_burr, options.mute});
+    return std::make_unique<DrillingSystem>(DrillingOptions{
+        options.report, options.particles, options.near_burr, options.mute, options.training});
 }
 
 std::unique_ptr<SceneSystem> make_field(const GuiOptions& options) {

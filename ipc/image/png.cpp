@@ -49,10 +49,10 @@ std::vector<std::uint8_t> PngReader::read(PngFormat format) {
     return pixels;
 }
 
-void write_png(const std::filesystem::path& path, std::uint32_t width_px, std::uint32_t height_px,
-               std::span<const std::uint8_t> pixels, PngFormat format) {
-    const auto fail = [&path](const std::string& why) {
-        throw StartupError("writing the image " + path.string(), why, "set a size above zero");
+std::vector<std::uint8_t> png_bytes(std::uint32_t width_px, std::uint32_t height_px,
+                                    std::span<const std::uint8_t> pixels, PngFormat format) {
+    const auto fail = [](const std::string& why) {
+        throw StartupError("writing an image", why, "set a size above zero");
     };
     png_image image{};
     image.version = PNG_IMAGE_VERSION;
@@ -65,11 +65,17 @@ void write_png(const std::filesystem::path& path, std::uint32_t width_px, std::u
         fail(std::to_string(width_px) + " x " + std::to_string(height_px) + " pixels of " +
              std::to_string(pixels.size()) + " bytes");
     png_alloc_size_t size = PNG_IMAGE_PNG_SIZE_MAX(image);
-    std::string content(size, '\0');
+    std::vector<std::uint8_t> content(size);
     if (png_image_write_to_memory(&image, content.data(), &size, 0, pixels.data(), 0, nullptr) == 0)
         fail(image.message);
     content.resize(size);
-    replace_file(path, content);
+    return content;
+}
+
+void write_png(const std::filesystem::path& path, std::uint32_t width_px, std::uint32_t height_px,
+               std::span<const std::uint8_t> pixels, PngFormat format) {
+    const std::vector<std::uint8_t> content = png_bytes(width_px, height_px, pixels, format);
+    replace_file(path, std::string(content.begin(), content.end()));
 }
 
 }  // namespace tact

@@ -38,7 +38,11 @@ private:
     std::unique_ptr<State> state_;
 };
 
-// `pixels`: width times height pixels of `format`. The folder must exist.
+// A file's content. `pixels`: width times height pixels of `format`.
+[[nodiscard]] std::vector<std::uint8_t> png_bytes(std::uint32_t width_px, std::uint32_t height_px,
+                                                  std::span<const std::uint8_t> pixels,
+                                                  PngFormat format = PngFormat::rgb);
+// The folder must exist.
 void write_png(const std::filesystem::path& path, std::uint32_t width_px, std::uint32_t height_px,
                std::span<const std::uint8_t> pixels, PngFormat format = PngFormat::rgb);
 

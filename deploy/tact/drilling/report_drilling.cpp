@@ -37,6 +37,10 @@ double number(const json& j, const char* key) {
     return j.is_object() && j.contains(key) && j[key].is_number() ? j[key].get<double>() : 0.0;
 }
 
+std::string word(const json& j, const char* key) {
+    return j.is_object() && j.contains(key) && j[key].is_string() ? j[key].get<std::string>() : std::string();
+}
+
 json part(const json& j, const char* key) {
     return j.is_object() && j.contains(key) ? j[key] : json(nullptr);
 }
@@ -87,7 +91,7 @@ std::string performance(const json& drilling) {
     if (burrs.is_array() && burrs.size() > 1)
         for (const json& b : burrs)
             text += line("  %.1f mm %s %s: drilling %.1f s, %.1f mm3\n", number(b, "diameter_mm"),
-                         b.value("grit", "").c_str(), b.value("shape", "").c_str(), number(b, "drilling_s"),
+                         word(b, "grit").c_str(), word(b, "shape").c_str(), number(b, "drilling_s"),
                          number(b, "removed_mm3"));
     if (part(trainee, "burr_visible_share").is_number())
         text += line("burr visible for %.0f %% of the time in which it turned in bone\n",
@@ -112,8 +116,13 @@ json drilling_report(const RtRegion& region, const std::filesystem::path& traine
 
 std::string drilling_summary(const json& drilling) {
     if (!drilling.is_object()) return {};
-    const json kept = part(drilling, "kept_in");
-    return performance(drilling) +
+    const json kept = part(drilling, "kept_in"), training = part(part(drilling, "trainee"), "training");
+    const json page = part(training, "report");
+    const std::string points = page.is_string()
+                                   ? line("training: %.0f of 100 points\n", number(training, "points")) +
+                                         "  report: " + page.get<std::string>() + "\n"
+                                   : std::string();
+    return performance(drilling) + points +
            (kept.is_string() ? "the bone is kept in " + kept.get<std::string>() +
                                    "\n  continue with it: --resume " + kept.get<std::string>() + "\n"
                              : std::string());
