@@ -21,6 +21,7 @@ install(FILES ${CMAKE_CURRENT_BINARY_DIR}/tact-can@.service DESTINATION lib/syst
 install(FILES units/tact-rt@.service units/tact-metrics.service DESTINATION lib/systemd/system)
 install(FILES units/tact.sysusers DESTINATION lib/sysusers.d RENAME tact.conf)
 install(FILES units/tact.tmpfiles DESTINATION lib/tmpfiles.d RENAME tact.conf)
+install(DIRECTORY training/ DESTINATION ${CMAKE_INSTALL_DATADIR}/tact/training)
 install(DIRECTORY monitoring/ DESTINATION ${CMAKE_INSTALL_DATADIR}/tact/monitoring)
 install(FILES ${CMAKE_SOURCE_DIR}/README.md ${CMAKE_SOURCE_DIR}/LICENSE ${CMAKE_SOURCE_DIR}/ipc/record/RECORDING.md
     DESTINATION ${CMAKE_INSTALL_DOCDIR})

@@ -253,6 +253,7 @@ void DrillingSystem::add_to(LoadTopic& load) const {
 }
 
 void DrillingSystem::finish(const SystemContext& context) {
+    let_training_rest(context);
     const Controller& controller = context.controller;
     if (site_) {
         const Ledger& l = site_->particles().ledger();

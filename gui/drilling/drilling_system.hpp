@@ -64,6 +64,8 @@ private:
     void train(const SystemContext& context);
     [[nodiscard]] std::vector<TrainingPicture> pictures();
     [[nodiscard]] std::optional<BurrVisibility> visibility() const;
+    // Disarms and follows the bone until it rests, so that the report has all that was drilled.
+    void let_training_rest(const SystemContext& context);
     [[nodiscard]] nlohmann::json end_training();
     [[nodiscard]] TrayBurr in_hand() const;
     void take_burr(const TrayBurr& burr, const SystemContext& context) const;

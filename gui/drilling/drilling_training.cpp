@@ -1,12 +1,21 @@
 // The training session of a drilling scene: begun with the scene, fed with its changes, reported at the end.
 #include <spdlog/spdlog.h>
 
+#include <thread>
+
 #include "gui/drilling/drilling_system.hpp"
 #include "gui/drilling/training/training_pictures.hpp"
+#include "ipc/base/clock.hpp"
 #include "ipc/base/error.hpp"
 #include "ipc/base/units.hpp"
 
 namespace tact {
+namespace {
+
+constexpr auto kRestMost = std::chrono::seconds(1);
+constexpr int kCalm = 3;  // looks in a row without a change
+
+}  // namespace
 
 std::optional<BurrVisibility> DrillingSystem::visibility() const {
     if (!site_) return std::nullopt;
@@ -50,6 +59,24 @@ std::vector<TrainingPicture> DrillingSystem::pictures() {
     if (training_->volumes().goal_ball(middle_m, radius_m))
         middle_a = ((middle_m - content_->centre_model_m) / kAngstromM).cast<float>();
     return training_pictures(*view_, *layer_, reach_a_, middle_a, static_cast<float>(radius_m / kAngstromM));
+}
+
+void DrillingSystem::let_training_rest(const SystemContext& context) {
+    Controller& controller = context.controller;
+    if (!training_ || !training_->begun() || !controller.attached()) return;
+    context.commands.send({.kind = CommandKind::disarm}, to_ns(Monotonic::now()));
+    const Instant until = Monotonic::now() + kRestMost;
+    int calm = 0;
+    while (calm < kCalm && Monotonic::now() < until) {
+        std::this_thread::sleep_for(std::chrono::milliseconds(10));
+        if (controller.poll().left) return;
+        static_cast<void>(controller.read());
+        context.state.now_ns = to_ns(Monotonic::now());
+        follow(context);
+        const auto run = static_cast<RunState>(controller.health.state);
+        const bool stands = run == RunState::ready || run == RunState::fault || run == RunState::off;
+        calm = stands && bone_.changes().empty() ? calm + 1 : 0;
+    }
 }
 
 // The window closes: what the launcher prints of it.

@@ -1,9 +1,11 @@
 // tact drill SCAN: bakes the bone once, then runs it with a burr in one hand and a suction tube in the other.
 // tact demo drill: an emulated surgeon opens the mastoid of a synthetic temporal bone; a second hand holds suction.
+#include <algorithm>
 #include <memory>
 
 #include "deploy/tact/baked_run.hpp"
 #include "deploy/tact/drilling/drilling.hpp"
+#include "deploy/tact/files.hpp"
 #include "deploy/tact/run.hpp"
 
 namespace tact::launch {
@@ -79,15 +81,22 @@ void add_drill(CLI::App& app, int& exit_code) {
     command->callback([o, &exit_code] { exit_code = drill(*o); });
 }
 
-void add_drill_demo(CLI::App& demo, int& exit_code) {
-    auto* const command =
-        demo.add_subcommand("drill", "Two hands open a temporal bone with a burr and a suction tube");
+namespace {
+
+void add_ear_demo(CLI::App& demo, const char* name, const char* what, bool training, int& exit_code) {
+    auto* const command = demo.add_subcommand(name, what);
     const auto options = std::make_shared<RunOptions>();
     const auto voxels = std::make_shared<std::string>("256");
     command->add_option("--voxels", *voxels, "Number of voxels of the bone along each axis, from 16 to 1024")
         ->capture_default_str();
     add_run_options(*command, *options);
-    command->callback([options, voxels, &exit_code] {
+    command->callback([options, voxels, training, &exit_code] {
+        const auto& window = options->visual;
+        if (training && std::find(window.begin(), window.end(), "--training") == window.end()) {
+            const auto task = cache_folder() / "demo-task.toml";
+            write_whole(task, kDemoTask);
+            options->visual.insert(options->visual.end(), {"--training", task.string()});
+        }
         let_the_hands_drill(*options);
         if (options->has_controller_option("surgeon") && !options->has_controller_option("--hand-at-mm"))
             options->add_for_scene({"--hand-at-mm", kMastoidMm});
@@ -95,6 +104,15 @@ void add_drill_demo(CLI::App& demo, int& exit_code) {
             baked_scene({.inputs = {}, .words = {"demo", "drill", "--voxels", *voxels}, .options = {}});
         exit_code = scene.empty() ? 130 : run_scene(scene, *options);
     });
+}
+
+}  // namespace
+
+void add_drill_demo(CLI::App& demo, int& exit_code) {
+    add_ear_demo(demo, "drill", "Two hands open a temporal bone with a burr and a suction tube", false,
+                 exit_code);
+    add_ear_demo(demo, "train", "The same as a training task, with a checklist, points and a report", true,
+                 exit_code);
 }
 
 std::span<const PassedOption> drilling_controller_options() { return kDrillController; }

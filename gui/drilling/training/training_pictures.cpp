@@ -7,7 +7,7 @@
 namespace tact {
 namespace {
 
-constexpr int kWidthPx = 960, kHeightPx = 720;
+constexpr int kWidthPx = 800, kHeightPx = 600;
 constexpr float kShown = 1.7F;  // radii of the goal in its close view
 const Eigen::Vector3f kPaper(0.09F, 0.11F, 0.14F);
 

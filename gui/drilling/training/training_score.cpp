@@ -119,8 +119,11 @@ TrainingScore training_score(const TrainingPlan& plan, const TrainingSums& sums,
                    score.work * visibility->seen_s / visibility->drilling_s / kSeenShare);
     if (plan.time_s > 0.0) {
         points.add(TrainingPart::time, score.work * (2.0 - time_s / plan.time_s));
-        score.item.push_back({time_s > plan.time_s ? State::failed : State::open, "time",
-                              clock_text(time_s) + " of " + clock_text(plan.time_s)});
+        const bool ready = score.work > 1.0 - 1e-9;
+        score.item.push_back({time_s > plan.time_s ? State::failed
+                              : ready              ? State::done
+                                                   : State::open,
+                              "time", clock_text(time_s) + " of " + clock_text(plan.time_s)});
     }
     points.finish();
     return score;
