@@ -14,6 +14,7 @@
 #include "ipc/base/progress.hpp"
 #include "ipc/scene/bone/bone_labels.hpp"
 #include "ipc/scene/file/scene_meta.hpp"
+#include "prep/volume/scan.hpp"
 
 namespace tact {
 
@@ -21,7 +22,9 @@ struct BoneInput {
     static constexpr double kInFrontM = 0.01;
     std::string title;
     BoneData bone;
-    std::vector<std::string> note;  // lines "key: value"
+    std::vector<std::string> note;            // lines "key: value"
+    std::vector<ScanLabel> table;             // the structures by the file's labels or colours
+    std::vector<std::uint64_t> table_voxels;  // of each
 };
 
 struct BakedBone {

@@ -10,6 +10,7 @@
 #include <set>
 
 #include "ipc/base/error.hpp"
+#include "ipc/base/whole_file.hpp"
 #include "ipc/base/whole_numbers.hpp"
 #include "ipc/version/version.hpp"
 #include "prep/console/console.hpp"
@@ -18,6 +19,7 @@
 #include "prep/drilling/bake_bone.hpp"
 #include "prep/drilling/bone_commands.hpp"
 #include "prep/drilling/import_bone.hpp"
+#include "prep/drilling/structure_names.hpp"
 #include "prep/synthetic/temporal_bone.hpp"
 
 namespace tact {
@@ -26,7 +28,7 @@ namespace {
 namespace fs = std::filesystem;
 
 struct DrillSettings {
-    std::string scan, labels, label_names, scene, crop, unit = "mm", face = "front";
+    std::string scan, labels, label_names, structures, scene, crop, unit = "mm", face = "front";
     std::vector<double> spacing_mm;
     std::vector<unsigned> bone_colour;
     std::optional<double> threshold, solid;
@@ -128,6 +130,8 @@ void drill(const DrillSettings& o, bool made) {
     input.note.insert(input.note.begin(), "made by: " + program_version("tact-prep"));
     const BoneBricks bricks = input.bone.bricks;
     const std::size_t structures = input.bone.structure.size();
+    if (!o.structures.empty())
+        write_whole_file(o.structures, structure_table_text(input.table, input.table_voxels));
     SceneWriter out;
     const BakedBone baked = bake_bone(std::move(input), out, console.progress());
     report(console.progress(), 0.99, "writing the scene");
@@ -169,8 +173,15 @@ void add_drill(CLI::App& app, CLI::App& demo) {
                         "Bake the synthetic temporal bone of demo drill instead of a scan");
     from_scan->add_option("--labels", o->labels,
                           "Label map with the structure of each voxel: NRRD, NIfTI or MetaImage");
-    from_scan->add_option("--label-names", o->label_names,
-                          "Names of the labelled structures: label description file of ITK-SNAP");
+    from_scan->add_option(
+        "--label-names", o->label_names,
+        "Names of the labelled structures: a table (.toml), or a label description file of ITK-SNAP; "
+        "default: structures.toml in the folder, NAME.structures.toml beside the file");
+    from_scan
+        ->add_option("--write-structures", o->structures,
+                     "Write the structures that were found as a table to edit (TOML), for --label-names or "
+                     "beside the scan")
+        ->type_name("FILE.toml");
     from_scan->add_option(
         "--critical", o->import.critical,
         "Words in the names of critical structures, in addition to nerve, sinus, dura, artery, ...");

@@ -7,7 +7,9 @@
 #include "ipc/base/error.hpp"
 #include "ipc/base/printable.hpp"
 #include "ipc/base/printed.hpp"
+#include "ipc/scene/bone/structure_table.hpp"
 #include "prep/drilling/bone_threshold.hpp"
+#include "prep/drilling/structure_names.hpp"
 #include "prep/input/read_file.hpp"
 #include "prep/volume/dicom.hpp"
 #include "prep/volume/png_stack.hpp"
@@ -122,7 +124,8 @@ DensityRange choose_range(const Scan& scan, const BoneImport& o, const Progress&
 }
 
 // Converts the label values of the file to rows of a table, 1 and up, in the order of their values.
-void put_structures(BoneData& bone, std::vector<ScanLabel> known, const BoneImport& o) {
+void put_structures(BoneInput& input, std::vector<ScanLabel> known, const BoneImport& o) {
+    BoneData& bone = input.bone;
     std::array<std::uint64_t, 256> count{};
     for (const std::uint8_t l : bone.label) ++count[l];
     std::array<std::uint8_t, 256> row_of{};
@@ -139,7 +142,7 @@ void put_structures(BoneData& bone, std::vector<ScanLabel> known, const BoneImpo
             std::find_if(known.begin(), known.end(), [&](const ScanLabel& l) { return l.value == value; });
         if (named != known.end()) {
             if (!named->name.empty()) s.name = named->name;
-            s.rgba = named->rgba;
+            if (named->rgba[3] != 0) s.rgba = named->rgba;
         }
         s.name = printable(s.name);
         std::size_t size = std::min(s.name.size(), BoneStructure::kNameBytesMax);
@@ -148,6 +151,9 @@ void put_structures(BoneData& bone, std::vector<ScanLabel> known, const BoneImpo
             --size;
         s.name.resize(size);  // do not cut inside a UTF-8 character
         s.critical = critical_name(s.name, o.critical);
+        if (named != known.end() && named->critical) s.critical = *named->critical;
+        input.table.push_back({static_cast<std::uint8_t>(value), s.name, s.rgba, s.critical});
+        input.table_voxels.push_back(count[value]);
         bone.structure.push_back(std::move(s));
         row_of[value] = static_cast<std::uint8_t>(bone.structure.size());
     }
@@ -161,8 +167,15 @@ void put_structures(BoneData& bone, std::vector<ScanLabel> known, const BoneImpo
 
 // A stack of images whose colours mark structures; one of the colours is bone.
 void segmented(const Scan& scan, const SamplePlan& plan, const StackPalette& palette, const BoneImport& o,
-               std::vector<ScanLabel> known, BoneData& bone, const Progress& progress) {
+               std::vector<ScanLabel> known, BoneInput& input, const Progress& progress) {
+    BoneData& bone = input.bone;
     bone.label = sample_labels(scan, plan, scan, progress);
+    std::string known_palette;  // the colours are known once all images were read
+    if (known.empty()) {
+        known = names_of_palette(palette, known_palette);
+        if (!known.empty())
+            input.note.push_back("structures: named by their colours, those of the " + known_palette);
+    }
     bone.density.assign(bone.label.size(), 0);
     std::vector<ScanLabel> colours;
     std::size_t bone_colour = 256;
@@ -173,9 +186,12 @@ void segmented(const Scan& scan, const SamplePlan& plan, const StackPalette& pal
         if (std::equal(o.bone_colour.begin(), o.bone_colour.end(), c.begin()) && c[3] != 0) bone_colour = i;
         char name[16];
         std::snprintf(name, sizeof name, "#%02X%02X%02X", c[0], c[1], c[2]);
-        ScanLabel label{static_cast<std::uint8_t>(i), name, c};
+        ScanLabel label{static_cast<std::uint8_t>(i), name, c, {}};
         for (const ScanLabel& k : known)
-            if (std::equal(c.begin(), c.begin() + 3, k.rgba.begin())) label.name = k.name;
+            if (k.rgba[3] != 0 && std::equal(c.begin(), c.begin() + 3, k.rgba.begin())) {
+                label.name = k.name;
+                label.critical = k.critical;
+            }
         colours.push_back(std::move(label));
     }
     if (bone_colour == 256)
@@ -214,7 +230,8 @@ void segmented(const Scan& scan, const SamplePlan& plan, const StackPalette& pal
                 bone.density[plan.bricks.voxel(x, y, z)] = 0;
                 bone.label[plan.bricks.voxel(x, y, z)] = 0;
             }
-    put_structures(bone, std::move(colours), o);
+    put_structures(input, std::move(colours), o);
+    for (ScanLabel& row : input.table) row.value = 0;  // colours are what the images have
 }
 
 }  // namespace
@@ -238,9 +255,15 @@ BoneInput import_bone(const BoneImport& o, const Progress& whole) {
                                (labelled ? static_cast<double>(scan.pixels() * scan.slice.size()) : 0.0));
     }
     std::vector<ScanLabel> known = scan.label;
-    if (!o.label_names.empty()) {
-        const std::vector<char> text = read_whole_file(o.label_names, 1U << 20);
-        known = parse_label_names({text.data(), text.size()}, "read label names " + o.label_names.string());
+    fs::path names = o.label_names;
+    if (names.empty() && !o.labels.empty()) names = structure_table_beside(o.labels);
+    if (names.empty()) names = structure_table_beside(o.scan);
+    if (!names.empty()) {
+        const std::vector<char> bytes = read_whole_file(names, 1U << 20);
+        const std::string_view text(bytes.data(), bytes.size());
+        const std::string attempt = "read label names " + names.string();
+        known = names.extension() == ".toml" ? parse_structure_table(text, attempt)
+                                             : parse_label_names(text, attempt);
     }
     BoneInput input;
     BoneData& bone = input.bone;
@@ -249,7 +272,7 @@ BoneInput import_bone(const BoneImport& o, const Progress& whole) {
         if (!o.labels.empty())
             throw StartupError("read the labels", "the scan itself consists of label images",
                                "omit --labels");
-        segmented(scan, plan, *opened.palette, o, std::move(known), bone, progress);
+        segmented(scan, plan, *opened.palette, o, std::move(known), input, progress);
     } else {
         const DensityRange range = choose_range(scan, o, progress);
         if (!range.warning.empty()) scan.warning.push_back(range.warning);
@@ -267,13 +290,13 @@ BoneInput import_bone(const BoneImport& o, const Progress& whole) {
             if (labels.palette)
                 throw StartupError("read the labels", "coloured images cannot be combined with a scan",
                                    "save the labels as NRRD, NIfTI or MetaImage");
-            if (o.label_names.empty()) known = labels.scan.label;
+            if (names.empty()) known = labels.scan.label;
             if (o.crop && !(scan.oriented && labels.scan.oriented)) crop_scan(labels.scan, *o.crop);
             bone.label = sample_labels(scan, plan, labels.scan, part(progress, labels_from, 1.0));
             if (std::all_of(bone.label.begin(), bone.label.end(), [](std::uint8_t l) { return l == 0; }))
                 throw StartupError("put labels on the scan", "no label lies in the volume",
                                    "give labels of this scan, or another --crop");
-            put_structures(bone, std::move(known), o);
+            put_structures(input, std::move(known), o);
         }
     }
     input.title = "bone from " + scan.format;

@@ -5,7 +5,8 @@
 //           If the unit is unknown and no voxel is as low as air, both must be given: a guess would produce bone that feels
 //           wrong. The error names those that the histogram suggests.
 // Labels    a second file, or the colours of a stack of images. Names come from the file (segmentations of 3D Slicer)
-//           or from an ITK-SNAP label description. A structure is critical if its name contains one of kCriticalWords
+//           or from an ITK-SNAP label description, from a table (structure_names.hpp; also one beside the scan), or from a known
+//           palette of colours. A structure is critical if the table says so, or if its name contains one of kCriticalWords
 //           or a given word; its voxels have at least kLabelDensity, so that a burr has contact with them.
 // Private   only geometry, values and label names are taken over from a file, not even its own name.
 // Memory    `announce` gets the number of voxels and the peak of bytes before memory is allocated.
@@ -27,7 +28,9 @@ namespace tact {
 inline constexpr std::uint8_t kLabelDensity = 40;
 
 struct BoneImport {
-    std::filesystem::path scan, labels, label_names;
+    std::filesystem::path scan, labels;
+    std::filesystem::path
+        label_names;  // .toml: a table; empty: the one beside labels or scan, if there is one
     std::optional<double> threshold, solid;  // in the scan's values
     double voxel_mm = 0.0;                   // 0: the finest spacing of the scan
     std::optional<ScanCrop> crop;

@@ -6,10 +6,23 @@
 namespace tact {
 namespace {
 
-constexpr const char* kCriticalWords[] = {"nerve",   "nerv",   "facial",  "chorda", "sinus",    "dura",
-                                          "carotid", "artery", "arteria", "vein",   "vena",     "vessel",
-                                          "jugular", "labyr",  "cochlea", "vestib", "semicirc", "incus",
-                                          "stapes",  "ossic",  "brain",   "orbit",  "optic"};
+constexpr const char* kCriticalWords[] = {
+    "nerve",  "nerv",     "facial", "chorda", "sinus",  "dura",    "carotid", "internal auditory",
+    "artery", "arteria",  "vein",   "vena",   "vessel", "jugular", "labyr",   "cochlea",
+    "vestib", "semicirc", "incus",  "stapes", "ossic",  "brain",   "orbit",   "optic"};
+
+// Abbreviations, which count as whole words only: "ica" is in "topical".
+constexpr const char* kCriticalShort[] = {"ica", "iac", "iam", "ijv",  "fn",
+                                          "cn7", "cn8", "vii", "viii", "scc"};
+
+bool has_short_name(const std::string& low) {
+    std::string words = " ";
+    for (const char c : low) words += (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') ? c : ' ';
+    words += ' ';
+    return std::any_of(
+        std::begin(kCriticalShort), std::end(kCriticalShort),
+        [&words](const std::string& word) { return words.find(" " + word + " ") != std::string::npos; });
+}
 
 }  // namespace
 
@@ -35,7 +48,8 @@ std::vector<ScanLabel> parse_label_names(std::string_view text, const std::strin
         labels.push_back({static_cast<std::uint8_t>(number[0]),
                           std::string(line.substr(quote + 1, end - quote - 1)),
                           {static_cast<std::uint8_t>(number[1]), static_cast<std::uint8_t>(number[2]),
-                           static_cast<std::uint8_t>(number[3]), 255}});
+                           static_cast<std::uint8_t>(number[3]), 255},
+                          {}});
     }
     return labels;
 }
@@ -45,7 +59,7 @@ bool critical_name(const std::string& name, const std::vector<std::string>& more
     const auto holds = [&](const std::string& word) {
         return !word.empty() && low.find(word) != std::string::npos;
     };
-    return std::any_of(std::begin(kCriticalWords), std::end(kCriticalWords), holds) ||
+    return std::any_of(std::begin(kCriticalWords), std::end(kCriticalWords), holds) || has_short_name(low) ||
            std::any_of(more.begin(), more.end(),
                        [&](const std::string& w) { return holds(HeaderText::lower(w)); });
 }

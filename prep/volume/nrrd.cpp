@@ -113,7 +113,7 @@ std::vector<ScanLabel> nrrd_labels(const HeaderText& in, const NrrdFields& f) {
         const std::uint64_t number = in.whole(HeaderText::trimmed(value->second), "a label");
         if (number == 0 || number > 255)
             in.fail("a segment has label " + std::to_string(number) + ", outside 1 to 255");
-        ScanLabel label{static_cast<std::uint8_t>(number), name->second, {200, 200, 200, 255}};
+        ScanLabel label{static_cast<std::uint8_t>(number), name->second, {200, 200, 200, 255}, {}};
         if (const auto color = f.pair.find(key + "_Color"); color != f.pair.end()) {
             const auto words = HeaderText::words(color->second);
             for (std::size_t c = 0; c < 3 && words.size() == 3; ++c)

@@ -31,6 +31,7 @@ struct ScanLabel {
     std::uint8_t value = 0;
     std::string name;
     std::array<std::uint8_t, 4> rgba{};
+    std::optional<bool> critical{};  // as a person says; none: the name decides
 };
 
 // Centre of a slice's first pixel: mm along the columns' and rows' direction and the normal, from the origin.

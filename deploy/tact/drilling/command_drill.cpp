@@ -7,6 +7,7 @@
 #include "deploy/tact/drilling/drilling.hpp"
 #include "deploy/tact/files.hpp"
 #include "deploy/tact/run.hpp"
+#include "ipc/scene/bone/structure_table.hpp"
 
 namespace tact::launch {
 namespace {
@@ -49,6 +50,8 @@ int drill(DrillOptions& o) {
     BakeRequest request{.inputs = scan_files(o.scan),
                         .words = {"drill", std::filesystem::absolute(o.scan)},
                         .options = o.baked.prep};
+    for (const auto& scan : {o.scan, o.labels})
+        if (const auto table = structure_table_beside(scan); !table.empty()) request.inputs.push_back(table);
     for (const auto& [name, file] : {std::pair("--labels", &o.labels), {"--label-names", &o.label_names}}) {
         if (file->empty()) continue;
         for (const auto& part : scan_files(*file)) request.inputs.push_back(part);
@@ -75,7 +78,9 @@ void add_drill(CLI::App& app, int& exit_code) {
         ->check(CLI::ExistingFile);
     command
         ->add_option("--label-names", o->label_names,
-                     "Names of the labelled structures: label description file of ITK-SNAP")
+                     "Names of the labelled structures: a table (.toml), or a label description file of "
+                     "ITK-SNAP; default: "
+                     "structures.toml in the folder, NAME.structures.toml beside the file")
         ->check(CLI::ExistingFile);
     add_baked_run_options(*command, kDrillPrep, o->baked);
     command->callback([o, &exit_code] { exit_code = drill(*o); });
