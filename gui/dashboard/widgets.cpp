@@ -108,6 +108,19 @@ void choose(const Theme& theme, std::span<const char* const> words, int& chosen)
     ImGui::PopStyleColor(2);
 }
 
+std::string cut_text(ImFont* font, const std::string& text, float width_px) {
+    const auto width = [font](const std::string& t) {
+        return font->CalcTextSizeA(font->FontSize, 1e9F, 0.0F, t.c_str()).x;
+    };
+    if (width(text) <= width_px) return text;
+    std::string cut = text;
+    while (!cut.empty() && width(cut + "...") > width_px) {
+        while (cut.size() > 1 && (static_cast<unsigned char>(cut.back()) & 0xC0U) == 0x80U) cut.pop_back();
+        cut.pop_back();
+    }
+    return cut + "...";
+}
+
 std::string format(const char* pattern, ...) {
     char text[256];
     va_list arguments;

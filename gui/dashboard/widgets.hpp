@@ -29,6 +29,8 @@ void text_small(const Theme& theme, ImU32 c, const std::string& text, bool wrap 
 // A line of options, one of them selected.
 void choose(const Theme& theme, std::span<const char* const> words, int& chosen);
 
+// The text, or as much of it as fits with "...".
+[[nodiscard]] std::string cut_text(ImFont* font, const std::string& text, float width_px);
 [[nodiscard]] std::string format(const char* pattern, ...) __attribute__((format(printf, 1, 2)));
 // "%.2f", but a number that rounds to zero has no sign.
 [[nodiscard]] std::string fixed(double value, int digits);

@@ -103,9 +103,10 @@ void add_head(TubeMesh& mesh, const DrawnDrillTool& t) {
 
 }  // namespace
 
-TubeMesh build_drill_tool(const DrawnDrillTool& t) {
-    TubeMesh mesh;
-    if (!(t.radius_m > 0.0)) return mesh;
+DrillToolMesh build_drill_tool(const DrawnDrillTool& t) {
+    DrillToolMesh tool;
+    TubeMesh& mesh = tool.rest;
+    if (!(t.radius_m > 0.0)) return tool;
     const Eigen::Vector3f z = Eigen::Vector3f::UnitZ(), origin = Eigen::Vector3f::Zero();
     const float r = in_a(t.radius_m);
     if (t.head == DrillHead::tube) {
@@ -126,11 +127,11 @@ TubeMesh build_drill_tool(const DrawnDrillTool& t) {
                                                  {end + 20.0F * r, 3.0F * r, 0.0F},
                                                  {end + 21.0F * r, 0.0F, 1.0F}}},
                      origin, z, kGrip);
-        return mesh;
+        return tool;
     }
-    add_head(mesh, t);
+    add_head(tool.head, t);
     const float top = profile(t, 1.0F).z, shaft = in_a(t.shaft_radius_m);
-    if (!(shaft > 0.0F)) return mesh;
+    if (!(shaft > 0.0F)) return tool;
     // The shaft, its collet and the handpiece, with the proportions of a drill.
     const float begin = top - 0.35F * r, end = std::max(in_a(t.shaft_length_m), top + 14.0F * shaft);
     add_revolved(mesh,
@@ -153,7 +154,7 @@ TubeMesh build_drill_tool(const DrawnDrillTool& t) {
                                              {end + 47.0F * shaft, 2.8F * shaft, 0.8F},
                                              {end + 47.0F * shaft, 0.0F, 1.0F}}},
                  origin, z, kGrip);
-    return mesh;
+    return tool;
 }
 
 }  // namespace tact

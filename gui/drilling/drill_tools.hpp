@@ -26,6 +26,10 @@ struct DrawnDrillTool {
     }
 };
 
-[[nodiscard]] TubeMesh build_drill_tool(const DrawnDrillTool& tool);
+// head: what lights up near a structure; a tube has none.
+struct DrillToolMesh {
+    TubeMesh head, rest;
+};
+[[nodiscard]] DrillToolMesh build_drill_tool(const DrawnDrillTool& tool);
 
 }  // namespace tact

@@ -14,16 +14,19 @@ void DrillingLayer::draw_structures(const LayerPass& pass) {
         const DrawnDrillTool& tool = frame.tools[i];
         ToolInHand& hand = tool_[i];
         if (!tool.same_shape(hand.shape)) {
-            hand.mesh.fill(build_drill_tool(tool), GL_STATIC_DRAW);
+            const DrillToolMesh mesh = build_drill_tool(tool);
+            hand.head.fill(mesh.head, GL_STATIC_DRAW);
+            hand.rest.fill(mesh.rest, GL_STATIC_DRAW);
             hand.shape = tool;
         }
         Pose turned = tool.T_model_tool;
         turned.q = turned.q * Quat(Eigen::AngleAxisd(tool.turned_rad, Vec3::UnitZ()));
-        pass.programs.use_lit(pass.eye_from_scene * scene_from_body(turned, centre_model_m_), pass.projection,
-                              pass.haze,
-                              {.tint = tool.head == DrillHead::tube ? Eigen::Vector4f(Eigen::Vector4f::Zero())
-                                                                    : frame.burr_glow});
-        hand.mesh.draw();
+        const Eigen::Matrix4f eye_from_tool = pass.eye_from_scene * scene_from_body(turned, centre_model_m_);
+        pass.programs.use_lit(eye_from_tool, pass.projection, pass.haze, {});
+        hand.rest.draw();
+        if (hand.head.indices() == 0) continue;
+        pass.programs.use_lit(eye_from_tool, pass.projection, pass.haze, {.tint = frame.burr_glow});
+        hand.head.draw();
     }
 }
 

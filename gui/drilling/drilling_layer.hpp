@@ -51,7 +51,7 @@ public:
 private:
     struct ToolInHand {
         DrawnDrillTool shape;
-        TriangleBuffers mesh;
+        TriangleBuffers head, rest;
     };
 
     Vec3 centre_model_m_;

@@ -11,6 +11,7 @@ namespace tact {
 namespace {
 
 constexpr double kFlashHz = 2.0;
+constexpr float kNamesPx = 158.0F;  // width of the names of structures
 constexpr std::int64_t kMinuteNs = 60'000'000'000;
 
 std::string mm_text(double m) { return fixed(1e3 * m, 1) + " mm"; }
@@ -88,8 +89,10 @@ void structure(const Theme& theme, const DrillingState& d, const DrillingState::
     ImGui::SetCursorScreenPos({at.x + edge + theme.px(5.0F), at.y});
     const StatusText v = distance_status(s.burr_m, s.closing_m_s, d.burr.rpm > 0.0);
     const bool calm = v.grade == Grade::good;
-    text_coloured(calm ? colour::kDim : colour::kText, s.name);
-    ImGui::SameLine(theme.px(122.0F));
+    const float names_px = theme.px(kNamesPx - 16.0F) - (ImGui::GetCursorScreenPos().x - at.x);
+    text_coloured(calm ? colour::kDim : colour::kText, cut_text(ImGui::GetFont(), s.name, names_px));
+    if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", s.name.c_str());
+    ImGui::SameLine(theme.px(kNamesPx));
     text_coloured(calm ? colour::kText : grade_colour(v.grade), mm_text(s.burr_m));
     if (calm) return;
     ImGui::SameLine(0.0F, theme.px(8.0F));

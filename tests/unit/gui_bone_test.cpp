@@ -253,7 +253,7 @@ TEST(DrillTools, a_drawn_head_has_the_size_of_the_tool_and_outward_normals) {
     tool.radius_m = 3e-9;  // 30 ångström
     tool.length_m = 6e-9;
     tool.tip_radius_m = 3e-9;
-    const TubeMesh ball = build_drill_tool(tool);
+    const TubeMesh ball = build_drill_tool(tool).head;
     ASSERT_FALSE(ball.vertex.empty());
     EXPECT_NEAR(farthest(ball, 1e9), 30.0, 0.05);
     for (const TubeVertex& v : ball.vertex) {
@@ -267,17 +267,22 @@ TEST(DrillTools, a_drawn_head_has_the_size_of_the_tool_and_outward_normals) {
     for (const std::uint32_t i : ball.index) ASSERT_LT(i, ball.vertex.size());
     tool.shaft_radius_m = 1e-9;
     tool.shaft_length_m = 25e-9;
-    const TubeMesh with_shaft = build_drill_tool(tool);
-    EXPECT_NEAR(farthest(with_shaft, 0.0), 30.0, 0.05);
+    const TubeMesh with_shaft = build_drill_tool(tool).rest;
+    EXPECT_NEAR(farthest(build_drill_tool(tool).head, 1e9), 30.0, 0.05);
     EXPECT_GT(farthest(with_shaft, 1e9), 250.0);
+    tool.diamond = true;  // grains, no grooves
+    for (const TubeVertex& v : build_drill_tool(tool).head.vertex)
+        ASSERT_NEAR(Eigen::Vector3f(v.position_a[0], v.position_a[1], v.position_a[2]).norm(), 30.0F, 0.01F);
+    tool.diamond = false;
     tool.head = DrillHead::cylinder;
     tool.length_m = 12e-9;
-    const TubeMesh rod = build_drill_tool(tool);
+    const TubeMesh rod = build_drill_tool(tool).head;
     EXPECT_NEAR(farthest(rod, 0.0), 60.0, 0.5) << "half of its length";
     tool.head = DrillHead::tube;
-    EXPECT_FALSE(build_drill_tool(tool).index.empty());
+    EXPECT_FALSE(build_drill_tool(tool).rest.index.empty());
+    EXPECT_TRUE(build_drill_tool(tool).head.index.empty());
     tool.radius_m = 0.0;
-    EXPECT_TRUE(build_drill_tool(tool).index.empty());
+    EXPECT_TRUE(build_drill_tool(tool).rest.index.empty());
 }
 
 TEST(DrillHands, tools_are_drawn_in_model_units_and_rotate_only_when_driven) {

@@ -50,18 +50,10 @@ void draw_training(const OverlayPen& pen, const TrainingShown& shown, const Pixe
     pen.draw->AddRect(at, {at.x + w, at.y + h}, colour::kPanelEdge, pen.theme.px(6.0F));
     float y = at.y + pad;
     const float x = at.x + pad, right = at.x + w - pad;
-    const auto cut = [&](std::string text, float most) {
-        if (pen.width(small, text) <= most) return text;
-        while (!text.empty() && pen.width(small, text + "...") > most) {
-            while (!text.empty() && (static_cast<unsigned char>(text.back()) & 0xC0U) == 0x80U)
-                text.pop_back();
-            if (!text.empty()) text.pop_back();
-        }
-        return text + "...";
-    };
     pen.draw->PushClipRect(at, {at.x + w, at.y + h}, true);
-    pen.draw->AddText(pen.theme.bold, pen.theme.bold->FontSize, {x, y}, colour::kAccent,
-                      shown.problem.empty() ? shown.title.c_str() : "No training");
+    pen.draw->AddText(
+        pen.theme.bold, pen.theme.bold->FontSize, {x, y}, colour::kAccent,
+        shown.problem.empty() ? cut_text(pen.theme.bold, shown.title, text_w).c_str() : "No training");
     y += pen.theme.px(22.0F);
     if (tell) {
         pen.draw->AddText(small, small->FontSize, {x, y},
@@ -76,7 +68,7 @@ void draw_training(const OverlayPen& pen, const TrainingShown& shown, const Pixe
             const float name_x = x + pen.theme.px(20.0F);
             pen.draw->AddText(small, small->FontSize, {name_x, y},
                               i.state == TrainingItem::State::failed ? colour::kBad : colour::kText,
-                              cut(i.name, right - value_w - pen.theme.px(8.0F) - name_x).c_str());
+                              cut_text(small, i.name, right - value_w - pen.theme.px(8.0F) - name_x).c_str());
             pen.draw->AddText(small, small->FontSize, {right - value_w, y}, colour::kDim, i.value.c_str());
             y += line;
         }
