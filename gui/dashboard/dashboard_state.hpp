@@ -68,6 +68,7 @@ struct History {
 
 struct DashboardState {
     bool attached = false;
+    bool watching = false;  // an instructor's window: it changes nothing
     std::string link_text;
     std::string session;
     bool have_health = false, have_levels = false;

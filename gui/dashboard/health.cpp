@@ -24,12 +24,13 @@ void buttons(const Theme& theme, DashboardState& state) {
         if (enabled) ImGui::PopStyleColor(2);
         ImGui::EndDisabled();
     };
-    button("Arm", known && run_state == RunState::ready, CommandKind::arm, colour::kGood);
+    button("Arm", known && !state.watching && run_state == RunState::ready, CommandKind::arm, colour::kGood);
     ImGui::SameLine();
     button("Disarm", known && (run_state == RunState::armed || run_state == RunState::active),
            CommandKind::disarm, colour::kWatch);
     ImGui::SameLine();
-    button("Reset", known && run_state == RunState::fault, CommandKind::reset_fault, colour::kBad);
+    button("Reset", known && !state.watching && run_state == RunState::fault, CommandKind::reset_fault,
+           colour::kBad);
     (void)theme;
 }
 
@@ -182,6 +183,10 @@ void draw_health(const Theme& theme, DashboardState& state, const PixelRect& car
                true);  // scrolls: two hands with long messages are higher than the card
     const HealthTopic& h = state.health;
     const bool known = state.have_health;
+    if (state.watching) {
+        ImGui::SameLine();
+        badge(theme, "watching", colour::kAccent);
+    }
     if (state.attached && state.recorders + state.flights > 0) {
         ImGui::SameLine();
         recording(theme, state);

@@ -94,17 +94,19 @@ StatusText deadline_status(const HealthTopic& h, std::int64_t now_ns) {
 }
 
 StatusText state_status(RunState state, RunReason reason) {
-    std::string words;
+    std::string words, then;  // what is, and what a person can do
     Grade grade = Grade::watch;
     switch (state) {
         case RunState::off:
             words = "device not open";
             break;
         case RunState::ready:
-            words = "Disarmed. Press Arm.";
+            words = "Disarmed";
+            then = " Press Arm.";
             break;
         case RunState::armed:
-            words = "Armed. No force until hand on the device.";
+            words = "Armed";
+            then = " No force until hand on the device.";
             break;
         case RunState::active:
             grade = Grade::good;
@@ -112,13 +114,14 @@ StatusText state_status(RunState state, RunReason reason) {
             break;
         case RunState::fault:
             grade = Grade::bad;
-            words = "No force until Reset.";
+            words = "No force until Reset";
             break;
         default:
             return {Grade::unknown, "unknown state"};
     }
     const std::string why = run_reason_text(reason);
     if (!why.empty()) words += ": " + why;
+    if (!then.empty()) words += "." + then;
     return {grade, words};
 }
 

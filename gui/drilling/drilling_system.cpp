@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "gui/drilling/dust_state.hpp"
+#include "gui/drilling/first_bone.hpp"
 #include "gui/drilling/patient_sides.hpp"
 #include "ipc/base/units.hpp"
 
@@ -157,6 +158,11 @@ void DrillingSystem::take_burr(const TrayBurr& burr, const SystemContext& contex
     const bool other = burr.grit != d.burr.grit || burr.diameter_m != d.burr.diameter_m;
     if (context.controller.attached() && d.known && d.burr.valid && other && !d.changing_burr)
         context.state.requests.push_back(burr_request(burr));
+}
+
+std::optional<Vec3> DrillingSystem::place_along(const Vec3& from_m, const Vec3& way) const {
+    const BoneVolumeView* const volume = bone_.volume();
+    return volume != nullptr ? first_bone(*volume, from_m, way) : std::nullopt;
 }
 
 void DrillingSystem::approach_burr(const SystemContext& context) const {

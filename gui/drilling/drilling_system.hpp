@@ -47,6 +47,7 @@ public:
     void detach() override { bone_.leave(); }
     void follow(const SystemContext& context) override;
     bool perform(KeyAction what, std::size_t place, const SystemContext& context) override;
+    [[nodiscard]] std::optional<Vec3> place_along(const Vec3& from_m, const Vec3& way) const override;
     void move(double frame_s, const Vec3& eye_model_m, const SystemContext& context) override;
     [[nodiscard]] bool second_hand_is_pen() const override { return false; }
     void prepare(std::int64_t now_ns, bool sharp, ViewFrame& frame, const SystemContext& context) override;

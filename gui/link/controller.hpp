@@ -16,7 +16,16 @@ namespace tact {
 
 class Controller {
 public:
-    Controller(const std::string& session, int own_region_fd) : link_(session, own_region_fd) {}
+    // own_region_fd -1: an instructor, who watches.
+    Controller(const std::string& session, int own_region_fd)
+        : link_(session, own_region_fd, LinkRole::instructor), watches_(own_region_fd < 0) {}
+
+    [[nodiscard]] bool watches() const { return watches_; }
+    // As an instructor. False: not sent.
+    bool stop_run() { return link_.order(LinkOrder::stop); }
+    bool mark_place(const Vec3& model_m) {
+        return link_.order(LinkOrder::mark, {model_m.x(), model_m.y(), model_m.z()});
+    }
 
     struct News {
         bool arrived = false, left = false;
@@ -26,7 +35,7 @@ public:
     struct Fresh {
         bool tool = false, second = false, bodies = false, shapes = false, touch = false, drill = false,
              head = false, tracker = false, devices = false, health = false, lateness = false, levels = false,
-             recorders = false;
+             recorders = false, mark = false;
     };
     Fresh read();
     [[nodiscard]] bool next_event(EventTopic& event);
@@ -57,7 +66,8 @@ public:
 
     bool have_tool = false, have_second = false, have_bodies = false, have_shapes = false, have_touch = false,
          have_drill = false, have_head = false, have_tracker = false, have_devices = false,
-         have_health = false, have_lateness = false, have_levels = false, have_recorders = false;
+         have_health = false, have_lateness = false, have_levels = false, have_recorders = false,
+         have_mark = false;
     ToolTopic tool{}, second{};  // the first hand, and the second one if present
     BodiesTopic bodies{};
     ShapesTopic shapes{};
@@ -69,6 +79,7 @@ public:
     HealthTopic health{};
     LatenessTopic lateness{};
     RecordersTopic recorders{};
+    MarkTopic mark{};
     LevelsTopic levels{};
 
 private:
@@ -82,7 +93,8 @@ private:
     RingCursor cursor_, trace_cursor_;
     std::uint64_t seen_tool_ = 0, seen_second_ = 0, seen_bodies_ = 0, seen_shapes_ = 0, seen_touch_ = 0,
                   seen_drill_ = 0, seen_head_ = 0, seen_tracker_ = 0, seen_devices_ = 0, seen_health_ = 0,
-                  seen_lateness_ = 0, seen_levels_ = 0, seen_recorders_ = 0;
+                  seen_lateness_ = 0, seen_levels_ = 0, seen_recorders_ = 0, seen_mark_ = 0;
+    bool watches_;
     std::uint64_t refused_ = 0;
 };
 

@@ -142,6 +142,8 @@ bool sensible(const LevelsTopic& l) noexcept {
     });
 }
 
+bool sensible(const MarkTopic& m) noexcept { return near(m.pos_model_m); }
+
 bool sensible(const RecordersTopic& r) noexcept { return r.recorders <= 64 && r.flights <= 64; }
 
 const PathLevel* find_path(const LevelsTopic& levels, const char* path) noexcept {

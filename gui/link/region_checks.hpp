@@ -28,6 +28,7 @@ namespace tact {
 [[nodiscard]] bool sensible(const LatenessTopic& lateness) noexcept;
 [[nodiscard]] bool sensible(const LevelsTopic& levels) noexcept;
 [[nodiscard]] bool sensible(const RecordersTopic& recorders) noexcept;
+[[nodiscard]] bool sensible(const MarkTopic& mark) noexcept;
 
 // The level of a path, or null.
 [[nodiscard]] const PathLevel* find_path(const LevelsTopic& levels, const char* path) noexcept;

@@ -14,6 +14,9 @@
 namespace tact {
 namespace {
 
+constexpr float kMarkLength = 0.25F, kMarkThickness = 0.012F;  // radii of the scene
+constexpr Rgb8 kMarkColour{255, 80, 220};
+
 constexpr float kBoxRgba[4] = {0.55F, 0.62F, 0.72F, 0.55F};
 constexpr double kFrontDepth = 1e-3;
 // Range of the depth cue, from slightly before the target to well behind it, in radii of the scene.
@@ -107,6 +110,7 @@ void SceneView::draw_in_front(const LayerPass& pass, const ViewOptions& options,
     glEnable(GL_DEPTH_TEST);
     if (options.force && frame.force_at_model_m) draw_force(pass, frame);
     if (frame.hand) draw_hand(pass, *frame.hand);
+    if (frame.mark_at_model_m) draw_mark(pass, *frame.mark_at_model_m);
     if (layer_ != nullptr) layer_->draw_in_front(pass);
     glDepthRange(0.0, 1.0);
     glDisable(GL_DEPTH_TEST);
@@ -134,6 +138,16 @@ void SceneView::draw_force(const LayerPass& pass, const ViewFrame& frame) {
     arrow_.fill(mesh, GL_STREAM_DRAW);
     programs_.use_lit(pass.eye_from_scene, pass.projection, pass.haze, {});
     arrow_.draw();
+}
+
+// A pin from above in the picture.
+void SceneView::draw_mark(const LayerPass& pass, const Vec3& at_model_m) {
+    const Eigen::Vector3f up = pass.eye_from_scene.block<1, 3>(1, 0).transpose().normalized();
+    const Eigen::Vector3f at = ((at_model_m - content_->centre_model_m) / kAngstromM).cast<float>();
+    const Eigen::Vector3f along = -kMarkLength * pass.size_a * up;
+    mark_.fill(build_arrow(at - along, along, kMarkThickness * pass.size_a, kMarkColour), GL_STREAM_DRAW);
+    programs_.use_lit(pass.eye_from_scene, pass.projection, pass.haze, {});
+    mark_.draw();
 }
 
 void SceneView::draw_hand(const LayerPass& pass, const DrawnHand& hand) {

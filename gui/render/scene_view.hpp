@@ -37,8 +37,9 @@ struct ViewFrame {
     float force_thickness = 0.02F;         // of the arrow, in radii of the scene
     float force_beside_a = 0.0F;           // it begins so far to the viewer's right of that place
     std::optional<DrawnHand> hand;
-    std::size_t eye = 0, eyes = 1;  // index and number of eyes
-    PassClock* passes = nullptr;    // times each pass; null: none
+    std::optional<Vec3> mark_at_model_m;  // an instructor's mark
+    std::size_t eye = 0, eyes = 1;        // index and number of eyes
+    PassClock* passes = nullptr;          // times each pass; null: none
 };
 
 class SceneView {
@@ -74,6 +75,7 @@ private:
     void draw_in_front(const LayerPass& pass, const ViewOptions& options, const ViewFrame& frame);
     void draw_force(const LayerPass& pass, const ViewFrame& frame);
     void draw_hand(const LayerPass& pass, const DrawnHand& hand);
+    void draw_mark(const LayerPass& pass, const Vec3& at_model_m);
     void draw_box(const LayerPass& pass);
 
     std::shared_ptr<const SceneContent> content_;
@@ -81,7 +83,7 @@ private:
     Contours contours_;
     SceneLayer no_layer_;
     SceneLayer* layer_ = nullptr;
-    TriangleBuffers arrow_, hand_, touched_wall_;
+    TriangleBuffers mark_, arrow_, hand_, touched_wall_;
     GlVertexArray box_array_;
     GlBuffer box_vertices_, box_edges_;
     GLsizei box_indices_ = 0;

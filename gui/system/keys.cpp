@@ -17,6 +17,7 @@ constexpr auto kKeyRows = [] {
         {{}, 0, always, KeyAction::none, "right drag", "pan"},
         {{}, 0, always, KeyAction::none, "wheel", "zoom"},
         {{}, 0, bodies, KeyAction::none, "Alt+wheel", "contour level"},
+        {{}, 0, watching, KeyAction::none, "Ctrl+click", "mark this place on the bone"},
         {named_key(KeyCode::escape), 0, sheet, KeyAction::close_sheet, "Esc", "close this table"},
         {named_key(KeyCode::escape), 0, browser, KeyAction::close_browser, "Esc", "close the list of scenes"},
         {named_key(KeyCode::space), 0, controller, KeyAction::disarm, "Space", "disarm: no force"},
@@ -94,6 +95,8 @@ bool applies(KeyWhen when, const KeySituation& now) noexcept {
             return now.controller;
         case calibrating:
             return now.calibrating;
+        case watching:
+            return now.watching && now.controller;
     }
     return false;
 }

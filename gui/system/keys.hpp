@@ -59,7 +59,17 @@ enum class KeyAction : std::uint8_t {
 };
 
 // Condition of a row. The sheet takes precedence, then the list of scenes; a key that they use goes no further.
-enum class KeyWhen : std::uint8_t { always, sheet, browser, bodies, bone, stereo, controller, calibrating };
+enum class KeyWhen : std::uint8_t {
+    always,
+    sheet,
+    browser,
+    bodies,
+    bone,
+    stereo,
+    controller,
+    calibrating,
+    watching
+};
 
 struct KeySituation {
     bool sheet = false;        // the key table (`?`) is shown
@@ -68,6 +78,7 @@ struct KeySituation {
     bool bone = false;         // a drilling scene
     bool stereo = false;       // the display is stereoscopic
     bool controller = false;   // attached
+    bool watching = false;     // an instructor's window
     bool calibrating = false;  // bodies, bone and stereo then do not apply
 };
 

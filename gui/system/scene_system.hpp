@@ -10,6 +10,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <optional>
 
 #include "gui/dashboard/dashboard_state.hpp"
 #include "gui/link/command_sender.hpp"
@@ -75,6 +76,11 @@ public:
     }
     // Alt + wheel.
     virtual void turn_wheel(double steps) { static_cast<void>(steps); }
+    // The first place of the scene along a line of sight, model metres; none: nothing there, or it cannot be told.
+    [[nodiscard]] virtual std::optional<Vec3> place_along(const Vec3& from_m, const Vec3& way) const {
+        static_cast<void>(from_m), static_cast<void>(way);
+        return std::nullopt;
+    }
     virtual void adapt() {}
     virtual void move(double frame_s, const Vec3& eye_model_m, const SystemContext& context) {
         static_cast<void>(frame_s), static_cast<void>(eye_model_m), static_cast<void>(context);

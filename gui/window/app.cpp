@@ -31,12 +31,13 @@ void catch_signals() {
 
 GuiApp::GuiApp(const GuiOptions& options)
     : options_(options),
-      controller_(options.session, region_.fd()),
+      controller_(options.session, options.watch ? -1 : region_.fd()),
       commands_(region_->commands),
       window_(options.width_px, options.height_px, options.hidden, options.ui_scale) {
     for (const SystemRow& row : system_rows()) systems_.push_back(row.make(options_));
     region_.mark_ready();
     state_.session = options.session;
+    state_.watching = options.watch;
     state_.history.first_ns = first_ns_;
     state_.strip = options.traces ? 1 : 0;
     state_.renderer = window_.renderer();
@@ -160,11 +161,15 @@ void GuiApp::follow_controller(std::int64_t now_ns) {
     const Controller::Fresh fresh = controller_.read();
     system().read(fresh, context());
     if (fresh.second) second_hand_.follow(controller_.second);
+    if (fresh.mark) {
+        marked_at_ns_ = now_ns;
+        report_mark();
+    }
     if (fresh.health) add_health(controller_.health, state_.history);
     add_rates(controller_, fresh, state_);
     add_cycles(controller_, traces_place_, state_);
     trace_export_.follow(state_.traces);
-    if (controller_.have_health) commands_.update(controller_.health, now_ns);
+    if (controller_.have_health && !controller_.watches()) commands_.update(controller_.health, now_ns);
     show_controller(controller_, commands_, state_);
 }
 
@@ -178,14 +183,26 @@ void GuiApp::draw_panels() {
     ImGui::Render();
     panel_image_.draw(*ImGui::GetDrawData(), layout_, to_px(size), size.width_px, size.height_px);
     for (const Request& request : state_.requests)
-        if (!commands_.send({request.kind,
-                             request.value,
-                             request.text,
-                             request.body,
-                             {Vec3(request.second, 0.0, 0.0), Quat::Identity()}},
-                            state_.now_ns))
+        if (controller_.watches())
+            watch(request);
+        else if (!commands_.send({request.kind,
+                                  request.value,
+                                  request.text,
+                                  request.body,
+                                  {Vec3(request.second, 0.0, 0.0), Quat::Identity()}},
+                                 state_.now_ns))
             spdlog::warn("a command was not sent: its text is too long");
     state_.requests.clear();
+}
+
+// An instructor's window: the run is changed by its own.
+void GuiApp::watch(const Request& request) {
+    state_.command_grade = Grade::watch;
+    if (request.kind == CommandKind::disarm) {
+        state_.command_text = controller_.stop_run() ? "disarm: sent" : "disarm: not sent";
+    } else {
+        state_.command_text = "watching: only Disarm and marks";
+    }
 }
 
 void GuiApp::publish_load() {

@@ -6,6 +6,9 @@
 #include "gui/window/grounds.hpp"
 
 namespace tact {
+namespace {
+constexpr std::int64_t kMarkShownNs = 20'000'000'000;
+}  // namespace
 
 void GuiApp::draw_scene(std::int64_t now_ns) {
     const Window::Size size = window_.size();
@@ -45,6 +48,9 @@ void GuiApp::draw_scene(std::int64_t now_ns) {
     if (controller_.attached() && system().second_hand_is_pen())
         view.hand = second_hand_.at(now_ns, content_->meta);
     state_.second_hand = view.hand.has_value();
+    if (controller_.attached() && controller_.have_mark && now_ns - marked_at_ns_ < kMarkShownNs)
+        view.mark_at_model_m = Vec3(controller_.mark.pos_model_m[0], controller_.mark.pos_model_m[1],
+                                    controller_.mark.pos_model_m[2]);
     system().prepare(now_ns, sharp_, view, context());
     state_.second_force_n = view.hand ? view.hand->force_world_n.norm() : 0.0;
     state_.second_at_wall = view.hand && view.hand->at_wall;

@@ -11,7 +11,10 @@ void GuiApp::handle_input() {
         const float height = layout_for(theme_, io.DisplaySize.x, io.DisplaySize.y,
                                         middle_card(state_, system().panels()), state_.strip == 1)
                                  .view.height;
-        if (io.MouseDown[0]) camera_.rotate(io.MouseDelta.x, io.MouseDelta.y, height);
+        if (controller_.watches() && io.KeyCtrl && ImGui::IsMouseClicked(ImGuiMouseButton_Left))
+            mark_under_pointer();
+        else if (io.MouseDown[0] && !io.KeyCtrl)
+            camera_.rotate(io.MouseDelta.x, io.MouseDelta.y, height);
         if (io.MouseDown[1]) camera_.pan(io.MouseDelta.x, io.MouseDelta.y, height);
         if (io.MouseWheel != 0.0F && io.KeyAlt && content_)
             system().turn_wheel(static_cast<double>(io.MouseWheel));
@@ -26,6 +29,7 @@ void GuiApp::handle_input() {
     now.bone = of_system == KeyWhen::bone;
     now.stereo = stage_ != nullptr && !now.calibrating;
     now.controller = controller_.attached();
+    now.watching = controller_.watches();
     for (const KeyStroke& stroke : window_.take_keys()) {
         if (io.WantTextInput) continue;
         const KeyFound found = find_key(stroke, now);

@@ -79,6 +79,9 @@ private:
     void make_stage(const StageSettings& settings);
     void draw_calibration(const ViewFrame& view, std::int64_t now_ns);
     void draw_panels();
+    void watch(const Request& request);
+    void report_mark();
+    void mark_under_pointer();
     void publish_load();
     void publish_frames();
     [[nodiscard]] double due_s() const;
@@ -126,7 +129,8 @@ private:
     BrowserController browser_{options_.scene_switch};
     bool as_left_wanted_ = !options_.window_state_file.empty();  // for the first scene shown
     SecondHand second_hand_;
-    RingCursor traces_place_;  // in the trace ring
+    std::int64_t marked_at_ns_ = std::numeric_limits<std::int64_t>::min() / 2;  // by an instructor
+    RingCursor traces_place_;                                                   // in the trace ring
     TraceExport trace_export_;
     ViewOptions view_options_;
     Camera camera_;

@@ -32,6 +32,8 @@ bool parse_gui_options(int argc, const char* const* argv, GuiOptions& options, i
         ->check(CLI::Range(0.0, 1e7));
     app.add_option("--screenshot", options.screenshot, "Write a PNG of the last frame at the end")
         ->type_name("FILE.png");
+    app.add_flag("--watch", options.watch,
+                 "Instructor's window beside that of the run: changes nothing, may disarm and mark places");
     app.add_option("--training", options.training.plan, "Training task of a drilling scene (TOML)")
         ->type_name("FILE.toml");
     app.add_option("--trainee", options.training.trainee, "Name of the trainee, for the report")

@@ -39,6 +39,7 @@ struct GuiOptions {
     std::vector<ContourOption> contours;           // empty: the scene's own
     bool depth_cue = true;
     bool mute = false;             // no sound
+    bool watch = false;            // an instructor's window
     TrainingOptions training;      // of a drilling scene
     bool near_burr = false;        // close view once it is in bone
     std::uint32_t particles = 0;   // constant number over bone

@@ -50,6 +50,7 @@ void show_controller(Controller& controller, const CommandSender& commands, Dash
     state.tracker = controller.tracker;
     state.refused_records = controller.refused();
     state.events_missed = controller.events_missed();
+    if (state.watching) return;  // what it says is of its own orders
     state.command_text = commands.text();
     using Stage = CommandSender::Stage;
     state.command_grade = commands.stage() == Stage::done   ? Grade::good

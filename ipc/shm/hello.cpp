@@ -14,7 +14,7 @@ namespace {
 constexpr std::size_t kFilesSeen =
     8;  // descriptors of an oversized packet that are received, counted and closed
 
-// Both messages start alike: magic, then version.
+// All messages start alike: magic, then version.
 template <class Message>
 HelloCheck parse(std::span<const std::byte> bytes, std::uint64_t magic, Message& message) noexcept {
     if (bytes.size() != sizeof message) return HelloCheck::garbage;
@@ -31,7 +31,7 @@ HelloCheck parse(std::span<const std::byte> bytes, std::uint64_t magic, Message&
 
 HelloCheck parse_hello(std::span<const std::byte> bytes, HelloMessage& hello) noexcept {
     const HelloCheck check = parse(bytes, kHelloMagic, hello);
-    if (check == HelloCheck::good && hello.role > static_cast<std::uint32_t>(LinkRole::flight))
+    if (check == HelloCheck::good && hello.role > static_cast<std::uint32_t>(LinkRole::instructor))
         return HelloCheck::garbage;
     return check;
 }
@@ -41,6 +41,15 @@ HelloCheck parse_answer(std::span<const std::byte> bytes, AnswerMessage& answer)
     if (check == HelloCheck::good &&
         (answer.answer > static_cast<std::uint32_t>(LinkAnswer::other_version) || answer.reserved0 != 0))
         return HelloCheck::garbage;
+    return check;
+}
+
+HelloCheck parse_order(std::span<const std::byte> bytes, OrderMessage& order) noexcept {
+    const HelloCheck check = parse(bytes, kOrderMagic, order);
+    if (check != HelloCheck::good) return check;
+    if (order.order > static_cast<std::uint32_t>(LinkOrder::mark)) return HelloCheck::garbage;
+    for (const double p : order.pos_model_m)
+        if (!(p >= -1e3 && p <= 1e3)) return HelloCheck::garbage;
     return check;
 }
 

@@ -1,6 +1,6 @@
-// The two messages of a link: the client's hello and the controller's answer. Fixed size, plain data.
+// The messages of a link: the client's hello, the controller's answer, and orders of an instructor. Fixed size, plain data.
 //
-// Input    untrusted: parse_hello() and parse_answer() take any bytes and accept only fields in range.
+// Input    untrusted: parse_hello(), parse_answer() and parse_order() take any bytes and accept only fields in range.
 #pragma once
 
 #include <cstddef>
@@ -13,8 +13,10 @@
 
 namespace tact {
 
-// A recorder writes every cycle to a file; a flight recorder keeps the last half minute.
-enum class LinkRole : std::uint32_t { observer, gui, recorder, flight };
+// A recorder writes every cycle to a file; a flight recorder keeps the last half minute. An instructor watches, and may stop
+// the run and mark places.
+enum class LinkRole : std::uint32_t { observer, gui, recorder, flight, instructor };
+enum class LinkOrder : std::uint32_t { stop, mark };
 enum class LinkAnswer : std::uint32_t {
     attached,  // as requested; comes with the region's file, and the bone region's file if there is one
     watching,  // requested as gui, but another one is attached: same files; its region may be used later
@@ -25,7 +27,8 @@ enum class LinkAnswer : std::uint32_t {
 
 inline constexpr std::uint64_t kHelloMagic = 0x314F4C4C45485441ULL;
 inline constexpr std::uint64_t kAnswerMagic = 0x3152535741485441ULL;
-inline constexpr std::uint32_t kLinkVersion = 3;  // 3: recorders identify themselves
+inline constexpr std::uint64_t kOrderMagic = 0x3152445241485441ULL;
+inline constexpr std::uint32_t kLinkVersion = 4;  // 4: instructors
 
 struct HelloMessage {
     std::uint64_t magic;
@@ -41,12 +44,22 @@ struct AnswerMessage {
     std::uint32_t reserved0;    // zero
     std::uint64_t reserved[5];  // zero
 };
+struct OrderMessage {
+    std::uint64_t magic;
+    std::uint32_t version;
+    std::uint32_t order;        // LinkOrder
+    double pos_model_m[3];      // mark
+    std::uint64_t reserved[3];  // zero
+};
+static_assert(std::is_trivially_copyable_v<OrderMessage> && sizeof(OrderMessage) == 64);
 static_assert(std::is_trivially_copyable_v<HelloMessage> && sizeof(HelloMessage) == 64);
 static_assert(std::is_trivially_copyable_v<AnswerMessage> && sizeof(AnswerMessage) == 64);
 
 enum class HelloCheck : std::uint8_t { good, garbage, other_version };
 [[nodiscard]] HelloCheck parse_hello(std::span<const std::byte> bytes, HelloMessage& hello) noexcept;
 [[nodiscard]] HelloCheck parse_answer(std::span<const std::byte> bytes, AnswerMessage& answer) noexcept;
+// Good: also a place within a kilometre.
+[[nodiscard]] HelloCheck parse_order(std::span<const std::byte> bytes, OrderMessage& order) noexcept;
 
 // One packet with at most two files. Both functions never block.
 enum class Receipt : std::uint8_t { message, nothing_yet, closed };

@@ -7,7 +7,8 @@
 //            the same session is refused with the process id of the first. It sends its region to every
 //            client and accepts the region of at most one visual process; others watch, and the longest
 //            waiting visual process takes over when the first ends. The region must be marked ready before.
-//            A bone scene also sends the bone region.
+//            A bone scene also sends the bone region. Of a client it takes no message after its hello, except the orders of an
+//            instructor.
 // Client     in tact-gui and tact. poll() never blocks: it connects, reconnects after the controller ended,
 //            and provides a status text
 // Input      untrusted: messages have a fixed size and are checked; a client that sends anything else,
@@ -15,6 +16,7 @@
 //            TACT_RUNTIME_GROUP set, the members of that group: session_path.hpp) is dropped and counted
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <memory>
 #include <string>
@@ -39,6 +41,15 @@ public:
         bool gui_left = false;
         FileDescriptor gui_fd;
         std::uint32_t gui_pid = 0;
+        // Of instructors, in the order of their arrival; more of them wait for the next poll.
+        static constexpr std::size_t kOrdersMost = 4;
+        struct Order {
+            LinkOrder what = LinkOrder::stop;
+            double pos_model_m[3] = {0.0, 0.0, 0.0};
+            std::uint32_t pid = 0;
+        };
+        std::array<Order, kOrdersMost> order{};
+        std::size_t orders = 0;
     };
     News poll(int timeout_ms);  // serves pending events; at most one arrival and one departure per call
     // Connected recorders. One that ends or dies is removed at the next poll().
@@ -70,6 +81,8 @@ public:
         FileDescriptor bone_fd;  // not valid(): no bone
         std::uint32_t rt_pid = 0;
     };
+    // As an instructor, attached. False: not sent. The place matters for a mark.
+    bool order(LinkOrder what, const std::array<double, 3>& pos_model_m = {});
     News poll();  // never blocks; retries a missing controller at most ten times a second
     [[nodiscard]] bool attached() const;
     [[nodiscard]] bool reached() const;  // attached, or connected and waiting for the answer

@@ -5,6 +5,7 @@
 #include <sys/un.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <chrono>
 #include <cstring>
@@ -149,6 +150,16 @@ LinkClient::News LinkClient::poll() {
         state_->watch(news);
     if (state_->step == State::Step::asked) state_->take_answer(news);
     return news;
+}
+
+bool LinkClient::order(LinkOrder what, const std::array<double, 3>& pos_model_m) {
+    if (!attached() || state_->watches_as != LinkRole::instructor || state_->own_region_fd >= 0) return false;
+    OrderMessage m{};
+    m.magic = kOrderMagic;
+    m.version = kLinkVersion;
+    m.order = static_cast<std::uint32_t>(what);
+    std::copy(pos_model_m.begin(), pos_model_m.end(), m.pos_model_m);
+    return send_packet(state_->socket.get(), std::as_bytes(std::span(&m, 1)), -1);
 }
 
 bool LinkClient::attached() const { return state_->step == State::Step::attached; }

@@ -34,6 +34,7 @@ namespace {
 constexpr std::size_t kClientsMax = 16;  // visual process and observers together
 constexpr std::size_t kSilentMax = 8;    // connected, without hello
 constexpr Duration kHelloPatience = std::chrono::seconds(2);
+constexpr unsigned kOrdersPerS = 50;  // of an instructor; one who sends more is dropped
 
 struct Client {
     FileDescriptor socket;
@@ -44,6 +45,8 @@ struct Client {
     bool gui = false;  // requested to be the visual process
     LinkRole role = LinkRole::observer;
     bool attached = false;  // is the visual process
+    unsigned orders = 0;    // since orders_from
+    Instant orders_from{};
     bool gone = false;
 };
 
@@ -175,13 +178,34 @@ struct LinkServer::State {
         news.gui_fd = std::move(client.region);
         news.gui_pid = client.pid;
     }
+    static bool take_order(Client& client, const Packet& packet, News& news) {
+        const Instant now = Monotonic::now();
+        if (now - client.orders_from > std::chrono::seconds(1)) {
+            client.orders_from = now;
+            client.orders = 0;
+        }
+        if (++client.orders > kOrdersPerS) return false;
+        OrderMessage m{};
+        const bool good = parse_order({packet.bytes, packet.size}, m) == HelloCheck::good &&
+                          !packet.file.valid() && !packet.files_too_many;
+        if (!good) return false;
+        News::Order& order = news.order[news.orders++];
+        order.what = static_cast<LinkOrder>(m.order);
+        std::copy(std::begin(m.pos_model_m), std::end(m.pos_model_m), order.pos_model_m);
+        order.pid = client.pid;
+        return true;
+    }
     void listen_to(Client& client, News& news) {
+        if (client.role == LinkRole::instructor && news.orders == News::kOrdersMost) return;
         Packet packet;
         const Receipt receipt = receive_packet(client.socket.get(), packet);
         if (receipt == Receipt::nothing_yet) return;
         if (receipt == Receipt::closed) {
             if (!client.greeted) ++refused;
             client.gone = true;
+        } else if (client.greeted && client.role == LinkRole::instructor &&
+                   take_order(client, packet, news)) {
+            return;
         } else if (client.greeted) {  // no further message is allowed
             ++refused;
             client.gone = true;

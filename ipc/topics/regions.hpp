@@ -17,6 +17,7 @@
 #include "ipc/topics/health.hpp"
 #include "ipc/topics/levels.hpp"
 #include "ipc/topics/load.hpp"
+#include "ipc/topics/mark.hpp"
 #include "ipc/topics/record.hpp"
 #include "ipc/topics/recorders.hpp"
 #include "ipc/topics/shapes.hpp"
@@ -43,6 +44,7 @@ struct RtRegion {
     Latest<LevelsTopic> levels;
     Latest<DisplayTopic> picture;
     Latest<RecordersTopic> recorders;
+    Latest<MarkTopic> mark;
     Ring<EventTopic, 1024> events;
     Ring<TraceTopic, 16384> trace;
     // For recordings. At 1 kHz they hold half a minute.
@@ -57,8 +59,8 @@ struct RtRegion {
     std::uint64_t reserved[7];  // zero
     using Topics = TopicList<ToolTopic, BodiesTopic, ShapesTopic, TouchTopic, DrillTopic, HeadTopic,
                              TrackerTopic, DevicesTopic, HealthTopic, LatenessTopic, LevelsTopic,
-                             DisplayTopic, RecordersTopic, EventTopic, TraceTopic, StartTopic, CycleTopic,
-                             HandTopic, MailboxTopic, ReportTopic, RunText>;
+                             DisplayTopic, RecordersTopic, MarkTopic, EventTopic, TraceTopic, StartTopic,
+                             CycleTopic, HandTopic, MailboxTopic, ReportTopic, RunText>;
 };
 
 struct GuiRegion {

@@ -93,6 +93,7 @@ void Housekeeping::run() {
 void Housekeeping::serve_link() {
     LinkServer::News news = link_.poll(kPollMs);
     count_recorders();
+    for (std::size_t i = 0; i < news.orders; ++i) obey(news.order[i]);
     if (news.gui_left) {
         gui_ = {};
         report_.gui_attached = 0;
@@ -113,6 +114,19 @@ void Housekeeping::serve_link() {
         report_.gui_heartbeat_ns = to_ns(Monotonic::now());
         spdlog::info("visual process {} attached", news.gui_pid);
     }
+}
+
+void Housekeeping::obey(const LinkServer::News::Order& o) {
+    if (o.what == LinkOrder::stop) {
+        spdlog::info("the instructor, process {}, disarms", o.pid);
+        return order(CommandKind::disarm, 0.0, 0);
+    }
+    MarkTopic t{};
+    t.taken_at_ns = to_ns(Monotonic::now());
+    t.count = ++marks_;
+    t.pid = o.pid;
+    std::copy(std::begin(o.pos_model_m), std::end(o.pos_model_m), t.pos_model_m);
+    region_->mark.publish(t);
 }
 
 void Housekeeping::count_recorders() {

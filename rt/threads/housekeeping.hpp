@@ -52,6 +52,7 @@ private:
     void serve_gui();
     void pass_on_frames();
     void count_recorders();
+    void obey(const LinkServer::News::Order& order);
     void log_events();
     void report();
     void notify_service(Instant now);
@@ -66,6 +67,7 @@ private:
     RingCursor events_;
     std::uint64_t loads_seen_ = 0, frames_seen_ = 0;
     LinkServer::Recorders recorders_;
+    std::uint64_t marks_ = 0;
     std::uint64_t bad_input_ = 0;
     std::uint64_t faults_seen_ = 0;
     HousekeepingReport report_{};

@@ -29,17 +29,24 @@ struct Judged {
 bool run(std::span<const std::byte> input) {
     if (input.empty()) return false;
     const auto rest = input.subspan(1);
-    switch (static_cast<unsigned>(input[0]) % 3) {
+    switch (static_cast<unsigned>(input[0]) % 4) {
         case 0: {
             HelloMessage hello{};
             if (parse_hello(rest, hello) != HelloCheck::good) return false;
-            require(hello.magic == kHelloMagic && hello.role <= 3);
+            require(hello.magic == kHelloMagic && hello.role <= 4);
             return true;
         }
         case 1: {
             AnswerMessage answer{};
             if (parse_answer(rest, answer) != HelloCheck::good) return false;
             require(answer.answer <= 4 && answer.version == kLinkVersion);
+            return true;
+        }
+        case 3: {
+            OrderMessage order{};
+            if (parse_order(rest, order) != HelloCheck::good) return false;
+            require(order.order <= 1 && order.version == kLinkVersion);
+            for (const double p : order.pos_model_m) require(p >= -1e3 && p <= 1e3);
             return true;
         }
         default: {
@@ -63,9 +70,14 @@ std::vector<Input> seeds() {
     AnswerMessage answer{};
     answer.magic = kAnswerMagic;
     answer.version = kLinkVersion;
+    OrderMessage order{};
+    order.magic = kOrderMagic;
+    order.version = kLinkVersion;
+    order.order = 1;
+    order.pos_model_m[1] = -0.02;
     const Judged judged{make_region_header(kIdentity, 5), kRegionReady, kRegionHeaderBytes + kIdentity.bytes};
     return {seed(std::byte{0}, bytes_of(hello)), seed(std::byte{1}, bytes_of(answer)),
-            seed(std::byte{2}, bytes_of(judged))};
+            seed(std::byte{2}, bytes_of(judged)), seed(std::byte{3}, bytes_of(order))};
 }
 
 }  // namespace tact::fuzz

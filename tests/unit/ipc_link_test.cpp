@@ -149,6 +149,50 @@ TEST_F(Link, the_controller_counts_recorders_while_they_are_connected) {
     EXPECT_EQ(server.recorders(), (Recorders{0, 1}));
 }
 
+TEST_F(Link, an_instructor_may_stop_and_mark_and_nobody_else_may) {
+    LinkServer server("t", rt_.fd());
+    const auto meet = [&](LinkClient& client) {
+        for (int i = 0; i < 1000; ++i) {
+            if (client.poll().arrived) return;
+            server.poll(1);
+        }
+        FAIL() << client.status_text();
+    };
+    LinkClient instructor("t", -1, LinkRole::instructor), observer("t", -1);
+    EXPECT_FALSE(instructor.order(LinkOrder::stop));  // not attached
+    meet(instructor);
+    meet(observer);
+    EXPECT_FALSE(observer.order(LinkOrder::stop));
+    ASSERT_TRUE(instructor.order(LinkOrder::mark, {1.0, -2.0, 3.0}));
+    ASSERT_TRUE(instructor.order(LinkOrder::stop));
+    LinkServer::News news = server.poll(100);
+    if (news.orders == 1) {  // one packet of a client a poll
+        const LinkServer::News second = server.poll(100);
+        ASSERT_EQ(second.orders, 1U);
+        news.order[news.orders++] = second.order[0];
+    }
+    ASSERT_EQ(news.orders, 2U);
+    EXPECT_EQ(news.order[0].what, LinkOrder::mark);
+    EXPECT_EQ(news.order[0].pos_model_m[1], -2.0);
+    EXPECT_EQ(news.order[0].pid, static_cast<std::uint32_t>(getpid()));
+    EXPECT_EQ(news.order[1].what, LinkOrder::stop);
+    EXPECT_EQ(server.refused(), 0U);
+    // Places that are no places, and a flood, end the link.
+    ASSERT_TRUE(instructor.order(LinkOrder::mark, {std::nan(""), 0.0, 0.0}));
+    EXPECT_EQ(server.poll(100).orders, 0U);
+    EXPECT_EQ(server.refused(), 1U);
+    LinkClient flood("t", -1, LinkRole::instructor);
+    meet(flood);
+    std::size_t taken = 0;
+    for (int i = 0; i < 200; ++i) {
+        static_cast<void>(flood.order(LinkOrder::mark, {0.0, 0.0, 0.0}));
+        taken += server.poll(1).orders;
+    }
+    EXPECT_GE(taken, 20U);
+    EXPECT_LE(taken, 100U);
+    EXPECT_EQ(server.refused(), 2U);
+}
+
 TEST_F(Link, second_controller_is_refused_with_the_first_ones_process_id) {
     const LinkServer first("t", rt_.fd());
     try {

@@ -1,0 +1,33 @@
+// An instructor's window: marks a place under the pointer; any window tells of a mark.
+#include <imgui.h>
+
+#include "gui/window/app_parts.hpp"
+
+namespace tact {
+namespace {
+constexpr std::uint16_t kOwnEvent = 0xFFFF;  // not an EventCode of the controller
+}  // namespace
+
+void GuiApp::report_mark() {
+    state_.events.push_front({state_.now_ns, kOwnEvent, 1, "the instructor marks a place", Grade::watch});
+}
+
+void GuiApp::mark_under_pointer() {
+    if (!content_ || stage_) return;
+    const ImGuiIO& io = ImGui::GetIO();
+    const PixelRect& v = layout_.view;
+    // From -1 to 1 across the view, y up.
+    const float x = 2.0F * (io.MousePos.x - v.x) / v.width - 1.0F,
+                y = 1.0F - 2.0F * (io.MousePos.y - v.y) / v.height;
+    const Eigen::Matrix4f p = camera_.projection(v.width / v.height);
+    const Eigen::Vector3f of_eye((x + p(0, 2)) / p(0, 0), (y + p(1, 2)) / p(1, 1), -1.0F);
+    const Eigen::Vector3f way = camera_.orientation().conjugate() * of_eye;
+    const Vec3 from_m = content_->centre_model_m + kAngstromM * camera_.eye_a().cast<double>();
+    const auto place = system().place_along(from_m, way.cast<double>());
+    state_.command_grade = Grade::watch;
+    state_.command_text = !place                           ? "mark: no bone under the pointer"
+                          : controller_.mark_place(*place) ? "mark: sent"
+                                                           : "mark: not sent";
+}
+
+}  // namespace tact
