@@ -93,7 +93,7 @@ void Housekeeping::run() {
 void Housekeeping::serve_link() {
     LinkServer::News news = link_.poll(kPollMs);
     count_recorders();
-    for (std::size_t i = 0; i < news.orders; ++i) obey(news.order[i]);
+    for (std::size_t i = 0; i < news.orders; ++i) apply_order(news.order[i]);
     if (news.gui_left) {
         gui_ = {};
         report_.gui_attached = 0;
@@ -116,7 +116,7 @@ void Housekeeping::serve_link() {
     }
 }
 
-void Housekeeping::obey(const LinkServer::News::Order& o) {
+void Housekeeping::apply_order(const LinkServer::News::Order& o) {
     if (o.what == LinkOrder::stop) {
         spdlog::info("the instructor, process {}, disarms", o.pid);
         return order(CommandKind::disarm, 0.0, 0);

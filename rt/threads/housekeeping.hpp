@@ -52,7 +52,7 @@ private:
     void serve_gui();
     void pass_on_frames();
     void count_recorders();
-    void obey(const LinkServer::News::Order& order);
+    void apply_order(const LinkServer::News::Order& order);
     void log_events();
     void report();
     void notify_service(Instant now);
