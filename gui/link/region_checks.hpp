@@ -9,6 +9,7 @@
 #include "ipc/topics/head.hpp"
 #include "ipc/topics/health.hpp"
 #include "ipc/topics/levels.hpp"
+#include "ipc/topics/mark.hpp"
 #include "ipc/topics/recorders.hpp"
 #include "ipc/topics/shapes.hpp"
 #include "ipc/topics/tool.hpp"
