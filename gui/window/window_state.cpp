@@ -30,7 +30,7 @@ constexpr Flag kFlags[] = {
     {"show.codebook", &SceneToggles::codebook},   {"show.graph", &SceneToggles::graph},
     {"show.force", &SceneToggles::force},         {"show.box", &SceneToggles::box},
     {"show.depth_cue", &SceneToggles::depth_cue}, {"show.frame_times", &SceneToggles::frame_times},
-    {"show.detail", &SceneToggles::detail},       {"sound", &SceneToggles::sound}};
+    {"show.detail", &SceneToggles::detail},       {"show.sound", &SceneToggles::sound}};
 
 std::string line(const char* key, const std::string& value) {
     return std::string(key) + " = " + value + "\n";

@@ -181,7 +181,7 @@ class Manual(unittest.TestCase):
                 "tact do": {"dock", "doctor"},
                 "/usr/bin/tact do": {"dock", "doctor"},
                 "tact run --he": {"--headless", "--help"},
-                "tact demo ''": {"dock", "drill", "field", "touch"},
+                "tact demo ''": {"dock", "drill", "field", "touch", "train"},
                 "tact record --fl": {"--flight"},
                 "tact demo touch --shape ''": {"terrain", "sphere", "smooth-sphere"},
                 "tact demo touch --shape = s": {"sphere", "smooth-sphere"},
