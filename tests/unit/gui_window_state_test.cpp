@@ -25,6 +25,7 @@ WindowState one_of_all() {
                  .style = 2,
                  .depth_cue = false,
                  .frame_times = true,
+                 .sound = false,
                  .molecule = 3,
                  .colouring = 2};
     s.scene = 0xfedcba9876543210ULL;
@@ -43,6 +44,7 @@ TEST(WindowStateFile, a_written_state_reads_back_unchanged) {
     EXPECT_EQ(again.lateness_choice, 1);
     EXPECT_FALSE(again.toggles.surface);
     EXPECT_TRUE(again.toggles.backbone);
+    EXPECT_FALSE(again.toggles.sound);
     EXPECT_FALSE(again.toggles.codebook);
     EXPECT_TRUE(again.toggles.box);
     EXPECT_FALSE(again.toggles.depth_cue);

@@ -177,10 +177,22 @@ TEST_F(Link, an_instructor_may_stop_and_mark_and_nobody_else_may) {
     EXPECT_EQ(news.order[0].pid, static_cast<std::uint32_t>(getpid()));
     EXPECT_EQ(news.order[1].what, LinkOrder::stop);
     EXPECT_EQ(server.refused(), 0U);
+    {
+        const auto s = raw_client();  // says that it observes, and orders
+        say(s, hello(LinkRole::observer));
+        server.poll(0);
+        EXPECT_EQ(answer(s), static_cast<std::uint32_t>(LinkAnswer::attached));
+        OrderMessage m{};
+        m.magic = kOrderMagic;
+        m.version = kLinkVersion;
+        say(s, m);
+        EXPECT_EQ(server.poll(100).orders, 0U);
+        EXPECT_EQ(server.refused(), 1U);
+    }
     // Places that are no places, and a flood, end the link.
     ASSERT_TRUE(instructor.order(LinkOrder::mark, {std::nan(""), 0.0, 0.0}));
     EXPECT_EQ(server.poll(100).orders, 0U);
-    EXPECT_EQ(server.refused(), 1U);
+    EXPECT_EQ(server.refused(), 2U);
     LinkClient flood("t", -1, LinkRole::instructor);
     meet(flood);
     std::size_t taken = 0;
@@ -190,7 +202,7 @@ TEST_F(Link, an_instructor_may_stop_and_mark_and_nobody_else_may) {
     }
     EXPECT_GE(taken, 20U);
     EXPECT_LE(taken, 100U);
-    EXPECT_EQ(server.refused(), 2U);
+    EXPECT_EQ(server.refused(), 3U);
 }
 
 TEST_F(Link, second_controller_is_refused_with_the_first_ones_process_id) {

@@ -14,7 +14,7 @@ namespace tact {
 namespace {
 
 namespace fs = std::filesystem;
-constexpr const char* kFix = "see the example deploy/training/mastoid.toml";
+constexpr const char* kTaskFix = "see the example deploy/training/mastoid.toml";
 constexpr double kFarMm = 1e5;
 constexpr std::size_t kTextMost = 2000;
 
@@ -26,7 +26,7 @@ public:
         const auto line = at != nullptr ? at->source().begin.line : 0;
         throw StartupError("reading the training task '" + name_ + "'" +
                                (line > 0 ? ", line " + std::to_string(line) : std::string()),
-                           why, kFix);
+                           why, kTaskFix);
     }
     void only(const toml::table& t, std::initializer_list<std::string_view> known) const {
         for (const auto& [key, node] : t)
@@ -193,12 +193,12 @@ TrainingPlan read_training_plan_text(std::string_view text, const std::string& n
     } catch (const toml::parse_error& e) {
         throw StartupError(
             "reading the training task '" + name + "', line " + std::to_string(e.source().begin.line),
-            std::string(e.description()), kFix);
+            std::string(e.description()), kTaskFix);
     }
 }
 
 TrainingPlan read_training_plan(const fs::path& path) {
-    return read_training_plan_text(read_typed_file(path, kFix), path.string(), path.parent_path());
+    return read_training_plan_text(read_typed_file(path, kTaskFix), path.string(), path.parent_path());
 }
 
 }  // namespace tact
