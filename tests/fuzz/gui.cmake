@@ -13,3 +13,6 @@ tact_fuzz(stage_fuzz SOURCES fuzz/stage_fuzz.cpp ${CMAKE_SOURCE_DIR}/gui/stereo/
     USES base SYSTEM tomlplusplus::tomlplusplus)
 tact_fuzz(found_places_fuzz SOURCES fuzz/found_places_fuzz.cpp ${CMAKE_SOURCE_DIR}/gui/docking/found_places.cpp
     USES base SYSTEM nlohmann_json::nlohmann_json)
+tact_fuzz(training_task_fuzz SOURCES fuzz/training_task_fuzz.cpp ${CMAKE_SOURCE_DIR}/gui/drilling/training/training_plan.cpp
+        ${CMAKE_SOURCE_DIR}/gui/base/toml_keys.cpp
+    USES base SYSTEM tomlplusplus::tomlplusplus)
