@@ -76,8 +76,11 @@ Receipt receive_packet(int socket, Packet& packet) noexcept {
             int fd = -1;
             std::memcpy(&fd, CMSG_DATA(c) + i * sizeof fd, sizeof fd);
             FileDescriptor file(fd);  // closes all but two
-            if (++files == 1) packet.file = std::move(file);
-            if (files == 2) packet.second = std::move(file);
+            ++files;
+            if (files == 1)
+                packet.file = std::move(file);
+            else if (files == 2)
+                packet.second = std::move(file);
         }
     }
     packet.files_too_many = files > 2 || (message.msg_flags & MSG_CTRUNC) != 0;

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <charconv>
 #include <cstdio>
 #include <optional>
 
@@ -65,8 +66,9 @@ public:
         }
         const auto text = node.value_exact<std::string>();
         unsigned rgb = 0;
-        int used = 0;
-        if (!text || text->size() != 7 || std::sscanf(text->c_str(), "#%6x%n", &rgb, &used) != 1 || used != 7)
+        const bool form = text && text->size() == 7 && text->front() == '#';
+        const char* const end = form ? text->data() + 7 : nullptr;
+        if (!form || std::from_chars(text->data() + 1, end, rgb, 16).ptr != end)
             fail(node, "a colour must be \"#RRGGBB\" or [red, green, blue]");
         return {static_cast<std::uint8_t>(rgb >> 16U), static_cast<std::uint8_t>(rgb >> 8U & 255U),
                 static_cast<std::uint8_t>(rgb & 255U)};

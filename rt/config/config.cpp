@@ -161,7 +161,7 @@ std::string complaint(const ConfigKey& key) {
     }
     if (const auto* many = std::get_if<std::span<double>>(&key.target)) {
         for (const double d : *many) {
-            const std::string bad = range(d, number_text(d));
+            std::string bad = range(d, number_text(d));
             if (!bad.empty()) return bad;
         }
         return {};
