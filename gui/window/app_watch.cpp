@@ -2,6 +2,7 @@
 #include <imgui.h>
 
 #include "gui/window/app_parts.hpp"
+#include "ipc/base/units.hpp"
 
 namespace tact {
 namespace {

@@ -33,7 +33,7 @@ std::string plain(std::string cell) {
 }
 
 std::string csv(const std::string& text) {
-    const std::string cell = plain(text);
+    std::string cell = plain(text);
     if (cell.find_first_of(",\"\r\n") == std::string::npos) return cell;
     std::string out = "\"";
     for (const char c : cell) out += c == '"' ? std::string("\"\"") : std::string(1, c);

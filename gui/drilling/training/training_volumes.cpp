@@ -13,6 +13,12 @@ namespace {
 constexpr std::uint32_t kEdge = BoneBricks::kEdge;
 constexpr double kMm = 1e-3;
 
+// Of a voxel in its brick.
+Vec3 place_in_brick(std::uint32_t voxel) {
+    const std::uint32_t y = voxel / kEdge % kEdge, z = voxel / kEdge / kEdge;
+    return {static_cast<double>(voxel % kEdge), static_cast<double>(y), static_cast<double>(z)};
+}
+
 [[noreturn]] void fail(const std::string& why, const std::string& fix) {
     throw StartupError("preparing the training task", why, fix);
 }
@@ -43,8 +49,7 @@ TrainingVolumes::TrainingVolumes(const TrainingPlan& plan, const TrainingBone& b
             bone_.volume->density.subspan(std::size_t{b} * BoneBricks::kVoxels, BoneBricks::kVoxels);
         for (std::uint32_t v = 0; v < BoneBricks::kVoxels; ++v) {
             if (baked[v] == 0) continue;
-            const Vec3 at_m =
-                bricks_.to_model(corner(b) + Vec3(v % kEdge, v / kEdge % kEdge, v / kEdge / kEdge));
+            const Vec3 at_m = bricks_.to_model(corner(b) + place_in_brick(v));
             int least = baked[v];
             for (Mask m = touched_[b]; m != 0; m &= m - 1) {
                 const auto z = static_cast<std::size_t>(std::countr_zero(m));
@@ -73,8 +78,8 @@ TrainingVolumes::TrainingVolumes(const TrainingPlan& plan, const TrainingBone& b
 
 Vec3 TrainingVolumes::corner(std::uint32_t brick) const {
     const auto n = bricks_.bricks();
-    return {static_cast<double>(kEdge * (brick % n[0])), static_cast<double>(kEdge * (brick / n[0] % n[1])),
-            static_cast<double>(kEdge * (brick / n[0] / n[1]))};
+    const std::uint32_t x = brick % n[0], y = brick / n[0] % n[1], z = brick / n[0] / n[1];
+    return kEdge * Vec3(static_cast<double>(x), static_cast<double>(y), static_cast<double>(z));
 }
 
 TrainingSums::Region& TrainingVolumes::region(std::size_t zone) {
@@ -185,18 +190,17 @@ void TrainingVolumes::add(std::uint32_t brick, std::span<const std::uint8_t> now
         // A controller's bone never holds more than the scene's (BoneFollower); if it does, nothing is missing.
         const int missing = std::max(int{baked[v]} - int{now[v]}, 0);
         if (missing == 0) continue;
-        const Vec3 at_m =
-            bricks_.to_model(corner(brick) + Vec3(v % kEdge, v / kEdge % kEdge, v / kEdge / kEdge));
+        const Vec3 at_m = bricks_.to_model(corner(brick) + place_in_brick(v));
         int least = baked[v];
         for (Mask m = touched_[brick]; m != 0; m &= m - 1) {
             const auto z = static_cast<std::size_t>(std::countr_zero(m));
             const int stays = left(zone_[z], brick, v, at_m, baked[v]);
-            region(z).taken += sign * std::min(missing, baked[v] - stays);
+            region(z).taken += std::int64_t{sign} * std::min(missing, baked[v] - stays);
             if (z < goals_) least = std::min(least, stays);
         }
         const int of_goals = std::min(missing, baked[v] - least);
-        sums_.any_goal.taken += sign * of_goals;
-        sums_.outside_taken += sign * (missing - of_goals);
+        sums_.any_goal.taken += std::int64_t{sign} * of_goals;
+        sums_.outside_taken += std::int64_t{sign} * (missing - of_goals);
     }
 }
 
