@@ -25,7 +25,11 @@ std::optional<Vec3> first_bone(const BoneVolumeView& volume, const Vec3& from_m,
         begin = std::max(begin, std::min(t0, t1));
         end = std::min(end, std::max(t0, t1));
     }
-    for (double t = begin + 0.5 * kLineStep; t < end; t += kLineStep) {
+    const double length = std::clamp(end - begin, 0.0, 1e6);  // no volume is as long
+    const int steps = static_cast<int>(length / kLineStep);
+    for (int i = 0; i <= steps; ++i) {
+        const double t = begin + (i + 0.5) * kLineStep;
+        if (t >= end) break;
         const Vec3 at = from + t * along;
         std::array<std::uint32_t, 3> voxel{};
         for (int k = 0; k < 3; ++k) {
