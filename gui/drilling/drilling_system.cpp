@@ -119,11 +119,10 @@ bool DrillingSystem::perform(KeyAction what, std::size_t place, const SystemCont
 }
 
 void DrillingSystem::sound(const SystemContext& context) {
-    panels_.sound = options_.mute                                                         ? "muted by --mute"
-                    : sound_ == nullptr || sound_->state() == SoundDevice::State::opening ? "no scene"
-                    : sound_->state() == SoundDevice::State::none                         ? sound_->problem()
-                                                                                          : std::string();
+    panels_.sound = "muted by --mute";
     if (sound_ == nullptr) return;
+    panels_.sound =
+        sound_->state() == SoundDevice::State::opening ? "opening the sound device" : sound_->problem();
     sound_->mute(!context.state.toggles.sound);
     const Controller& controller = context.controller;
     if (!controller.attached() || !controller.have_drill) return voice_.set({});

@@ -13,7 +13,7 @@ void GuiApp::handle_input() {
                                  .view.height;
         if (controller_.watches() && io.KeyCtrl && ImGui::IsMouseClicked(ImGuiMouseButton_Left))
             mark_under_pointer();
-        else if (io.MouseDown[0] && !io.KeyCtrl)
+        else if (io.MouseDown[0] && !(controller_.watches() && io.KeyCtrl))
             camera_.rotate(io.MouseDelta.x, io.MouseDelta.y, height);
         if (io.MouseDown[1]) camera_.pan(io.MouseDelta.x, io.MouseDelta.y, height);
         if (io.MouseWheel != 0.0F && io.KeyAlt && content_)

@@ -7,10 +7,12 @@
 namespace tact {
 namespace {
 constexpr std::uint16_t kOwnEvent = 0xFFFF;  // not an EventCode of the controller
+constexpr std::size_t kLinesKept = 100;
 }  // namespace
 
 void GuiApp::report_mark() {
     state_.events.push_front({state_.now_ns, kOwnEvent, 1, "the instructor marks a place", Grade::watch});
+    if (state_.events.size() > kLinesKept) state_.events.pop_back();
 }
 
 void GuiApp::mark_under_pointer() {

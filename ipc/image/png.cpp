@@ -50,9 +50,10 @@ std::vector<std::uint8_t> PngReader::read(PngFormat format) {
 }
 
 std::vector<std::uint8_t> png_bytes(std::uint32_t width_px, std::uint32_t height_px,
-                                    std::span<const std::uint8_t> pixels, PngFormat format) {
-    const auto fail = [](const std::string& why) {
-        throw StartupError("writing an image", why, "set a size above zero");
+                                    std::span<const std::uint8_t> pixels, PngFormat format,
+                                    const std::string& name) {
+    const auto fail = [&name](const std::string& why) {
+        throw StartupError("writing the image " + name, why, "set a size above zero");
     };
     png_image image{};
     image.version = PNG_IMAGE_VERSION;
@@ -74,7 +75,7 @@ std::vector<std::uint8_t> png_bytes(std::uint32_t width_px, std::uint32_t height
 
 void write_png(const std::filesystem::path& path, std::uint32_t width_px, std::uint32_t height_px,
                std::span<const std::uint8_t> pixels, PngFormat format) {
-    const std::vector<std::uint8_t> content = png_bytes(width_px, height_px, pixels, format);
+    const std::vector<std::uint8_t> content = png_bytes(width_px, height_px, pixels, format, path.string());
     replace_file(path, std::string(content.begin(), content.end()));
 }
 

@@ -10,6 +10,7 @@
 #include <memory>
 #include <span>
 #include <stdexcept>
+#include <string>
 #include <vector>
 
 namespace tact {
@@ -38,10 +39,11 @@ private:
     std::unique_ptr<State> state_;
 };
 
-// A file's content. `pixels`: width times height pixels of `format`.
+// A file's content. `pixels`: width times height pixels of `format`. name: for messages.
 [[nodiscard]] std::vector<std::uint8_t> png_bytes(std::uint32_t width_px, std::uint32_t height_px,
                                                   std::span<const std::uint8_t> pixels,
-                                                  PngFormat format = PngFormat::rgb);
+                                                  PngFormat format = PngFormat::rgb,
+                                                  const std::string& name = "of a report");
 // The folder must exist.
 void write_png(const std::filesystem::path& path, std::uint32_t width_px, std::uint32_t height_px,
                std::span<const std::uint8_t> pixels, PngFormat format = PngFormat::rgb);

@@ -14,6 +14,7 @@ if(TACT_GUI)
             prep_mesh SYSTEM nlohmann_json::nlohmann_json CLI11::CLI11)
     tact_test(unit/gui_drill_sound_test.cpp USES gui_drilling_sound)
     tact_test(unit/gui_training_test.cpp USES gui_drilling_training)
+    tact_test(unit/gui_training_volumes_test.cpp USES gui_drilling_training scene)
     tact_test(unit/gui_first_bone_test.cpp USES gui_drilling_site scene)
     tact_test(scenario/site_scenario_test.cpp USES gui_drilling_site gui_link topics shm scene hal force servo threads config start base)
     tact_tests(gui_draw_tests SOURCES

@@ -18,8 +18,8 @@ void add_drill_demo(CLI::App& demo, int& exit_code);
 std::span<const PassedOption> drilling_controller_options();
 // Without a device and an explicit choice: an emulated surgeon with a burr, and a second hand with a suction tube.
 void let_the_hands_drill(RunOptions& options);
-// Where the emulated surgeon opens the synthetic temporal bone: behind the ear canal, over the antrum (--hand-at-mm).
 extern const char* const kDemoTask;  // deploy/training/mastoid.toml
+// Where the emulated surgeon opens the synthetic temporal bone: behind the ear canal, over the antrum (--hand-at-mm).
 inline constexpr const char* kMastoidMm = "-4.5,0";
 
 nlohmann::json drilling_info(const SceneFile& scene);
