@@ -24,6 +24,34 @@ double length(const float (&v)[3]) {
 
 bool has(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
 
+// A second person's window: it marks a place and ends the force; the run's own window stays in charge of all else.
+TEST(Instructor, marks_a_place_and_disarms_and_the_runs_window_can_arm_again) {
+    const Rig rig;
+    Controller rt(rig, {});
+    Watch watch(rig);
+    ASSERT_TRUE(watch.attach()) << rt.said();
+    Visual visual(rig);
+    ASSERT_TRUE(bring_to_force(visual, watch)) << rt.said();
+    LinkClient instructor(rig.session(), -1, LinkRole::instructor);
+    ASSERT_TRUE(until([&] { return instructor.poll().arrived; })) << instructor.status_text();
+    ASSERT_TRUE(instructor.order(LinkOrder::mark, {0.01, -0.02, 0.03}));
+    MarkTopic mark{};
+    ASSERT_TRUE(until([&] {
+        visual.frame();
+        return watch.region().mark.read(mark) && mark.count == 1;
+    }));
+    EXPECT_EQ(mark.pos_model_m[1], -0.02);
+    EXPECT_EQ(mark.pid, static_cast<std::uint32_t>(getpid()));
+    EXPECT_EQ(watch.state(), RunState::active);  // a mark stops nothing
+    ASSERT_TRUE(instructor.order(LinkOrder::stop));
+    ASSERT_TRUE(until([&] {
+        visual.frame();
+        return watch.state() == RunState::ready;
+    }));
+    ASSERT_TRUE(until([&] { return watch.force_n() == 0.0; }));  // the ramp out takes 50 ms
+    EXPECT_EQ(command(visual, watch, CommandKind::arm), CommandResult::done) << rt.said();
+}
+
 // Each of these signals stops the loop in the same way.
 class StopSignal : public ::testing::TestWithParam<int> {};
 
