@@ -33,7 +33,11 @@ bool something_to_ask() {
 
 }  // namespace
 
-SoundDevice::SoundDevice(DrillVoice& voice) : voice_(voice), opener_([this] { open(); }) {}
+SoundDevice::SoundDevice(DrillVoice& voice)
+    : voice_(voice), opener_([this] {
+          open();
+          SDL_TLSCleanup();  // SDL does not see the end of a thread that it did not start
+      }) {}
 
 SoundDevice::~SoundDevice() {
     opener_.join();
