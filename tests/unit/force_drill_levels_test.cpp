@@ -199,6 +199,26 @@ TEST(DrillLevels, in_free_space_a_level_is_predicted_to_cost_what_a_pocket_costs
     }
 }
 
+// Only a step that another program held cuts more groups: the next ones do not.
+TEST(DrillLevels, a_held_step_raises_no_prediction_of_cost_or_error) {
+    constexpr double kRadiusM = 20e-3;
+    Drilled d(kRadiusM, 160);
+    d.begin(stroke_m(kRadiusM, 0.0));
+    for (int i = 0; i < 500; ++i) (void)d.step(stroke_m(kRadiusM, 1e-3 * i), 0.0F);
+    const PathLoad before = d.model->predict(0.0F);
+    d.model->turn_burr({kFullRadS, 45e-3});
+    (void)d.step(stroke_m(kRadiusM, 0.5), 0.0F);
+    const PathLoad after = d.model->predict(0.0F);
+    EXPECT_LT(to_us(after.cost_predicted), 1.3 * to_us(before.cost_predicted));
+    EXPECT_LT(after.error, 1.3F * before.error);
+    // A rate that stays lower is followed.
+    for (int i = 0; i < 300; ++i) {
+        d.model->turn_burr({kFullRadS, 45e-3});
+        (void)d.step(stroke_m(kRadiusM, 0.5), 0.0F);
+    }
+    EXPECT_GT(to_us(d.model->predict(0.0F).cost_predicted), 1.3 * to_us(before.cost_predicted));
+}
+
 // The reference is the slope of the force over the depth in flat bone.
 TEST(DrillModel, the_reported_stiffness_is_the_largest_slope_of_the_force_up_to_its_limit) {
     const double radius_m = 6e-3;

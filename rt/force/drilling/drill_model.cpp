@@ -25,6 +25,7 @@ constexpr double kTypicalForceN = 3.0;                   // of a surgeon's hand
 // In the pocket that it has cut, a burr touches over 3.5 times the area of flat bone at the same force; a deeper one touches
 // more.
 constexpr double kPocketArea = 5.5;
+constexpr double kUsualStep = 0.02;
 
 bool hand_is_there(const Pose& pose) noexcept {
     const double turn = pose.q.squaredNorm();
@@ -112,6 +113,7 @@ void DrillModel::turn_burr(const BurrDrive& drive) noexcept {
                        drive.step_s > 0.0 && std::isfinite(drive.step_s);
     drive_ = right ? drive : BurrDrive{};
     drive_.step_s = std::min(drive_.step_s, kStepSMost);
+    usual_step_s_ *= drive_.step_s > usual_step_s_ ? 1.0 + kUsualStep : 1.0 - kUsualStep;
 }
 
 BlockDetail DrillModel::detail_of(float fidelity) noexcept {
@@ -133,14 +135,14 @@ double DrillModel::rate_per_s() const noexcept {
                  : 0.0;
 }
 
-DrillWork DrillModel::expected(float fidelity) const noexcept {
+DrillWork DrillModel::expected(float fidelity, double step_s) const noexcept {
     const BlockDetail detail = detail_of(fidelity);
     const auto asked = [&](const BlockDetail& d) { return d.asked(last_.look.depth) * last_.look.radius; };
     DrillWork work = expected_work(last_.work, last_.look, asked(detail));
     if (last_.still_look.block > 0.0)
         work.add(expected_work(last_.still, last_.still_look, asked(stiffness_detail(detail))));
     if (led_) {
-        const std::uint32_t groups = turns_.groups_at(fidelity, drive_.step_s);
+        const std::uint32_t groups = turns_.groups_at(fidelity, step_s);
         const double share = static_cast<double>(groups) / turns_.groups();
         work.cut = share * turns_.bricks().computed;
         work.changed = share * turns_.bricks().changed;
@@ -151,7 +153,7 @@ DrillWork DrillModel::expected(float fidelity) const noexcept {
 
 PathLoad DrillModel::predict(float fidelity) const noexcept {
     PathLoad load;
-    const DrillWork work = expected(fidelity);
+    const DrillWork work = expected(fidelity, usual_step_s_);
     load.items = work.items();
     // In free space and at the first contact, the cost in the pocket that the burr will cut.
     const BlockDetail detail = detail_of(fidelity);
@@ -163,7 +165,7 @@ PathLoad DrillModel::predict(float fidelity) const noexcept {
     const double pocket = std::min(kPocketArea, 1.0 / typical_.depth);  // no more than half of the ball
     typical.blocks *= pocket;
     typical.summed *= pocket;
-    const std::uint32_t groups = turns_.groups_at(fidelity, drive_.step_s);
+    const std::uint32_t groups = turns_.groups_at(fidelity, usual_step_s_);
     const double share = static_cast<double>(groups) / turns_.groups();
     typical.cut *= pocket * share;
     typical.changed *= pocket * share;
@@ -171,7 +173,7 @@ PathLoad DrillModel::predict(float fidelity) const noexcept {
     load.cost_predicted = std::max(drill_cost(work), drill_cost(typical));
     // A group waits for all steps between its cuts.
     const double steps = static_cast<double>(turns_.groups()) / groups;
-    const double pending = 0.5 * (steps - 1.0) * rate_per_s() * drive_.step_s;
+    const double pending = 0.5 * (steps - 1.0) * rate_per_s() * usual_step_s_;
     load.error = error_n(last_, detail, pending);
     return load;
 }
@@ -221,7 +223,7 @@ void DrillModel::publish(const ModelCycle& cycle) noexcept {
 StepResult DrillModel::step(const ToolState& tool, const Budget& budget) noexcept {
     const Instant begin = Monotonic::now();
     StepResult result;
-    const DrillWork planned = expected(budget.fidelity);
+    const DrillWork planned = expected(budget.fidelity, drive_.step_s);
     result.load.cost_predicted = drill_cost(planned);
     last_ = {};
     fade_.begin_step(drive_.step_s);

@@ -187,7 +187,7 @@ private:
     [[nodiscard]] double rate_per_s() const noexcept TACT_RT;
     [[nodiscard]] double error_n(const BallForces& sum, const BlockDetail& detail,
                                  double pending) const noexcept TACT_RT;
-    [[nodiscard]] DrillWork expected(float fidelity) const noexcept TACT_RT;
+    [[nodiscard]] DrillWork expected(float fidelity, double step_s) const noexcept TACT_RT;
     void forget_depths() noexcept TACT_RT;
     [[nodiscard]] Vec3 shaken_n(const ToolState& tool, double elastic_n) noexcept TACT_RT;
 
@@ -210,6 +210,8 @@ private:
     double error_before_n_ = 0.0;
     ToolDrive driven_;
     BurrDrive drive_;
+    // Streaming median: a step that another program held does not predict what the next ones cost.
+    double usual_step_s_ = BurrDrive{}.step_s;
     DrillPublisher* publisher_ = nullptr;
     double stiffness_n_m_ = 0.0, per_voxel_m_ = 1.0;  // world metres of a voxel edge
     double head_radius_m_ = 0.0;
