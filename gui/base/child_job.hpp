@@ -25,7 +25,7 @@ struct ChildOutcome {
 
 class ChildJob {
 public:
-    static constexpr std::size_t kOutputMax = 4096;
+    static constexpr std::size_t kOutputMax = 65536;
 
     ChildJob() = default;
     ChildJob(const ChildJob&) = delete;

@@ -10,6 +10,7 @@ struct SceneToggles {
     bool smooth_edges = true;  // initially as the renderer allows; not saved
     bool frame_times = false;  // the table of passes
     bool sound = true;         // of the drill
+    bool microscope = false;   // a drilling scene through an operating microscope
     bool detail = false;       // edge lengths as colour, if the scene has a forest
     int molecule = 1;          // trace, tube, sticks, spheres
     int colouring = 0;         // by chain, element, body

@@ -29,6 +29,9 @@ uniform sampler3D u_free;
 uniform sampler3D u_label;
 uniform vec3 u_label_size;
 uniform sampler2D u_palette;
+uniform sampler3D u_wet;
+uniform vec3 u_wet_size;   // voxels
+uniform float u_coaxial;  // 1: only the lamp of a microscope
 uniform vec3 u_size;
 uniform vec3 u_cells;
 uniform vec3 u_origin;  // ray origin, voxels
@@ -89,11 +92,12 @@ void main() {
     // Gradient from a tetrahedron's corners, four samples instead of six; narrow for fine detail, and wide because the
     // steps between voxels would otherwise appear as terraces.
     vec2 e = vec2(1.0, -1.0);
-    vec3 slope = vec3(0.0);
+    vec3 slope = vec3(0.0), fine = vec3(0.0);
     for (int i = 0; i < 2; ++i) {
         float w = i == 0 ? 1.1 : 2.3;
         slope += e.xyy * bone(p + w * e.xyy) + e.yyx * bone(p + w * e.yyx) + e.yxy * bone(p + w * e.yxy) +
                  e.xxx * bone(p + w * e.xxx);
+        if (i == 0) fine = -slope;
     }
     vec3 n = -slope;
     float steep = dot(n, n);
@@ -121,10 +125,24 @@ void main() {
     vec3 at = (u_eye * vec4(p, 1.0)).xyz;
     vec3 n_eye = normalize(mat3(u_eye) * n);
     vec3 towards = normalize(-at);
+    // Wet bone is darker, and blood stains it. What wets it lies in front of it.
+    vec2 wet = 1.0625 * texture(u_wet, (p + 2.0 * n + 0.5) / u_wet_size).rg;
+    base *= mix(vec3(1.0), vec3(0.80, 0.73, 0.68), wet.r);
+    base = mix(base, vec3(0.42, 0.045, 0.035), 0.7 * wet.g);
     vec4 c = lit(base, n_eye, towards);
     // A microscope's lamp shines along the line of sight: as deep into a hole as the view.
-    vec3 light = c.rgb * (1.0 - 0.5 * shade) + 0.42 * base * max(dot(n_eye, towards), 0.0);
+    float facing = max(dot(n_eye, towards), 0.0);
+    vec3 light = mix(c.rgb * (1.0 - 0.5 * shade) + 0.42 * base * facing, base * (0.06 + 1.12 * facing * sqrt(facing)), u_coaxial);
     light *= mix(vec3(0.46, 0.33, 0.30), vec3(1.0), open);
+    if (wet.r > 0.02) {
+        // A film of water follows the fine relief, so it glitters where the smoothed light does not.
+        vec3 film = dot(fine, fine) > 1e-8 ? normalize(mat3(u_eye) * normalize(fine)) : n_eye;
+        film = normalize(mix(n_eye, film, 0.6));
+        float lamp = max(dot(film, normalize(vec3(0.352, 0.754, 0.553) + towards)), 0.0);
+        float scope = max(dot(film, towards), 0.0);
+        light += wet.r * open * (0.30 * (1.0 - shade) * (1.0 - u_coaxial) * pow(lamp, 70.0) +
+                                 (0.22 + 0.3 * u_coaxial) * pow(scope, 110.0));
+    }
     colour = hazed(vec4(light, 1.0), -at.z, v_y);
     vec4 clip = u_projection * vec4(at, 1.0);
     gl_FragDepth = clamp(0.5 + 0.5 * clip.z / clip.w, 0.0, 0.99999);
@@ -142,18 +160,42 @@ void main() {
 constexpr char kShowFragment[] = R"(#version 330 core
 uniform sampler2D u_colour;
 uniform sampler2D u_depth;
+uniform vec2 u_distance;  // eye distance of a depth d: x / (2 d - 1 + y)
+uniform vec3 u_blur;      // distance in focus; half width of the blur in the image, per relative distance from it; its most
+uniform float u_high;     // of a circle on the screen, in the image: height over width
 in vec2 v_at;
 out vec4 colour;
+float radius(float depth) {
+    float far = u_distance.x / (2.0 * depth - 1.0 + u_distance.y);
+    return min(u_blur.y * abs(far - u_blur.x) / far, u_blur.z);
+}
 void main() {
     float depth = texture(u_depth, v_at).r;
     if (depth >= 1.0) discard;
     vec4 c = texture(u_colour, v_at);
-    colour = vec4(c.rgb / max(c.a, 0.25), 1.0);
+    vec4 sum = vec4(c.rgb / max(c.a, 0.25), 1.0);
+    float r = u_blur.y > 0.0 ? radius(depth) : 0.0;
+    if (r > 0.08 * u_blur.z) {
+        // On a spiral. What is sharp and nearer does not spread over what is blurred behind it.
+        vec2 way = vec2(0.0, 1.0);
+        for (int i = 1; i <= 14; ++i) {
+            way = mat2(-0.7374, 0.6755, -0.6755, -0.7374) * way;
+            vec2 at = v_at + r * sqrt(float(i) / 14.0) * way * vec2(1.0, u_high);
+            float there = texture(u_depth, at).r;
+            if (there >= 1.0) continue;
+            float w = there >= depth ? 1.0 : clamp(radius(there) / r, 0.0, 1.0);
+            vec4 s = texture(u_colour, at);
+            sum += w * vec4(s.rgb / max(s.a, 0.25), 1.0);
+        }
+    }
+    colour = vec4(sum.rgb / sum.a, 1.0);
     gl_FragDepth = depth;
 }
 )";
 
 constexpr GLsizei kEdge = BoneBricks::kEdge;
+constexpr float kBlurMost = 0.012F;       // radius, of the view's height
+constexpr float kBlurPerDistance = 9.0F;  // of that, per relative distance from the focus
 
 void volume_texture(GLuint name, GLint filter, GLenum wrap, const std::array<std::uint32_t, 3>& size) {
     glBindTexture(GL_TEXTURE_3D, name);
@@ -319,9 +361,41 @@ void BoneTextures::send_cells(const BoneField& field, std::uint32_t first, std::
     glPixelStorei(GL_UNPACK_ALIGNMENT, 4);
 }
 
+void BoneTextures::send_wet(const WetBone& wet) {
+    glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
+    glBindTexture(GL_TEXTURE_3D, wet_.get());
+    const auto& n = wet.size();
+    const auto width = static_cast<GLsizei>(n[0]), height = static_cast<GLsizei>(n[1]),
+               depth = static_cast<GLsizei>(n[2]);
+    if (wet_size_ != n) {
+        wet_size_ = n;
+        for (const GLenum filter : {GL_TEXTURE_MIN_FILTER, GL_TEXTURE_MAG_FILTER})
+            glTexParameteri(GL_TEXTURE_3D, filter, GL_LINEAR);
+        for (const GLenum axis : {GL_TEXTURE_WRAP_S, GL_TEXTURE_WRAP_T, GL_TEXTURE_WRAP_R})
+            glTexParameteri(GL_TEXTURE_3D, axis, GL_CLAMP_TO_EDGE);
+        glTexImage3D(GL_TEXTURE_3D, 0, GL_RG8, width, height, depth, 0, GL_RG, GL_UNSIGNED_BYTE,
+                     wet.texels().data());
+    } else {
+        constexpr std::uint32_t kCells = BoneBricks::kEdge / WetBone::kCell;
+        const std::uint32_t wide = n[0] / kCells, high = n[1] / kCells;
+        glPixelStorei(GL_UNPACK_ROW_LENGTH, width);
+        glPixelStorei(GL_UNPACK_IMAGE_HEIGHT, height);
+        for (const std::uint32_t b : wet.changed()) {
+            const std::uint32_t x = b % wide * kCells, y = b / wide % high * kCells,
+                                z = b / wide / high * kCells;
+            glTexSubImage3D(GL_TEXTURE_3D, 0, static_cast<GLint>(x), static_cast<GLint>(y),
+                            static_cast<GLint>(z), kCells, kCells, kCells, GL_RG, GL_UNSIGNED_BYTE,
+                            &wet.texels()[(std::size_t{z} * n[1] + y) * n[0] + x]);
+        }
+        glPixelStorei(GL_UNPACK_ROW_LENGTH, 0);
+        glPixelStorei(GL_UNPACK_IMAGE_HEIGHT, 0);
+    }
+    glPixelStorei(GL_UNPACK_ALIGNMENT, 4);
+}
+
 void BoneTextures::bind() {
     GLenum unit = GL_TEXTURE0;
-    for (GlTexture* const t : {&solid_, &cells_, &label_}) {
+    for (GlTexture* const t : {&solid_, &cells_, &label_, &wet_}) {
         glActiveTexture(unit++);
         glBindTexture(GL_TEXTURE_3D, t->get());
     }
@@ -340,16 +414,19 @@ BoneProgram::BoneProgram()
       from_eye_(program_.uniform("u_from_eye")),
       tan_(program_.uniform("u_tan")),
       step_(program_.uniform("u_step")),
-      lamp_(program_.uniform("u_lamp")) {
+      lamp_(program_.uniform("u_lamp")),
+      wet_size_(program_.uniform("u_wet_size")),
+      coaxial_(program_.uniform("u_coaxial")) {
     program_.use();
     GLint unit = 0;
-    for (const char* const name : {"u_bone", "u_free", "u_label", "u_palette"})
+    for (const char* const name : {"u_bone", "u_free", "u_label", "u_wet", "u_palette"})
         glUniform1i(program_.uniform(name), unit++);
     glUniform1f(program_.uniform("u_surface"), static_cast<float>(BoneField::kSurface) / 255.0F);
 }
 
 void BoneProgram::use(BoneTextures& textures, const BoneField& field, const Eigen::Matrix4f& eye_from_voxels,
-                      const Eigen::Matrix4f& projection, const Haze& haze, float step_voxels) {
+                      const Eigen::Matrix4f& projection, const Haze& haze, float step_voxels,
+                      bool coaxial_light) {
     program_.use();
     view_.set(eye_from_voxels, projection, haze);
     const Eigen::Matrix4d inverse = eye_from_voxels.cast<double>().inverse();
@@ -373,24 +450,35 @@ void BoneProgram::use(BoneTextures& textures, const BoneField& field, const Eige
                 projection(1, 2) / projection(1, 1));
     glUniform1f(step_, step_voxels);
     glUniform3fv(lamp_, 1, lamp.data());
+    const Eigen::Array3f wet = textures.wet_size_voxels();
+    glUniform3fv(wet_size_, 1, wet.data());
+    glUniform1f(coaxial_, coaxial_light ? 1.0F : 0.0F);
     textures.bind();
 }
 
 BoneOnScreen::BoneOnScreen()
-    : program_("bone on screen", kShowVertex, kShowFragment), share_(program_.uniform("u_share")) {
+    : program_("bone on screen", kShowVertex, kShowFragment),
+      share_(program_.uniform("u_share")),
+      distance_(program_.uniform("u_distance")),
+      blur_(program_.uniform("u_blur")),
+      high_(program_.uniform("u_high")) {
     program_.use();
     glUniform1i(program_.uniform("u_colour"), 0);
     glUniform1i(program_.uniform("u_depth"), 1);
 }
 
-void BoneOnScreen::use(GLuint colour, GLuint depth, float share_x, float share_y, bool smooth) {
+void BoneOnScreen::use(const Image& image, const Eigen::Matrix4f& projection, float focus_a) {
     program_.use();
-    glUniform2f(share_, share_x, share_y);
+    glUniform2f(share_, image.share_x, image.share_y);
+    glUniform2f(distance_, projection(2, 3), projection(2, 2));
+    const float most = kBlurMost * image.share_x * image.height_over_width;
+    glUniform3f(blur_, focus_a, focus_a > 0.0F ? kBlurPerDistance * most : 0.0F, most);
+    glUniform1f(high_, image.share_y / image.share_x / image.height_over_width);
     glActiveTexture(GL_TEXTURE1);
-    glBindTexture(GL_TEXTURE_2D, depth);
+    glBindTexture(GL_TEXTURE_2D, image.depth);
     glActiveTexture(GL_TEXTURE0);
-    glBindTexture(GL_TEXTURE_2D, colour);
-    const GLint filter = smooth ? GL_LINEAR : GL_NEAREST;
+    glBindTexture(GL_TEXTURE_2D, image.colour);
+    const GLint filter = image.smooth ? GL_LINEAR : GL_NEAREST;
     glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, filter);
     glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, filter);
 }

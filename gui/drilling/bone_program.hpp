@@ -3,11 +3,14 @@
 // Ray       skips empty cells at once (BoneField), steps by `step_voxels` elsewhere, and halves the step that
 //           entered the surface. Colour: of the structure, else by the density behind the surface. Light: as for
 //           everything else, times the open fraction of the sky above the surface, times a soft shadow of the lamp.
+//           Wet bone is darker and glitters; blood stains it.
+// Focus     the image on the screen is blurred with the distance from the focus, as in a microscope.
 // Frames    voxels (origin at the centre of voxel 0) inside the shader; eye space in ångström as in all programs
 // Thread    frame thread, context current
 #pragma once
 
 #include "gui/drilling/bone_field.hpp"
+#include "gui/drilling/wet_bone.hpp"
 #include "gui/render/gl.hpp"
 #include "gui/render/shading.hpp"
 
@@ -28,7 +31,13 @@ public:
     // For parts already sent:
     void send(const BoneField& field, std::uint32_t brick);  // its voxels and cells
     void send_cells(const BoneField& field);                 // all of them
+    void send_wet(const WetBone& wet);                       // the cells that changed, at first all
     void bind();
+    [[nodiscard]] Eigen::Array3f wet_size_voxels() const {
+        return Eigen::Array3<std::uint32_t>(WetBone::kCell * wet_size_[0], WetBone::kCell * wet_size_[1],
+                                            WetBone::kCell * wet_size_[2])
+            .cast<float>();
+    }
     [[nodiscard]] const std::array<std::uint32_t, 3>& label_size() const { return label_size_; }
 
 private:
@@ -36,10 +45,11 @@ private:
     void send_cells(const BoneField& field, std::uint32_t first,
                     std::uint32_t count);  // of these layers of bricks
 
-    GlTexture solid_, cells_, label_, palette_;
-    std::array<std::uint32_t, 3> label_size_{};  // 1 x 1 x 1 without labels
-    int unmade_ = 3;                             // textures
-    std::uint32_t unsent_;                       // layers of bricks, from z = 0
+    GlTexture solid_, cells_, label_, wet_, palette_;
+    std::array<std::uint32_t, 3> label_size_{};       // 1 x 1 x 1 without labels
+    std::array<std::uint32_t, 3> wet_size_{1, 1, 1};  // 1 x 1 x 1: dry
+    int unmade_ = 3;                                  // textures
+    std::uint32_t unsent_;                            // layers of bricks, from z = 0
 };
 
 class BoneProgram {
@@ -47,24 +57,30 @@ public:
     BoneProgram();
     // The next draw supplies attribute 0: corners in clip space, two numbers each.
     void use(BoneTextures& textures, const BoneField& field, const Eigen::Matrix4f& eye_from_voxels,
-             const Eigen::Matrix4f& projection, const Haze& haze, float step_voxels);
+             const Eigen::Matrix4f& projection, const Haze& haze, float step_voxels, bool coaxial_light);
 
 private:
     GlProgram program_;
     ViewUniforms view_;
-    GLint size_, label_size_, cells_, origin_, from_eye_, tan_, step_, lamp_;
+    GLint size_, label_size_, cells_, origin_, from_eye_, tan_, step_, lamp_, wet_size_, coaxial_;
 };
 
 // Draws part of an image with its depths over the existing content where it is nearer.
 class BoneOnScreen {
 public:
+    struct Image {
+        GLuint colour = 0, depth = 0;
+        float share_x = 1.0F, share_y = 1.0F;  // the part [0, share] is shown
+        float height_over_width = 1.0F;        // of the view
+        bool smooth = false;
+    };
     BoneOnScreen();
-    // Clip space as above, which shows the part [0, `share`] of the image.
-    void use(GLuint colour, GLuint depth, float share_x, float share_y, bool smooth);
+    // Clip space as above. focus_a: distance from the eye; 0: all is sharp.
+    void use(const Image& image, const Eigen::Matrix4f& projection, float focus_a);
 
 private:
     GlProgram program_;
-    GLint share_;
+    GLint share_, distance_, blur_, high_;
 };
 
 }  // namespace tact

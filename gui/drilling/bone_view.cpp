@@ -9,7 +9,8 @@
 namespace tact {
 namespace {
 
-constexpr double kReachVoxels = 10.0;  // range of lighting and openness, within which a change is visible
+constexpr double kReachVoxels = 10.0;    // range of lighting and openness, within which a change is visible
+constexpr double kWetReachVoxels = 6.0;  // a cell and the place in front of the bone
 constexpr float kSharpStep = 1.0F, kCoarseStep = 1.4F;  // voxels
 constexpr int kCoarsest = 12;                           // pixels per ray
 
@@ -17,7 +18,7 @@ bool same_view(const BoneFrame& a, const BoneFrame& b) {
     return a.eye_from_scene == b.eye_from_scene && a.projection == b.projection &&
            a.haze.begin_a == b.haze.begin_a && a.haze.end_a == b.haze.end_a &&
            a.haze.strength == b.haze.strength && a.haze.top == b.haze.top && a.haze.bottom == b.haze.bottom &&
-           a.width_px == b.width_px && a.height_px == b.height_px;
+           a.width_px == b.width_px && a.height_px == b.height_px && a.coaxial_light == b.coaxial_light;
 }
 
 // Two triangles over a box, in clip space.
@@ -84,6 +85,13 @@ void BoneView::changed(std::uint32_t brick, bool grown) {
         if (eye.pixels() > 0) eye.changed.push_back(brick);
 }
 
+void BoneView::wetted(const WetBone& wet) {
+    if (wet.changed().empty()) return;
+    textures_.send_wet(wet);
+    for (Eyeful& eye : eye_)
+        if (eye.pixels() > 0) eye.wetted.insert(eye.wetted.end(), wet.changed().begin(), wet.changed().end());
+}
+
 PixelBox BoneView::on_screen(const BoneFrame& frame, const Vec3& low, const Vec3& high) const {
     const Eigen::Matrix4f clip_from_voxels = frame.projection * frame.eye_from_scene * scene_from_voxels_;
     Eigen::Vector2f least(1e9F, 1e9F), most(-1e9F, -1e9F);
@@ -112,15 +120,22 @@ void BoneView::send_changes() {
     changed_.clear();
 }
 
-void BoneView::mark_changes(Eyeful& eye, const BoneFrame& frame, bool view_is_same) const {
-    const auto n = field_.bricks().bricks();
-    for (const std::uint32_t b : eye.changed) {
-        if (!view_is_same) break;
-        const Vec3 low = Vec3(b % n[0], b / n[0] % n[1], b / n[0] / n[1]) * double{BoneBricks::kEdge};
-        eye.tiles.stale(
-            on_screen(frame, low.array() - kReachVoxels, low.array() + (BoneBricks::kEdge + kReachVoxels)));
+void BoneView::mark_changes(Eyeful& eye, bool view_is_same) const {
+    if (view_is_same) {
+        mark(eye, eye.changed, kReachVoxels);
+        mark(eye, eye.wetted, kWetReachVoxels);
     }
     eye.changed.clear();
+    eye.wetted.clear();
+}
+
+void BoneView::mark(Eyeful& eye, std::span<const std::uint32_t> bricks, double reach_voxels) const {
+    const auto n = field_.bricks().bricks();
+    for (const std::uint32_t b : bricks) {
+        const Vec3 low = Vec3(b % n[0], b / n[0] % n[1], b / n[0] / n[1]) * double{BoneBricks::kEdge};
+        eye.tiles.stale(on_screen(eye.last, low.array() - reach_voxels,
+                                  low.array() + (BoneBricks::kEdge + reach_voxels)));
+    }
 }
 
 void BoneView::draw(const BoneFrame& frame) {
@@ -148,7 +163,7 @@ void BoneView::draw(const BoneFrame& frame) {
     }
     eye.last = frame;
     send_changes();
-    mark_changes(eye, frame, same);
+    mark_changes(eye, same);
 
     glEnable(GL_DEPTH_TEST);
     glDepthFunc(GL_ALWAYS);
@@ -176,7 +191,7 @@ void BoneView::draw_coarse(Eyeful& eye, std::uint32_t rays_most) {
     eye.coarse_share_y = static_cast<float>(h) / static_cast<float>(eye.coarse.height_px);
     eye.coarse.bind(w, h);
     program_.use(textures_, field_, frame.eye_from_scene * scene_from_voxels_, frame.projection, frame.haze,
-                 kCoarseStep);
+                 kCoarseStep, frame.coaxial_light);
     const auto corners = quad(eye.last, {0, 0, frame.width_px, frame.height_px});
     glBufferData(GL_ARRAY_BUFFER, sizeof corners, corners.data(), GL_STREAM_DRAW);
     glDrawArrays(GL_TRIANGLES, 0, 6);
@@ -193,7 +208,7 @@ void BoneView::draw_tiles(Eyeful& eye, std::span<const std::uint32_t> tiles) {
     }
     eye.sharp.bind(eye.sharp.width_px, eye.sharp.height_px);
     program_.use(textures_, field_, eye.last.eye_from_scene * scene_from_voxels_, eye.last.projection,
-                 eye.last.haze, kSharpStep);
+                 eye.last.haze, kSharpStep, eye.last.coaxial_light);
     glBufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(corners.size() * sizeof(float)), corners.data(),
                  GL_STREAM_DRAW);
     glDrawArrays(GL_TRIANGLES, 0, static_cast<GLsizei>(corners.size() / 2));
@@ -210,7 +225,10 @@ void BoneView::show(Eyeful& eye) {
     }
     const auto show_tiles = [&](Picture& picture, float x, float y, const std::vector<float>& corners) {
         if (corners.empty() || !(x > 0.0F)) return;
-        on_screen_.use(picture.colour.get(), picture.depth.get(), x, y, &picture == &eye.coarse);
+        on_screen_.use({picture.colour.get(), picture.depth.get(), x, y,
+                        static_cast<float>(eye.last.height_px) / static_cast<float>(eye.last.width_px),
+                        &picture == &eye.coarse || eye.last.focus_a > 0.0F},
+                       eye.last.projection, eye.last.focus_a);
         glBufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(corners.size() * sizeof(float)), corners.data(),
                      GL_STREAM_DRAW);
         glDrawArrays(GL_TRIANGLES, 0, static_cast<GLsizei>(corners.size() / 2));

@@ -25,6 +25,8 @@ struct BoneFrame {
     std::uint32_t rays_most = 0;
     std::size_t eye = 0;  // index; each keeps an image
     double fill_s = 1e9;  // at most, to upload bone
+    bool coaxial_light = false;
+    float focus_a = 0.0F;  // distance from the eye that is sharp; 0: all is
 };
 
 class BoneView {
@@ -33,6 +35,8 @@ public:
     BoneView(const BoneContent& bone, const Vec3& centre_model_m, const BoneVolumeView& now);
     // Reports that the brick's densities in `now` changed since the last call, or since the start. grown: some rose.
     void changed(std::uint32_t brick, bool grown = false);
+    // Reports that the cells of wet.changed() changed.
+    void wetted(const WetBone& wet);
     // Throws StartupError if graphics memory, allocated step by step in the first calls, does not suffice.
     void draw(const BoneFrame& frame);
 
@@ -59,7 +63,7 @@ private:
         Picture sharp, coarse;
         BoneTiles tiles;
         BoneFrame last{};
-        std::vector<std::uint32_t> changed;  // bricks, since this eye's last draw()
+        std::vector<std::uint32_t> changed, wetted;  // bricks, since this eye's last draw()
         float coarse_share_x = 0.0F,
               coarse_share_y = 0.0F;  // part of the coarse image in use; 0: none yet
         float filled = -1.0F;         // fraction of the bone, at the last draw()
@@ -69,7 +73,8 @@ private:
         }
     };
     void send_changes();
-    void mark_changes(Eyeful& eye, const BoneFrame& frame, bool view_is_same) const;
+    void mark_changes(Eyeful& eye, bool view_is_same) const;
+    void mark(Eyeful& eye, std::span<const std::uint32_t> bricks, double reach_voxels) const;
     [[nodiscard]] PixelBox on_screen(const BoneFrame& frame, const Vec3& low_voxels,
                                      const Vec3& high_voxels) const;
     void draw_coarse(Eyeful& eye, std::uint32_t rays_most);

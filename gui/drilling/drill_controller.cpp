@@ -10,7 +10,8 @@ namespace {
 
 constexpr std::size_t kEventsKept = 100;
 constexpr std::uint16_t kOwnEvent = 0xFFFF;  // not an EventCode of the controller
-constexpr double kAgainM = 3e-4;             // hysteresis before a warning repeats
+constexpr std::size_t kSideLetters = 2;
+constexpr double kAgainM = 3e-4;  // hysteresis before a warning repeats
 
 std::string near_text(const std::string& name, double distance_m) {
     char text[128];
@@ -87,9 +88,12 @@ void DrillController::show(const DrillTopic& drill, DashboardState& dashboard, D
     for (std::size_t i = 0; i < by_burr.size(); ++i) {
         const BoneStructure& what = labels.structure[by_burr[i].label - 1];
         const auto& c = what.rgba;
-        state.structures.push_back({what.name, IM_COL32(c[0], c[1], c[2], 255), by_burr[i].distance_m,
-                                    by_burr[i].closing_m_s,
-                                    i < by_suction_tube.size() ? by_suction_tube[i].distance_m : 1e9});
+        state.structures.push_back(
+            {what.name, IM_COL32(c[0], c[1], c[2], 255), by_burr[i].distance_m, by_burr[i].closing_m_s,
+             i < by_suction_tube.size() ? by_suction_tube[i].distance_m : 1e9,
+             bone_->patient
+                 ? patient_letters(bone_->patient->axes * by_burr[i].towards_model).substr(0, kSideLetters)
+                 : std::string()});
         const double away_m = by_burr[i].distance_m;
         const Nearness now = away_m < kDrillNearM[0]   ? Nearness::red
                              : away_m < kDrillNearM[1] ? Nearness::amber
@@ -142,7 +146,7 @@ void DrillController::follow(Controller& controller, std::span<const BrickChange
 void DrillController::save(const std::string& path, const std::optional<BurrVisibility>& visibility,
                            const nlohmann::json& more) const {
     if (path.empty() || !metrics_) return;
-    nlohmann::json report = drill_report(metrics_->metrics(), bone_->labels, visibility);
+    nlohmann::json report = drill_report(metrics_->metrics(), bone_->labels, visibility, bone_->patient);
     if (more.is_object()) report.update(more);
     write_drill_report(path, report);
 }

@@ -87,7 +87,10 @@ void DrillMetrics::cycle(const TraceTopic& t) {
         if (!labels_.critical(static_cast<std::uint8_t>(field.label))) continue;
         const double away_m = distance_m(field, head, meta_.world_per_model);
         StructureMetrics& s = f.structure[field.label];
-        s.nearest_m = std::min(s.nearest_m, away_m);
+        if (away_m < s.nearest_m) {
+            s.nearest_m = away_m;
+            s.nearest_at_model_m = meta_.to_model(at_m);
+        }
         least_m = std::min(least_m, away_m);
         for (std::size_t i = 0; i < kDrillNearM.size(); ++i)
             if (away_m < kDrillNearM[i]) s.near_s[i] += dt_s;

@@ -31,6 +31,7 @@ struct StructureMetrics {
     std::uint64_t removed_levels = 0;
     std::uint64_t injuries = 0;
     double nearest_m = 1e9;                           // while the burr turned; critical ones only
+    Vec3 nearest_at_model_m = Vec3::Zero();           // of the burr's centre, then
     std::array<double, kDrillNearM.size()> near_s{};  // drilling time within; critical ones only
 };
 

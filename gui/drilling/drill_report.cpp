@@ -18,7 +18,8 @@ constexpr std::array kShapes{"sphere", "cylinder", "cone"};  // as DrillShape
 }  // namespace
 
 json drill_report(const DrillMetricsRow& f, const BoneLabelsView& labels,
-                  const std::optional<BurrVisibility>& visibility) {
+                  const std::optional<BurrVisibility>& visibility,
+                  const std::optional<PatientFrame>& patient) {
     const auto mm3 = [&f](std::uint64_t levels) { return 1e9 * f.level_m3 * static_cast<double>(levels); };
     const auto share = [](double part, double of) { return of > 0.0 ? json(part / of) : json(nullptr); };
     json burrs = json::array();
@@ -39,6 +40,10 @@ json drill_report(const DrillMetricsRow& f, const BoneLabelsView& labels,
         if (what.critical) {
             row["injuries"] = s.injuries;
             row["nearest_mm"] = s.nearest_m < 1e8 ? json(1e3 * s.nearest_m) : json(nullptr);
+            if (patient && s.nearest_m < 1e8) {
+                const Vec3 at = patient->patient_mm(s.nearest_at_model_m);
+                row["nearest_at_patient_mm"] = {at.x(), at.y(), at.z()};
+            }
             row["drilling_within_1_mm_s"] = s.near_s[0];
             row["drilling_within_2_mm_s"] = s.near_s[1];
         }

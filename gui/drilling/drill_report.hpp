@@ -8,6 +8,7 @@
 #include <string>
 
 #include "gui/drilling/drill_metrics.hpp"
+#include "ipc/scene/bone/patient_frame.hpp"
 
 namespace tact {
 
@@ -17,7 +18,8 @@ struct BurrVisibility {
 };
 
 [[nodiscard]] nlohmann::json drill_report(const DrillMetricsRow& metrics, const BoneLabelsView& labels,
-                                          const std::optional<BurrVisibility>& visibility);
+                                          const std::optional<BurrVisibility>& visibility,
+                                          const std::optional<PatientFrame>& patient = {});
 // Written completely or not at all.
 void write_drill_report(const std::string& path, const nlohmann::json& report);
 

@@ -5,6 +5,7 @@
 #include "gui/render/scene_frame.hpp"
 #include "ipc/base/clock.hpp"
 #include "ipc/base/error.hpp"
+#include "ipc/base/units.hpp"
 
 namespace tact {
 
@@ -33,10 +34,21 @@ void DrillingLayer::draw_structures(const LayerPass& pass) {
 void DrillingLayer::draw_volume(const LayerPass& pass) {
     if (!bone_) return;
     const PassClock::Scope scope(pass.passes, Pass::bone);
+    const Eigen::Vector3f focus_a = ((frame.focus_model_m - centre_model_m_) / kAngstromM).cast<float>();
+    const float ahead_a = -(pass.eye_from_scene * focus_a.homogeneous()).z();
     try {
-        bone_->draw({pass.eye_from_scene, pass.projection, pass.haze, pass.x_px, pass.y_px, pass.width_px,
-                     pass.height_px, frame.bone_rays / static_cast<std::uint32_t>(pass.eyes), pass.eye,
-                     frame.bone_fill_s});
+        bone_->draw({.eye_from_scene = pass.eye_from_scene,
+                     .projection = pass.projection,
+                     .haze = pass.haze,
+                     .x_px = pass.x_px,
+                     .y_px = pass.y_px,
+                     .width_px = pass.width_px,
+                     .height_px = pass.height_px,
+                     .rays_most = frame.bone_rays / static_cast<std::uint32_t>(pass.eyes),
+                     .eye = pass.eye,
+                     .fill_s = frame.bone_fill_s,
+                     .coaxial_light = frame.microscope,
+                     .focus_a = frame.microscope ? std::max(ahead_a, 0.0F) : 0.0F});
     } catch (const StartupError& e) {
         bone_error_ = e.what();
         bone_.reset();
@@ -64,6 +76,12 @@ void DrillingLayer::draw_fluids(const LayerPass& pass) {
     if (!frame.time_particles) return;
     glFinish();
     particles_draw_s_ = to_s(Monotonic::now() - begin);
+}
+
+void DrillingLayer::draw_in_front(const LayerPass& pass) {
+    if (!frame.microscope) return;
+    if (!field_) field_ = std::make_unique<MicroscopeField>();
+    field_->draw(pass.width_px, pass.height_px);
 }
 
 }  // namespace tact

@@ -11,6 +11,7 @@
 
 #include "gui/drilling/bone_view.hpp"
 #include "gui/drilling/drill_tools.hpp"
+#include "gui/drilling/microscope_field.hpp"
 #include "gui/drilling/particle_cloud.hpp"
 #include "gui/render/scene_layer.hpp"
 #include "gui/render/triangle_buffers.hpp"
@@ -27,6 +28,10 @@ public:
         const Particles* particles = nullptr;
         Eigen::Vector4f burr_glow = Eigen::Vector4f::Zero();  // colour, and its share of the burr's own
         bool time_particles = false;  // waits for the renderer, see particles_draw_s()
+        const WetBone* wet = nullptr;
+        // An operating microscope: round field, its own light, and what is far from the focus is blurred.
+        bool microscope = false;
+        Vec3 focus_model_m = Vec3::Zero();
     };
 
     // centre_model_m: origin of the scene frame.
@@ -47,6 +52,7 @@ public:
     void draw_structures(const LayerPass& pass) override;
     void draw_volume(const LayerPass& pass) override;
     void draw_fluids(const LayerPass& pass) override;
+    void draw_in_front(const LayerPass& pass) override;
 
 private:
     struct ToolInHand {
@@ -57,8 +63,9 @@ private:
     Vec3 centre_model_m_;
     std::unique_ptr<BoneView> bone_;
     std::string bone_error_;
-    std::array<ToolInHand, 2> tool_;        // with the shapes of their meshes
-    std::unique_ptr<ParticleCloud> cloud_;  // created with the first particles
+    std::array<ToolInHand, 2> tool_;          // with the shapes of their meshes
+    std::unique_ptr<ParticleCloud> cloud_;    // created with the first particles
+    std::unique_ptr<MicroscopeField> field_;  // created when first needed
     double particles_draw_s_ = 0.0;
 };
 

@@ -94,6 +94,10 @@ void structure(const Theme& theme, const DrillingState& d, const DrillingState::
     if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", s.name.c_str());
     ImGui::SameLine(theme.px(kNamesPx));
     text_coloured(calm ? colour::kText : grade_colour(v.grade), mm_text(s.burr_m));
+    if (!s.side.empty()) {
+        ImGui::SameLine(0.0F, theme.px(5.0F));
+        text_small(theme, colour::kDim, s.side, false);
+    }
     if (calm) return;
     ImGui::SameLine(0.0F, theme.px(8.0F));
     text_coloured(grade_colour(v.grade), v.text);
@@ -101,7 +105,10 @@ void structure(const Theme& theme, const DrillingState& d, const DrillingState::
 
 void tip(const DrillingState& d) {
     if (!ImGui::IsItemHovered()) return;
-    std::string text = "Distance from the burr surface to each critical structure; negative inside it.";
+    std::string text =
+        "Distance from the burr surface to each critical structure; negative inside it.\n"
+        "Letters: where it lies from the burr in the patient, L R left and right, A P front and back, H F "
+        "head and feet.";
     if (d.suction_tube.valid)
         for (const auto& s : d.structures)
             if (s.suction_tube_m < 2e-3)
@@ -151,6 +158,11 @@ void DrillingPanels::draw_in_scene_card(const Theme& theme, DashboardState& stat
     ImGui::EndDisabled();
     if (!sound.empty() && ImGui::IsItemHovered(ImGuiHoveredFlags_AllowWhenDisabled))
         ImGui::SetTooltip("no sound: %s", sound.c_str());
+    ImGui::Checkbox("Microscope", &state.toggles.microscope);
+    if (ImGui::IsItemHovered())
+        ImGui::SetTooltip(
+            "as through an operating microscope: round field, light along the line of sight,\n"
+            "and blur away from the burr's depth (V)");
 }
 
 void DrillingPanels::draw_over_view(const OverlayPen& pen, const DashboardState& state,

@@ -33,6 +33,7 @@ struct DrillingState {
         ImU32 colour = colour::kText;
         double burr_m = 0.0, closing_m_s = 0.0;  // below zero: inside
         double suction_tube_m = 1e9;
+        std::string side{};  // of the burr on which it lies, in the patient: "PL"; empty: unknown
     };
     // Of the bone that was removed since the window opened; the sum of all is what was removed.
     struct Dust {

@@ -107,6 +107,9 @@ bool DrillingSystem::perform(KeyAction what, std::size_t place, const SystemCont
         case KeyAction::other_grit:
             take_burr(other_grit(in_hand()), context);
             return true;
+        case KeyAction::microscope:
+            context.state.toggles.microscope = !context.state.toggles.microscope;
+            return true;
         case KeyAction::undo:
             order(CommandKind::undo_stroke, panels_.drilling.undoable);
             return true;
@@ -212,14 +215,20 @@ void DrillingSystem::prepare(std::int64_t now_ns, bool sharp, ViewFrame& frame,
         DrillingLayer::Frame& drawn = layer_->frame = {};
         drawn.bone_rays = rays_most(frame, sharp, context);
         if (!sharp) drawn.bone_fill_s = kFillS;
-        if (BoneView* const bone = layer_->bone())
+        if (BoneView* const bone = layer_->bone()) {
             for (const BrickChange& c : bone_.changes()) bone->changed(c.brick, c.grown());
+            bone->wetted(site_->wet());
+        }
         if (controller.attached() && controller.have_drill)
             drawn.tools = hands_.follow(controller.drill, content_->meta);
         drawn.particles = &site_->particles();
         drawn.time_particles = context.software;
+        drawn.microscope = context.state.toggles.microscope;
+        drawn.focus_model_m =
+            content_->centre_model_m + kAngstromM * context.camera.target_a().cast<double>();
         if (!drawn.tools.empty()) {
             frame.force_at_model_m = drawn.tools.front().T_model_tool.p_m;
+            drawn.focus_model_m = *frame.force_at_model_m;
             frame.force_thickness = kArrowShare;
             frame.force_beside_a =
                 kBesideRadii * static_cast<float>(drawn.tools.front().radius_m / kAngstromM);

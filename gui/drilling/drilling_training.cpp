@@ -83,8 +83,8 @@ void DrillingSystem::let_training_rest(const SystemContext& context) {
 nlohmann::json DrillingSystem::end_training() {
     const auto metrics = controller_.metrics();
     if (!training_ || !metrics || !training_->begun()) return nullptr;
-    const nlohmann::json performance =
-        drill_report(*metrics, content_->of<BoneContent>()->labels, visibility());
+    const nlohmann::json performance = drill_report(*metrics, content_->of<BoneContent>()->labels,
+                                                    visibility(), content_->of<BoneContent>()->patient);
     const TrainingScore& score = training_->score();
     std::vector<TrainingPicture> after;
     if (layer_->bone() != nullptr) after = pictures();

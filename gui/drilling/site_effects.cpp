@@ -48,7 +48,8 @@ SiteEffects::SiteEffects(const BoneVolumeView& bone, const BoneLabelsView& label
     : bricks_(bone.bricks),
       world_per_model_(world_per_model),
       particles_(bone.bricks, bone.density, settings_of(world_per_model)),
-      bleeding_(bone.bricks, labels.structure, labels.label, 3) {
+      bleeding_(bone.bricks, labels.structure, labels.label, 3),
+      wet_(bone.bricks) {
     metrics_.most = kMost;
 }
 
@@ -89,6 +90,7 @@ void SiteEffects::step(const Frame& frame) noexcept {
     }
     metrics_.alive = static_cast<std::uint32_t>(particles_.all().size());
     metrics_.shown = static_cast<std::uint32_t>(particles_.shown().size());
+    wet_.step(dt_s, particles_.shown(), particles_.cells());
     look(dt_s, burr, frame.eye_model_m);
 }
 

@@ -16,6 +16,7 @@
 #include "gui/drilling/bleeding.hpp"
 #include "gui/drilling/bone_follower.hpp"
 #include "gui/drilling/particles.hpp"
+#include "gui/drilling/wet_bone.hpp"
 #include "ipc/scene/bone/bone_labels.hpp"
 #include "ipc/topics/drill.hpp"
 
@@ -49,6 +50,7 @@ public:
     void keep(std::uint32_t count) noexcept { scattered_ = count; }
 
     [[nodiscard]] const Particles& particles() const noexcept { return particles_; }
+    [[nodiscard]] const WetBone& wet() const noexcept { return wet_; }
     [[nodiscard]] const SiteEffectsMetrics& metrics() const noexcept { return metrics_; }
 
 private:
@@ -61,6 +63,7 @@ private:
     double world_per_model_;
     Particles particles_;
     Bleeding bleeding_;
+    WetBone wet_;
     SeededRandom random_{2};
     double water_owed_ = 0.0, looked_s_ = 0.0;
     bool seen_ = true;

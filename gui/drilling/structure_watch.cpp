@@ -37,6 +37,21 @@ double distance_m(const DistanceField& field, const HeadBalls& head, double worl
     return least * world_per_model;
 }
 
+Vec3 towards_structure(const DistanceField& field, const HeadBalls& head) {
+    std::size_t nearest = 0;
+    const auto away_m = [&](std::size_t i) { return field.distance_m(head.centre_m[i]) - head.radius_m[i]; };
+    for (std::size_t i = 1; i < head.count; ++i)
+        if (away_m(i) < away_m(nearest)) nearest = i;
+    Vec3 falls = Vec3::Zero();
+    for (int axis = 0; axis < 3 && head.count > 0; ++axis) {
+        const Vec3 step_m = field.spacing_m * Vec3::Unit(axis);
+        falls[axis] = field.distance_m(head.centre_m[nearest] - step_m) -
+                      field.distance_m(head.centre_m[nearest] + step_m);
+    }
+    const double size = falls.norm();
+    return size > 0.0 ? Vec3(falls / size) : Vec3(Vec3::Zero());
+}
+
 std::span<const StructureWatch::Reading> StructureWatch::look(const DrillTopic& drill, std::size_t hand) {
     Hand& h = hand_[hand];
     const HeadBalls head = head_balls(drill.hand[hand], world_per_model_);
@@ -57,6 +72,7 @@ std::span<const StructureWatch::Reading> StructureWatch::look(const DrillTopic& 
             r.closing_m_s +=
                 (1.0 - std::exp(-dt_s / kSmoothS)) * ((r.distance_m - now_m) / dt_s - r.closing_m_s);
         r.distance_m = now_m;
+        r.towards_model = towards_structure(fields_[i], head);
     }
     h.known = true;
     h.at_ns = drill.taken_at_ns;

@@ -28,6 +28,8 @@ struct HeadBalls {
 // The same head, translated.
 [[nodiscard]] HeadBalls moved(const HeadBalls& head, const Vec3& way_m);
 [[nodiscard]] double distance_m(const DistanceField& field, const HeadBalls& head, double world_per_model);
+// Unit vector from the head to the structure, model frame; zero where the field is flat.
+[[nodiscard]] Vec3 towards_structure(const DistanceField& field, const HeadBalls& head);
 
 class StructureWatch {
 public:
@@ -36,6 +38,7 @@ public:
     struct Reading {
         std::uint32_t label = 0;
         double distance_m = 0.0, closing_m_s = 0.0;
+        Vec3 towards_model = Vec3::Zero();  // unit vector from the head to the structure; zero: unknown
     };
 
     // The fields must outlive this object.

@@ -27,6 +27,7 @@ constexpr auto kKeyRows = [] {
         {typed_key('['), 0, bone, KeyAction::smaller_burr, "[", "smaller burr"},
         {typed_key(']'), 0, bone, KeyAction::larger_burr, "]", "larger burr"},
         {typed_key('g'), 0, bone, KeyAction::other_grit, "G", "burr: cutting or diamond"},
+        {typed_key('v'), 0, bone, KeyAction::microscope, "V", "operating microscope on or off"},
         {typed_key('s'), 0, always, KeyAction::style, "S", "surface: glass, solid, wire"},
         {typed_key('x'), 0, stereo, KeyAction::swap_eyes, "X", "stereo: swap the eyes"},
         {typed_key('+'), 0, bodies, KeyAction::raise_contour, "+", "contour level up"},

@@ -31,6 +31,7 @@ enum class KeyAction : std::uint8_t {
     smaller_burr,
     larger_burr,
     other_grit,
+    microscope,
     style,
     swap_eyes,
     raise_contour,

@@ -94,7 +94,7 @@ void BrowserController::open_scene(const std::filesystem::path& scene, BrowserSt
 
 void BrowserController::drop(const std::vector<std::string>& files, BrowserState& state) {
     state.open = true;
-    if (import_.running())
+    if (import_.running() || examine_.running())
         return say(state, Grade::watch, "An import is in progress: cancel it, or drop again when it ends.");
     Dropped meant = meaning_of(files);
     if (!meant.scene.empty()) return open_scene(meant.scene, state);
@@ -103,26 +103,73 @@ void BrowserController::drop(const std::vector<std::string>& files, BrowserState
 }
 
 void BrowserController::import(Dropped meant, BrowserState& state) {
-    for (const SceneKindRow& kind : scene_kinds()) {
-        if (meant.import[0] != kind.command || kind.question == nullptr) continue;
-        state.message.clear();
-        state.asked = {.import = meaning_text(meant), .question = kind.question};
-        asking_ = std::move(meant);
-        return;
-    }
-    start_import(std::move(meant), state);
+    state.form.reset();
+    const auto kinds = scene_kinds();
+    const bool asks = std::any_of(kinds.begin(), kinds.end(), [&](const SceneKindRow& kind) {
+        return meant.import[0] == kind.command && kind.asks;
+    });
+    if (!asks) return start_import(std::move(meant), state);
+    asking_ = std::move(meant);
+    examine({}, state);
 }
 
-void BrowserController::follow_question(BrowserState& state) {
-    if (!state.asked) return;
-    AskedValue& asked = *state.asked;
-    if (asked.cancelled || !state.open) {
-        state.asked.reset();
+void BrowserController::examine(const std::vector<std::string>& choices, BrowserState& state) {
+    std::vector<std::string> arguments{"examine"};
+    arguments.insert(arguments.end(), asking_.import.begin(), asking_.import.end());
+    arguments.insert(arguments.end(), choices.begin(), choices.end());
+    importing_ = asking_.import[1];
+    try {
+        examine_.start("tact-prep", arguments);
+        import_begun_ = Monotonic::now();
+        cancelled_ = false;
+    } catch (const StartupError& e) {
+        say(state, Grade::bad, e.what());
+    }
+}
+
+void BrowserController::follow_examination(BrowserState& state) {
+    if (!examine_.running()) return;
+    if (!state.open || std::exchange(state.cancel_wanted, false)) {
+        cancelled_ = true;
+        examine_.cancel();
+    }
+    state.importing = true;
+    state.import_share.reset();
+    const auto outcome = examine_.poll();
+    if (!outcome) return say(state, Grade::unknown, "Reading " + importing_ + " ...");
+    state.importing = false;
+    state.message.clear();
+    if (cancelled_) {
+        state.form.reset();
         return;
     }
-    if (!std::exchange(asked.answered, false) || !value_of(asked) || import_.running()) return;
-    asking_.import.insert(asking_.import.end(), {asked.question->option, asked.answer.data()});
-    state.asked.reset();
+    if (!outcome->good()) return say(state, Grade::bad, error_text(outcome->output));
+    state.form = read_import_form(last_line(outcome->output));
+    if (!state.form)
+        return say(state, Grade::bad, "tact-prep examine gave no report: " + last_line(outcome->output));
+    state.form->title = meaning_text(asking_);
+}
+
+void BrowserController::follow_form(BrowserState& state) {
+    if (!state.form || examine_.running()) return;
+    ImportForm& form = *state.form;
+    if (form.cancelled || !state.open) {
+        state.form.reset();
+        return;
+    }
+    if (std::exchange(form.other_choice, false)) return examine(form.choice_arguments(), state);
+    if (!std::exchange(form.answered, false) || !form.complete() || import_.running()) return;
+    if (const std::string table = form.edited_table(); !table.empty()) {
+        try {
+            write_whole_file(form.structure_table, table);
+        } catch (const StartupError& e) {
+            return say(state, Grade::bad, e.what());
+        }
+        spdlog::info("names of structures written to {}", form.structure_table);
+    }
+    const std::vector<std::string> answers = form.arguments();
+    asking_.import.insert(asking_.import.end(), answers.begin(), answers.end());
+    state.form.reset();
     start_import(std::move(asking_), state);
 }
 
@@ -162,11 +209,11 @@ void BrowserController::follow_marks(BrowserState& state) {
         marked_.clear();
         show_marks(state);
     }
-    if (std::exchange(state.import_wanted, false) && !import_.running()) {
+    if (std::exchange(state.import_wanted, false) && !import_.running() && !examine_.running()) {
         Dropped meant = meaning_of(marked_);
         if (meant.import.empty()) return show_marks(state);
         import(std::move(meant), state);
-        if (!import_.running() && !state.asked) return;
+        if (!import_.running() && !examine_.running()) return;
         marked_.clear();
         show_marks(state);
     }
@@ -184,7 +231,7 @@ void BrowserController::follow_steps(BrowserState& state) const {
 
 // On success tact prints the path of the scene.
 void BrowserController::follow_import(BrowserState& state) {
-    if (std::exchange(state.cancel_wanted, false) && import_.running()) {
+    if (import_.running() && std::exchange(state.cancel_wanted, false)) {
         cancelled_ = true;
         import_.cancel();
     }
@@ -210,7 +257,8 @@ void BrowserController::follow_import(BrowserState& state) {
 void BrowserController::follow(BrowserState& state) {
     follow_import(state);
     follow_marks(state);
-    follow_question(state);
+    follow_examination(state);
+    follow_form(state);
     if (ready(keeping_))
         if (const std::string trouble = keeping_.get(); !trouble.empty()) {
             spdlog::warn("{}", trouble);

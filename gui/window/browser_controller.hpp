@@ -35,10 +35,12 @@ private:
     void follow_steps(BrowserState& state) const;
     void follow_marks(BrowserState& state);
     void show_marks(BrowserState& state) const;
-    // Asks first for what no file states.
+    // Examines the files first where a person must answer something.
     void import(Dropped meant, BrowserState& state);
+    void examine(const std::vector<std::string>& choices, BrowserState& state);
+    void follow_examination(BrowserState& state);
+    void follow_form(BrowserState& state);
     void start_import(Dropped meant, BrowserState& state);
-    void follow_question(BrowserState& state);
     struct Read {
         std::vector<SceneRow> recent;
         std::string recent_trouble;
@@ -50,8 +52,8 @@ private:
     std::string current_;
     bool was_open_ = false, asked_ = false;
     std::vector<std::string> marked_;  // from any folder, at most one more than an import allows
-    Dropped asking_;                   // waits for the answer to BrowserState::asked
-    ChildJob import_;
+    Dropped asking_;                   // is examined, or waits for the answers of BrowserState::form
+    ChildJob import_, examine_;
     std::string importing_;  // first file of the import
     Instant import_begun_{};
     bool cancelled_ = false;

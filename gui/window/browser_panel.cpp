@@ -2,11 +2,9 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
-#include <cstring>
-#include <utility>
 
 #include "gui/dashboard/widgets.hpp"
+#include "gui/window/import_form_panel.hpp"
 
 namespace tact {
 namespace {
@@ -106,47 +104,7 @@ void marks_line(const Theme& theme, BrowserState& browser) {
     ImGui::PopTextWrapPos();
 }
 
-void question(const Theme& theme, AskedValue& asked) {
-    const ImportQuestion& q = *asked.question;
-    ImGui::Spacing();
-    text_coloured(colour::kText, asked.import);
-    ImGui::Spacing();
-    ImGui::AlignTextToFramePadding();
-    text_coloured(colour::kText, q.label);
-    ImGui::SameLine();
-    ImGui::SetNextItemWidth(theme.px(90.0F));
-    if (!std::exchange(asked.shown, true)) ImGui::SetKeyboardFocusHere();
-    const bool entered =
-        ImGui::InputText("##answer", asked.answer.data(), asked.answer.size(),
-                         ImGuiInputTextFlags_CharsDecimal | ImGuiInputTextFlags_EnterReturnsTrue);
-    ImGui::SameLine();
-    text_coloured(colour::kText, q.unit);
-    ImGui::PushTextWrapPos(0.0F);
-    const bool valid = value_of(asked).has_value();
-    if (valid || asked.answer[0] == 0)
-        text_coloured(colour::kDim, q.help);
-    else
-        text_coloured(colour::kWatch, format("A number from %g to %g %s.", q.low, q.high, q.unit));
-    ImGui::PopTextWrapPos();
-    ImGui::Spacing();
-    ImGui::BeginDisabled(!valid);
-    if (ImGui::Button("Import") || (entered && valid)) asked.answered = true;
-    ImGui::EndDisabled();
-    ImGui::SameLine();
-    if (ImGui::Button("Cancel")) asked.cancelled = true;
-}
-
 }  // namespace
-
-std::optional<double> value_of(const AskedValue& asked) {
-    const char* const end = asked.answer.data() + std::strlen(asked.answer.data());
-    double value = 0.0;
-    const auto [stopped, error] = std::from_chars(asked.answer.data(), end, value);
-    if (error != std::errc{} || stopped != end) return std::nullopt;
-    // Not a number fails the comparison.
-    if (!(value >= asked.question->low && value <= asked.question->high)) return std::nullopt;
-    return value;
-}
 
 void draw_browser(const Theme& theme, BrowserState& browser, const PixelRect& view) {
     // Below the text in the view's upper corners, which would be drawn over it.
@@ -168,8 +126,8 @@ void draw_browser(const Theme& theme, BrowserState& browser, const PixelRect& vi
         ImGui::PopTextWrapPos();
     }
     if (browser.importing) import_line(theme, browser);
-    if (browser.asked) {
-        question(theme, *browser.asked);
+    if (browser.form) {
+        draw_import_form(theme, *browser.form);
         end_card();
         return;
     }

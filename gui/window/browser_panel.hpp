@@ -9,7 +9,7 @@
 #include "gui/dashboard/pixel_rect.hpp"
 #include "gui/dashboard/status_text.hpp"
 #include "gui/dashboard/theme.hpp"
-#include "ipc/scene/file/scene_kinds.hpp"
+#include "gui/window/import_form.hpp"
 
 namespace tact {
 
@@ -23,16 +23,6 @@ struct SceneRow {
     bool raw = false, marked = false;  // raw data: a click marks them instead of opening
 };
 
-// A number that an import needs; drawn in place of the rows until it is answered or cancelled.
-struct AskedValue {
-    std::string import;  // "Dock 1abc.pdb into emd.mrc."
-    const ImportQuestion* question = nullptr;
-    std::array<char, 16> answer{};  // as typed
-    bool shown = false, answered = false, cancelled = false;
-};
-// The typed answer, if it is a number within the question's limits.
-[[nodiscard]] std::optional<double> value_of(const AskedValue& asked);
-
 struct BrowserState {
     bool open = false;
     int tab = 0;  // recently used, a folder
@@ -40,12 +30,12 @@ struct BrowserState {
     std::string recent_trouble;
     std::string folder, folder_trouble;
     bool reading = false;
-    bool importing = false, cancel_wanted = false;
-    std::optional<double> import_share;  // of the import, 0 to 1, if reported
+    bool importing = false, cancel_wanted = false;  // importing: or examining files before an import
+    std::optional<double> import_share;             // of the import, 0 to 1, if reported
     std::string
         marks_text;  // result of importing the marked rows, or why nothing can be imported; empty: no mark
     bool marks_import = false;
-    std::optional<AskedValue> asked;
+    std::optional<ImportForm> form;  // drawn in place of the rows until it is answered or cancelled
     std::string message;
     Grade message_grade = Grade::unknown;
     // The user's choices; emptied by the application.

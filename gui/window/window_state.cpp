@@ -26,11 +26,12 @@ struct Flag {
     bool SceneToggles::*value;
 };
 constexpr Flag kFlags[] = {
-    {"show.surface", &SceneToggles::surface},     {"show.backbone", &SceneToggles::backbone},
-    {"show.codebook", &SceneToggles::codebook},   {"show.graph", &SceneToggles::graph},
-    {"show.force", &SceneToggles::force},         {"show.box", &SceneToggles::box},
-    {"show.depth_cue", &SceneToggles::depth_cue}, {"show.frame_times", &SceneToggles::frame_times},
-    {"show.detail", &SceneToggles::detail},       {"show.sound", &SceneToggles::sound}};
+    {"show.surface", &SceneToggles::surface},      {"show.backbone", &SceneToggles::backbone},
+    {"show.codebook", &SceneToggles::codebook},    {"show.graph", &SceneToggles::graph},
+    {"show.force", &SceneToggles::force},          {"show.box", &SceneToggles::box},
+    {"show.depth_cue", &SceneToggles::depth_cue},  {"show.frame_times", &SceneToggles::frame_times},
+    {"show.detail", &SceneToggles::detail},        {"show.sound", &SceneToggles::sound},
+    {"show.microscope", &SceneToggles::microscope}};
 
 std::string line(const char* key, const std::string& value) {
     return std::string(key) + " = " + value + "\n";

@@ -45,8 +45,15 @@ int run(int argc, char** argv) {
     app.require_subcommand(1);
     const auto demo = std::make_shared<CLI::App>("Bake a synthetic scene, without input files", "demo");
     demo->require_subcommand(1);
-    for (const PrepSystem& system : prep_systems()) system.add_commands(app, *demo);
+    const auto examine = std::make_shared<CLI::App>(
+        "Print as JSON what files are and what their import asks, without importing them", "examine");
+    examine->require_subcommand(1);
+    for (const PrepSystem& system : prep_systems()) {
+        system.add_commands(app, *demo);
+        if (system.add_examine != nullptr) system.add_examine(*examine);
+    }
     app.add_subcommand(demo);
+    app.add_subcommand(examine);
     CLI::App *simplify_parsed = nullptr, *bench_parsed = nullptr;
     const auto simplify_file = add_simplify(app, simplify_parsed);
     const auto bench = add_bench(app, bench_parsed);

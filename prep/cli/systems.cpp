@@ -16,10 +16,10 @@ namespace tact {
 namespace {
 
 constexpr PrepSystem kSystems[] = {
-    {SceneKind::docking, add_dock, report_docking},
-    {SceneKind::surface, add_touch, report_surface},
-    {SceneKind::drilling, add_drill, report_drilling},
-    {SceneKind::field, add_field, report_field},
+    {SceneKind::docking, add_dock, report_docking, add_examine_dock},
+    {SceneKind::surface, add_touch, report_surface, nullptr},
+    {SceneKind::drilling, add_drill, report_drilling, add_examine_drill},
+    {SceneKind::field, add_field, report_field, nullptr},
 };
 
 }  // namespace

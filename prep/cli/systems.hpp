@@ -17,6 +17,8 @@ struct PrepSystem {
     // Adds tact-prep WORD FILE... and tact-prep demo WORD. The commands run as callbacks inside parse().
     void (*add_commands)(CLI::App& app, CLI::App& demo);
     SystemReport report;
+    // Adds tact-prep examine WORD FILE...; null: the files say all.
+    void (*add_examine)(CLI::App& examine);
 };
 
 [[nodiscard]] std::span<const PrepSystem> prep_systems();

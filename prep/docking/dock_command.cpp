@@ -19,6 +19,7 @@
 #include "prep/console/target.hpp"
 #include "prep/docking/bake_contour.hpp"
 #include "prep/docking/bake_docking.hpp"
+#include "prep/docking/examine_map.hpp"
 #include "prep/docking/report_docking.hpp"
 #include "prep/input/read_file.hpp"
 #include "prep/map/read_map.hpp"
@@ -171,6 +172,20 @@ void add_dock(CLI::App& app, CLI::App& demo) {
         "dock", "Bake a synthetic ring of six subunits in its 12 A map, with one subunit free");
     both(made);
     made->callback([o] { dock(*o, true); });
+}
+
+void add_examine_dock(CLI::App& examine) {
+    const auto o = std::make_shared<DockSettings>();
+    CLI::App* const files = examine.add_subcommand(
+        "dock", "A map and its structures: sizes, values, and the contour that is proposed");
+    files->add_option("map", o->map.path, "Density map, as for tact-prep dock")->required();
+    files->add_option("models", o->models, "Structures")->required();
+    files->callback([o] {
+        Console console;
+        const ImportReport report = examine_map(o->map.path, o->models, console.progress());
+        console.clear();
+        print_import_report(report);
+    });
 }
 
 void add_contour(CLI::App& app) {

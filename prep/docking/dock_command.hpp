@@ -8,5 +8,7 @@ namespace tact {
 
 void add_dock(CLI::App& app, CLI::App& demo);
 void add_contour(CLI::App& app);
+// tact-prep examine dock
+void add_examine_dock(CLI::App& examine);
 
 }  // namespace tact

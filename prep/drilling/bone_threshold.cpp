@@ -48,7 +48,7 @@ std::pair<std::size_t, std::size_t> three_classes(const std::vector<double>& cou
 
 }  // namespace
 
-std::optional<ProposedBone> propose_bone(const Scan& scan, const Progress& progress) {
+std::optional<ScanHistogram> scan_histogram(const Scan& scan, const Progress& progress) {
     double low = 1e300, high = -1e300;
     each_value(scan, progress, 0.0, [&](double v) { low = std::min(low, v), high = std::max(high, v); });
     if (!(high > low)) return std::nullopt;
@@ -62,10 +62,19 @@ std::optional<ProposedBone> propose_bone(const Scan& scan, const Progress& progr
     for (const double n : fine_count) total += n;
     std::size_t top = 0;
     while (top + 1 < kFineBins && (sum_of_fine += fine_count[top]) < kCounted * total) ++top;
-    const double bin = fine * static_cast<double>(top + 1) / static_cast<double>(kBins);
     std::vector<double> count(kBins, 0.0);
     for (std::size_t f = 0; f < kFineBins; ++f)
         count[std::min(f * kBins / (top + 1), kBins - 1)] += fine_count[f];
+    return ScanHistogram{low, high, low + fine * static_cast<double>(top + 1), std::move(count)};
+}
+
+bool in_hounsfield(const Scan& scan, double low) {
+    return scan.values == ScanValues::hounsfield || (scan.values == ScanValues::number && low <= kAirHu);
+}
+
+ProposedBone propose_bone(const ScanHistogram& histogram) {
+    const std::vector<double>& count = histogram.count;
+    const double low = histogram.low, bin = (histogram.high - low) / static_cast<double>(kBins);
     const std::size_t last = three_classes(count).second;
     double above = 0.0, all = 0.0;
     for (std::size_t i = 0; i < kBins; ++i) {

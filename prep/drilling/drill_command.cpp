@@ -18,6 +18,7 @@
 #include "prep/console/target.hpp"
 #include "prep/drilling/bake_bone.hpp"
 #include "prep/drilling/bone_commands.hpp"
+#include "prep/drilling/examine_scan.hpp"
 #include "prep/drilling/import_bone.hpp"
 #include "prep/drilling/structure_names.hpp"
 #include "prep/synthetic/temporal_bone.hpp"
@@ -94,6 +95,18 @@ BoneInput drill_made(const DrillSettings& o, Console& console) {
     return input;
 }
 
+ScanRequest scan_request(const DrillSettings& o) {
+    ScanRequest request = o.import.request;
+    request.unit_mm = drill_value(kDrillUnits, o.unit);
+    if (o.spacing_mm.size() == 1 || o.spacing_mm.size() == 3)
+        for (std::size_t a = 0; a < 3; ++a)
+            request.spacing_mm[static_cast<int>(a)] = o.spacing_mm[o.spacing_mm.size() == 1 ? 0 : a];
+    else if (!o.spacing_mm.empty())
+        throw StartupError("--spacing-mm", "two numbers are given",
+                           "give one number, or three for columns, rows and slices");
+    return request;
+}
+
 BoneInput drill_scan(const DrillSettings& o, Console& console) {
     BoneImport settings = o.import;
     settings.scan = o.scan;
@@ -102,14 +115,8 @@ BoneInput drill_scan(const DrillSettings& o, Console& console) {
     settings.threshold = o.threshold;
     settings.solid = o.solid;
     if (!o.crop.empty()) settings.crop = parse_crop(o.crop);
-    settings.unit_mm = drill_value(kDrillUnits, o.unit);
     settings.face = drill_value(kDrillFaces, o.face);
-    if (o.spacing_mm.size() == 1 || o.spacing_mm.size() == 3)
-        for (std::size_t a = 0; a < 3; ++a)
-            settings.spacing_mm[static_cast<int>(a)] = o.spacing_mm[o.spacing_mm.size() == 1 ? 0 : a];
-    else if (!o.spacing_mm.empty())
-        throw StartupError("--spacing-mm", "two numbers are given",
-                           "give one number, or three for columns, rows and slices");
+    settings.request = scan_request(o);
     for (std::size_t c = 0; c < 3 && o.bone_colour.size() == 3; ++c)
         settings.bone_colour[c] = static_cast<std::uint8_t>(o.bone_colour[c]);
     settings.announce = say_memory;
@@ -118,6 +125,19 @@ BoneInput drill_scan(const DrillSettings& o, Console& console) {
         std::fprintf(stderr, "warning: %s\n", line.c_str());
     };
     return import_bone(settings, console.progress());
+}
+
+void add_scan_request(CLI::App& command, DrillSettings& o) {
+    command.add_option("--series", o.import.request.series,
+                       "Number of the DICOM series, from 1, if the folder holds several");
+    command.add_option("--unit", o.unit, "Unit of length of files that name none")
+        ->check(CLI::IsMember(drill_names(kDrillUnits)))
+        ->capture_default_str();
+    command
+        .add_option("--spacing-mm", o.spacing_mm,
+                    "Spacing of columns, rows and slices of a PNG stack (mm), or one number for all")
+        ->delimiter(',')
+        ->check(CLI::Range(0.001, 100.0));
 }
 
 void drill(const DrillSettings& o, bool made) {
@@ -148,6 +168,20 @@ void drill(const DrillSettings& o, bool made) {
 }
 
 }  // namespace
+
+void add_examine_drill(CLI::App& examine) {
+    const auto o = std::make_shared<DrillSettings>();
+    CLI::App* const scan = examine.add_subcommand(
+        "drill", "A CT scan: its size, its values, its series, and the values of bone that are proposed");
+    scan->add_option("scan", o->scan, "CT scan, as for tact-prep drill")->required();
+    add_scan_request(*scan, *o);
+    scan->callback([o] {
+        Console console;
+        const ImportReport report = examine_scan(o->scan, scan_request(*o), console.progress());
+        console.clear();
+        print_import_report(report);
+    });
+}
 
 void add_drill(CLI::App& app, CLI::App& demo) {
     const auto o = std::make_shared<DrillSettings>();
@@ -194,16 +228,7 @@ void add_drill(CLI::App& app, CLI::App& demo) {
     from_scan->add_option("--crop", o->crop,
                           "Ranges first:end of columns, rows and slices, counted from 0, such as "
                           "0:256,0:256,10:90; slices in order of position; default: all");
-    from_scan->add_option("--series", o->import.series,
-                          "Number of the DICOM series, from 1, if the folder holds several");
-    from_scan->add_option("--unit", o->unit, "Unit of length of files that name none")
-        ->check(CLI::IsMember(drill_names(kDrillUnits)))
-        ->capture_default_str();
-    from_scan
-        ->add_option("--spacing-mm", o->spacing_mm,
-                     "Spacing of columns, rows and slices of a PNG stack (mm), or one number for all")
-        ->delimiter(',')
-        ->check(CLI::Range(0.001, 100.0));
+    add_scan_request(*from_scan, *o);
     from_scan
         ->add_option("--bone-colour", o->bone_colour,
                      "Colour of bone in coloured PNG images: red,green,blue; default 255,249,219")

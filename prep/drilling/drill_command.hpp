@@ -6,5 +6,7 @@
 namespace tact {
 
 void add_drill(CLI::App& app, CLI::App& demo);
+// tact-prep examine drill
+void add_examine_drill(CLI::App& examine);
 
 }  // namespace tact

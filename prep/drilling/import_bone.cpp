@@ -9,66 +9,16 @@
 #include "ipc/base/printed.hpp"
 #include "ipc/scene/bone/structure_table.hpp"
 #include "prep/drilling/bone_threshold.hpp"
+#include "prep/drilling/open_scan.hpp"
 #include "prep/drilling/structure_names.hpp"
 #include "prep/input/read_file.hpp"
-#include "prep/volume/dicom.hpp"
-#include "prep/volume/png_stack.hpp"
-#include "prep/volume/raw_scan.hpp"
 
 namespace tact {
 namespace {
 
 namespace fs = std::filesystem;
 
-constexpr double kThresholdHu = 300.0, kSolidHu = 1800.0, kAirHu = -500.0;
 constexpr const char* kFaceNames[] = {"front", "back", "left side", "right side", "top", "bottom"};
-
-struct OpenedScan {
-    Scan scan;
-    std::shared_ptr<StackPalette> palette;
-};
-
-bool has_pictures(const fs::path& folder) {
-    for (const fs::directory_entry& entry : fs::directory_iterator(folder))
-        if (format_ending(entry.path()) == ".png") return true;
-    return false;
-}
-
-OpenedScan open_stack(const fs::path& folder, const Vec3& spacing_mm) {
-    if (!(spacing_mm.minCoeff() > 0.0))
-        throw StartupError("read the images in " + folder.string(), "PNG images have no pixel spacing",
-                           "give the spacing of columns, rows and slices, as in --spacing-mm 0.2,0.2,0.2");
-    PngStack stack = read_png_stack(folder, spacing_mm);
-    return {std::move(stack.scan), std::move(stack.palette)};
-}
-
-OpenedScan open_scan(const fs::path& path, const BoneImport& o, const Progress& progress) {
-    const std::string attempt = "read scan " + path.string();
-    std::error_code error;
-    if (!fs::exists(path, error)) throw StartupError(attempt, "the file does not exist", "check the path");
-    if (fs::is_directory(path, error)) {
-        if (has_pictures(path)) return open_stack(path, o.spacing_mm);
-        return {dicom_stack(list_dicom(path, progress), o.series, attempt), nullptr};
-    }
-    const std::string ending = format_ending(path);
-    if (ending == ".nrrd" || ending == ".nhdr")
-        return {read_raw_scan(path, "NRRD", nrrd_header, o.unit_mm), nullptr};
-    if (ending == ".nii") return {read_raw_scan(path, "NIfTI", nifti_header, o.unit_mm), nullptr};
-    if (ending == ".mha" || ending == ".mhd")
-        return {read_raw_scan(path, "MetaImage", meta_image_header, o.unit_mm), nullptr};
-    if (is_dicom(path)) {  // the series that contains this file
-        const fs::path folder = path.has_parent_path() ? path.parent_path() : fs::path(".");
-        std::vector<DicomSlice> all = list_dicom(folder, progress);
-        std::string uid;
-        for (const DicomSlice& s : all)
-            if (fs::equivalent(s.path, path, error)) uid = s.series_uid;
-        std::erase_if(all, [&](const DicomSlice& s) { return s.series_uid != uid; });
-        return {dicom_stack(std::move(all), o.series, attempt), nullptr};
-    }
-    throw StartupError(
-        attempt, "the format is unknown",
-        "give a folder of DICOM files or of PNG images, or a .nrrd, .nhdr, .nii, .mha or .mhd file");
-}
 
 struct DensityRange {
     double low, high;
@@ -76,19 +26,10 @@ struct DensityRange {
     std::string warning{};  // that it is a proposal; empty: it is known
 };
 
-bool reaches_air(const Scan& scan, const Progress& progress) {
-    std::vector<float> pixels(scan.pixels());
-    for (std::uint32_t k = 0; k < scan.slice.size(); ++k) {
-        report(progress, 0.0, "finding the scan's range of values");
-        scan.read(k, pixels);
-        if (*std::min_element(pixels.begin(), pixels.end()) <= static_cast<float>(kAirHu)) return true;
-    }
-    return false;
-}
-
 // 8-bit values have lost their unit, and the values of other scans may have any: above 0 would be skin and all within.
-DensityRange proposed_range(const Scan& scan, const Progress& progress) {
-    const std::optional<ProposedBone> bone = propose_bone(scan, progress);
+DensityRange proposed_range(const Scan& scan, const std::optional<ScanHistogram>& histogram) {
+    const std::optional<ProposedBone> bone =
+        histogram ? std::optional(propose_bone(*histogram)) : std::nullopt;
     const std::string options =
         bone ? printed("--threshold-hu %.4g --solid-hu %.4g", bone->threshold, bone->solid) : "";
     if (scan.values != ScanValues::grey)
@@ -108,11 +49,14 @@ DensityRange proposed_range(const Scan& scan, const Progress& progress) {
 
 DensityRange choose_range(const Scan& scan, const BoneImport& o, const Progress& progress) {
     DensityRange range{0.0, 255.0, false};
-    if (scan.values == ScanValues::hounsfield ||
-        (scan.values == ScanValues::number && reaches_air(scan, progress)))
-        range = {kThresholdHu, kSolidHu, true};
-    else if (!(o.threshold && o.solid))
-        range = proposed_range(scan, progress);
+    const bool both = o.threshold && o.solid, stated = scan.values == ScanValues::hounsfield;
+    // An 8-bit scan with both values given needs no look at its own.
+    const std::optional<ScanHistogram> histogram =
+        stated || (both && scan.values == ScanValues::grey) ? std::nullopt : scan_histogram(scan, progress);
+    if (stated || (histogram && in_hounsfield(scan, histogram->low)))
+        range = {kBoneFromHu, kBoneSolidHu, true};
+    else if (!both)
+        range = proposed_range(scan, histogram);
     if (o.threshold) range.low = *o.threshold;
     if (o.solid) range.high = *o.solid;
     if (!(range.low < range.high) || std::abs(range.low) > 1e6 || std::abs(range.high) > 1e6)
@@ -240,7 +184,7 @@ BoneInput import_bone(const BoneImport& o, const Progress& whole) {
     const Progress progress = [&whole](double fraction, const char* what) {
         return !whole || whole(0.5 * fraction, what);
     };
-    OpenedScan opened = open_scan(o.scan, o, progress);
+    OpenedScan opened = open_scan(o.scan, o.request, progress);
     Scan& scan = opened.scan;
     const std::string size = printed("%u x %u x %zu voxels of %.4g x %.4g mm", scan.columns, scan.rows,
                                      scan.slice.size(), scan.column_mm, scan.row_mm);
@@ -258,13 +202,7 @@ BoneInput import_bone(const BoneImport& o, const Progress& whole) {
     fs::path names = o.label_names;
     if (names.empty() && !o.labels.empty()) names = structure_table_beside(o.labels);
     if (names.empty()) names = structure_table_beside(o.scan);
-    if (!names.empty()) {
-        const std::vector<char> bytes = read_whole_file(names, 1U << 20);
-        const std::string_view text(bytes.data(), bytes.size());
-        const std::string attempt = "read label names " + names.string();
-        known = names.extension() == ".toml" ? parse_structure_table(text, attempt)
-                                             : parse_label_names(text, attempt);
-    }
+    if (!names.empty()) known = read_structure_names(names);
     BoneInput input;
     BoneData& bone = input.bone;
     bone.bricks = plan.bricks;
@@ -286,7 +224,7 @@ BoneInput import_bone(const BoneImport& o, const Progress& whole) {
         const double labels_from = o.labels.empty() ? 1.0 : 0.5;
         bone.density = sample_density(scan, plan, range.low, range.high, part(progress, 0.0, labels_from));
         if (!o.labels.empty()) {
-            OpenedScan labels = open_scan(o.labels, o, part(progress, labels_from, labels_from));
+            OpenedScan labels = open_scan(o.labels, o.request, part(progress, labels_from, labels_from));
             if (labels.palette)
                 throw StartupError("read the labels", "coloured images cannot be combined with a scan",
                                    "save the labels as NRRD, NIfTI or MetaImage");

@@ -21,11 +21,13 @@
 
 #include "ipc/base/progress.hpp"
 #include "prep/drilling/bake_bone.hpp"
+#include "prep/drilling/open_scan.hpp"
 #include "prep/drilling/resample.hpp"
 
 namespace tact {
 
 inline constexpr std::uint8_t kLabelDensity = 40;
+inline constexpr std::array<std::uint8_t, 3> kBoneColour{255, 249, 219};  // of a stack of labels
 
 struct BoneImport {
     std::filesystem::path scan, labels;
@@ -34,10 +36,8 @@ struct BoneImport {
     std::optional<double> threshold, solid;  // in the scan's values
     double voxel_mm = 0.0;                   // 0: the finest spacing of the scan
     std::optional<ScanCrop> crop;
-    unsigned series = 0;
-    double unit_mm = 1.0;                                    // unit of length of a file that states none
-    Vec3 spacing_mm = Vec3::Zero();                          // of a stack of images: columns, rows, slices
-    std::array<std::uint8_t, 3> bone_colour{255, 249, 219};  // of a stack of labels
+    ScanRequest request;                                    // for the scan and the labels
+    std::array<std::uint8_t, 3> bone_colour = kBoneColour;  // of a stack of labels
     BoneFace face = BoneFace::front;
     std::vector<std::string> critical;  // additional words
     std::function<void(double voxels, double bytes)> announce;

@@ -9,6 +9,9 @@
 #include <optional>
 
 #include "ipc/base/error.hpp"
+#include "ipc/scene/bone/structure_table.hpp"
+#include "prep/drilling/import_bone.hpp"
+#include "prep/input/read_file.hpp"
 
 namespace tact {
 namespace {
@@ -125,24 +128,16 @@ std::vector<ScanLabel> parse_structure_table(std::string_view text, const std::s
 
 std::string structure_table_text(const std::vector<ScanLabel>& structures,
                                  const std::vector<std::uint64_t>& voxels) {
-    std::string text =
-        "# Names of the structures of a scan. Put it beside the scan: structures.toml in a folder of "
-        "slices,\n"
-        "# NAME.structures.toml beside a file; or give it with --label-names.\n"
-        "# A critical structure has its distance from the burr shown, and warnings.\n";
+    std::vector<StructureRow> rows;
     for (std::size_t i = 0; i < structures.size(); ++i) {
         const ScanLabel& s = structures[i];
-        char colour[16];
-        std::snprintf(colour, sizeof colour, "#%02X%02X%02X", s.rgba[0], s.rgba[1], s.rgba[2]);
-        text += "\n[[structure]]  # " + std::to_string(i < voxels.size() ? voxels[i] : 0) + " voxels\n";
-        if (s.value != 0) text += "label = " + std::to_string(s.value) + "\n";
-        text += std::string("colour = \"") + colour + "\"\nname = \"";
-        for (const char c : s.name)
-            if (static_cast<unsigned char>(c) >= 32 && c != 127)
-                text += (c == '"' || c == '\\' ? "\\" : "") + std::string(1, c);
-        text += std::string("\"\ncritical = ") + (s.critical.value_or(false) ? "true" : "false") + "\n";
+        rows.push_back({s.value,
+                        {s.rgba[0], s.rgba[1], s.rgba[2]},
+                        s.name,
+                        s.critical.value_or(false),
+                        i < voxels.size() ? voxels[i] : 0});
     }
-    return text;
+    return structure_table_text(rows);
 }
 
 std::vector<ScanLabel> names_of_palette(const StackPalette& palette, std::string& name) {
@@ -160,6 +155,20 @@ std::vector<ScanLabel> names_of_palette(const StackPalette& palette, std::string
     if (names.size() < kPaletteLeast) return {};
     name = "segmented temporal bones of Johns Hopkins and SickKids";
     return names;
+}
+
+std::vector<ScanLabel> read_structure_names(const std::filesystem::path& file) {
+    const std::vector<char> bytes = read_whole_file(file, 1U << 20);
+    const std::string_view text(bytes.data(), bytes.size());
+    const std::string attempt = "read label names " + file.string();
+    return file.extension() == ".toml" ? parse_structure_table(text, attempt)
+                                       : parse_label_names(text, attempt);
+}
+
+std::vector<ScanLabel> known_names(const std::filesystem::path& scan, const StackPalette& palette) {
+    if (const auto table = structure_table_beside(scan); !table.empty()) return read_structure_names(table);
+    std::string name;
+    return names_of_palette(palette, name);
 }
 
 }  // namespace tact

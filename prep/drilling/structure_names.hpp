@@ -8,6 +8,7 @@
 #pragma once
 
 #include <cstdint>
+#include <filesystem>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -24,6 +25,12 @@ inline constexpr std::size_t kPaletteLeast = 4;
 // Structures as a table to be edited; voxels: of each.
 [[nodiscard]] std::string structure_table_text(const std::vector<ScanLabel>& structures,
                                                const std::vector<std::uint64_t>& voxels);
+
+// Of a file: a table (.toml) or a label description of ITK-SNAP.
+[[nodiscard]] std::vector<ScanLabel> read_structure_names(const std::filesystem::path& file);
+// By the table beside a stack of coloured images, or else by a known palette.
+[[nodiscard]] std::vector<ScanLabel> known_names(const std::filesystem::path& scan,
+                                                 const StackPalette& palette);
 
 // The names of a known palette that these colours belong to; `name` is the palette's. None if it is unknown.
 [[nodiscard]] std::vector<ScanLabel> names_of_palette(const StackPalette& palette, std::string& name);

@@ -31,6 +31,14 @@ struct DicomSlice {
 std::vector<DicomSlice> list_dicom(const std::filesystem::path& folder, const Progress& progress);
 bool is_dicom(const std::filesystem::path& file);
 
+struct DicomSeries {
+    std::string text;  // for a list
+    std::size_t slices = 0;
+    bool is_volume = false;
+};
+// The groups from which dicom_stack() selects, in its order.
+std::vector<DicomSeries> dicom_series(std::vector<DicomSlice> slices);
+
 // No file access: groups by series, size and direction, selects one (`series` counts from 1 in the order that the error
 // lists; 0: the only group that is a volume), sorts by position and checks for gaps.
 Scan dicom_stack(std::vector<DicomSlice> slices, unsigned series, const std::string& attempt);

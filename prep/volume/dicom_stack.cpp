@@ -32,6 +32,26 @@ std::string told(const DicomGroup& g) {
     return text;
 }
 
+bool is_volume(const DicomGroup& g) { return g.size() >= kVolumeSlices && g[0].placed; }
+
+std::vector<DicomGroup> grouped_slices(std::vector<DicomSlice> slices) {
+    // Makes the list independent of the order in which the folder is read.
+    std::sort(slices.begin(), slices.end(), [](const DicomSlice& a, const DicomSlice& b) {
+        return std::tie(a.series_number, a.series_uid, a.path) <
+               std::tie(b.series_number, b.series_uid, b.path);
+    });
+    std::vector<DicomGroup> groups;
+    for (DicomSlice& s : slices) {
+        const auto found = std::find_if(groups.begin(), groups.end(),
+                                        [&](const DicomGroup& g) { return same_picture(g[0], s); });
+        if (found != groups.end())
+            found->push_back(std::move(s));
+        else
+            groups.emplace_back().push_back(std::move(s));
+    }
+    return groups;
+}
+
 DicomGroup choose(std::vector<DicomGroup> groups, unsigned series, const std::string& attempt, Scan& scan) {
     std::string list;
     for (std::size_t i = 0; i < groups.size() && i < 40; ++i)
@@ -43,7 +63,7 @@ DicomGroup choose(std::vector<DicomGroup> groups, unsigned series, const std::st
     if (groups.size() == 1) return std::move(groups[0]);
     std::size_t volumes = 0, chosen = 0;
     for (std::size_t i = 0; i < groups.size(); ++i) {
-        if (groups[i].size() < kVolumeSlices || !groups[i][0].placed) continue;
+        if (!is_volume(groups[i])) continue;
         ++volumes;
         chosen = i;
     }
@@ -168,24 +188,18 @@ bool cone_beam(const std::string& maker) {
 
 }  // namespace
 
+std::vector<DicomSeries> dicom_series(std::vector<DicomSlice> slices) {
+    std::vector<DicomSeries> out;
+    for (const DicomGroup& g : grouped_slices(std::move(slices)))
+        out.push_back({told(g), g.size(), is_volume(g)});
+    return out;
+}
+
 Scan dicom_stack(std::vector<DicomSlice> slices, unsigned series, const std::string& attempt) {
     if (slices.empty())
         throw StartupError(attempt, "the folder contains no DICOM image",
                            "give the folder of a series, or another format");
-    // Makes the list independent of the order in which the folder is read.
-    std::sort(slices.begin(), slices.end(), [](const DicomSlice& a, const DicomSlice& b) {
-        return std::tie(a.series_number, a.series_uid, a.path) <
-               std::tie(b.series_number, b.series_uid, b.path);
-    });
-    std::vector<DicomGroup> groups;
-    for (DicomSlice& s : slices) {
-        const auto found = std::find_if(groups.begin(), groups.end(),
-                                        [&](const DicomGroup& g) { return same_picture(g[0], s); });
-        if (found != groups.end())
-            found->push_back(std::move(s));
-        else
-            groups.emplace_back().push_back(std::move(s));
-    }
+    std::vector<DicomGroup> groups = grouped_slices(std::move(slices));
     Scan scan;
     const std::vector<DicomGroup> all = groups;
     DicomGroup g = choose(std::move(groups), series, attempt, scan);

@@ -16,3 +16,5 @@ tact_fuzz(found_places_fuzz SOURCES fuzz/found_places_fuzz.cpp ${CMAKE_SOURCE_DI
 tact_fuzz(training_task_fuzz SOURCES fuzz/training_task_fuzz.cpp ${CMAKE_SOURCE_DIR}/gui/drilling/training/training_plan.cpp
         ${CMAKE_SOURCE_DIR}/gui/base/toml_keys.cpp
     USES base SYSTEM tomlplusplus::tomlplusplus)
+tact_fuzz(import_form_fuzz SOURCES fuzz/import_form_fuzz.cpp ${CMAKE_SOURCE_DIR}/gui/window/import_form.cpp
+    USES base scene_bone SYSTEM nlohmann_json::nlohmann_json)

@@ -1,11 +1,13 @@
 // Bone in the pixels: position of its surface, changes by drilling, structures, and refinement of a moving view.
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <filesystem>
 #include <optional>
 #include <set>
 
 #include "gui/drilling/bone_view.hpp"
+#include "gui/drilling/microscope_field.hpp"
 #include "gui/render/camera.hpp"
 #include "gui/render/elements.hpp"
 #include "ipc/base/units.hpp"
@@ -247,6 +249,127 @@ TEST_F(BoneDraw, a_large_volume_is_uploaded_front_to_back_over_several_frames) {
     slowly.draw(frame_of_no_time);
     EXPECT_TRUE(slowly.sharp());
     EXPECT_EQ(read_pixels(kWidth, kHeight).rgb, whole.rgb);
+}
+
+TEST_F(BoneDraw, a_wet_place_is_darker_a_stain_is_red_and_only_they_are_drawn_again) {
+    BoneView view(*bone_, centre_model_m_, now_);
+    draw(view);
+    const std::uint32_t whole = view.rays();
+    const Image dry = read_pixels(kWidth, kHeight);
+    // On the ball, a little beside the middle of the picture, so that no highlight covers it.
+    const Eigen::Quaterniond q = camera_.orientation().conjugate().cast<double>();
+    const auto on_ball = [&](double right) {
+        const Vec3 off = q * Vec3(right, 0.0, std::sqrt(1.0 - right * right));
+        return Vec3(middle() + (kBallRadius + 1.0) * off);
+    };
+    const Vec3 water = on_ball(-0.55), blood = on_ball(0.55);
+    WetBone wet(block_->bricks);
+    const ParticleCells cells(block_->bricks, {}, 16);
+    std::vector<Particle> drops;
+    for (const Matter matter : {Matter::water, Matter::blood})
+        for (int i = 0; i < 40; ++i) {
+            const Vec3 at = (matter == Matter::water ? water : blood).array() + 16.5;
+            Particle drop{};
+            for (int axis = 0; axis < 3; ++axis)
+                drop.at[static_cast<std::size_t>(axis)] =
+                    static_cast<float>(at[axis] + 4.0 * (i >> axis & 1) - 2.0);
+            drop.matter = matter;
+            drops.push_back(drop);
+        }
+    wet.step(1.0, drops, cells);
+    view.wetted(wet);
+    draw(view);
+    EXPECT_GT(view.rays(), 0U);
+    EXPECT_LE(view.rays(), whole);
+    const Image now = read_pixels(kWidth, kHeight);
+    const auto change = [&](const Vec3& voxel, std::size_t channel) {
+        const Eigen::Matrix4d p = camera_.projection(static_cast<float>(kWidth) / kHeight).cast<double>();
+        const Vec3 scene_a = (block_->bricks.to_model(voxel) - centre_model_m_) / kAngstromM;
+        const Eigen::Vector4d clip = p * camera_.view().cast<double>() * scene_a.homogeneous();
+        const auto x = static_cast<std::size_t>((0.5 + 0.5 * clip.x() / clip.w()) * kWidth),
+                   y = static_cast<std::size_t>((0.5 - 0.5 * clip.y() / clip.w()) * kHeight);
+        const std::size_t at = 3 * (y * kWidth + x) + channel;
+        return static_cast<double>(now.rgb[at]) / dry.rgb[at];
+    };
+    EXPECT_LT(change(water, 1), 0.92);
+    EXPECT_GT(change(water, 1), 0.6);
+    EXPECT_LT(change(blood, 1), 0.6) << "less green";
+    EXPECT_GT(change(blood, 0), 1.35 * change(blood, 1)) << "than red";
+    EXPECT_NEAR(change(middle() + (kBallRadius + 1.0) * (q * Vec3(0.0, 0.8, 0.6)), 1), 1.0, 0.02);
+    draw(view);
+    EXPECT_EQ(view.rays(), 0U) << "wetted once";
+}
+
+TEST_F(BoneDraw, a_microscope_blurs_what_is_out_of_its_focus_and_lights_along_the_view) {
+    // Stripes of two colours, two voxels wide.
+    std::vector<std::uint8_t> labels(block_->density.size());
+    for (std::uint32_t z = 0; z < kEdge; ++z)
+        for (std::uint32_t y = 0; y < kEdge; ++y)
+            for (std::uint32_t x = 0; x < kEdge; ++x)
+                if (block_->density[block_->bricks.voxel(x, y, z)] > 0)
+                    labels[block_->bricks.voxel(x, y, z)] =
+                        static_cast<std::uint8_t>(1 + (x + y + z) / 3 % 2);
+    bone_->labels.structure.push_back({"dark", {40, 40, 40, 255}, false});
+    bone_->labels.structure.push_back({"bright", {230, 230, 230, 255}, false});
+    bone_->labels.label = labels;
+    BoneView view(*bone_, centre_model_m_, now_);
+    draw(view);
+    const double at_a = depth_a(kWidth / 2, kHeight / 2);
+    const auto seen = [&](bool coaxial, double focus_a) {
+        glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
+        BoneFrame f = frame(kAllRays);
+        f.coaxial_light = coaxial;
+        f.focus_a = static_cast<float>(focus_a);
+        view.draw(f);
+        return read_pixels(kWidth, kHeight);
+    };
+    // How sharp edges are: second differences in the middle of the picture.
+    const auto detail = [](const Image& image) {
+        double sum = 0.0;
+        for (int y = kHeight / 2 - 15; y < kHeight / 2 + 15; ++y)
+            for (int x = kWidth / 2 - 15; x < kWidth / 2 + 15; ++x) {
+                const auto at = static_cast<std::size_t>(3 * (y * kWidth + x));
+                sum += std::abs(static_cast<double>(image.rgb[at - 3]) - 2.0 * image.rgb[at] +
+                                image.rgb[at + 3]);
+            }
+        return sum;
+    };
+    const Image plain = seen(false, 0.0);
+    EXPECT_GT(detail(plain), 5.0 * 900.0);
+    EXPECT_GT(detail(seen(false, at_a)), 0.9 * detail(plain));
+    EXPECT_LT(detail(seen(false, 2.0 * at_a)), 0.6 * detail(plain));
+    EXPECT_EQ(seen(false, 0.0).rgb, plain.rgb) << "and back";
+    // Mean brightness of the ball's left and right half.
+    const auto side = [](const Image& image, int x0) {
+        double sum = 0.0;
+        for (int y = kHeight / 2 - 20; y < kHeight / 2 + 20; ++y)
+            for (int x = x0; x < x0 + 12; ++x)
+                sum += image.rgb[static_cast<std::size_t>(3 * (y * kWidth + x))];
+        return sum;
+    };
+    const auto lopsided = [&](const Image& image) {
+        return side(image, kWidth / 2 + 25) / side(image, kWidth / 2 - 37);
+    };
+    EXPECT_GT(lopsided(plain), 1.3 * lopsided(seen(true, 0.0))) << "the lamp of the room stands on the right";
+}
+
+TEST_F(BoneDraw, a_microscope_has_a_round_field) {
+    MicroscopeField field;
+    glViewport(0, 0, kWidth, kHeight);
+    glClearColor(1.0F, 1.0F, 1.0F, 1.0F);
+    glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
+    field.draw(kWidth, kHeight);
+    const double radius = 0.495 * kHeight;
+    for (int y = 0; y < kHeight; ++y)
+        for (int x = 0; x < kWidth; ++x) {
+            const double r = std::hypot(x + 0.5 - 0.5 * kWidth, y + 0.5 - 0.5 * kHeight);
+            const Rgb8 seen = pixel(x, y);
+            const bool right = r > radius + 1.0   ? seen == Rgb8{0, 0, 0}
+                               : r < 0.5 * radius ? seen == Rgb8{255, 255, 255}
+                               : r < radius - 3.0 ? seen[0] > 120
+                                                  : true;
+            ASSERT_TRUE(right) << x << ", " << y;
+        }
 }
 
 TEST_F(BoneDraw, the_bound_frame_buffer_is_restored) {

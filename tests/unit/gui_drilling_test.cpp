@@ -93,6 +93,24 @@ TEST(StructureWatch, gives_the_distance_of_the_head_and_its_approach_speed) {
     EXPECT_NEAR(watch.look(t, 0)[0].distance_m, -1e-3, 2e-5);
 }
 
+TEST(StructureWatch, says_on_which_side_of_the_burr_a_structure_lies) {
+    Ear ear;
+    StructureWatch watch(ear.fields, 1.0);
+    const auto towards = [&](double x_m, std::size_t field) {
+        DrillTopic t = tools(x_m);
+        return watch.look(t, 0)[field].towards_model;
+    };
+    // The first structure lies at larger x, the second at smaller.
+    EXPECT_NEAR((towards(3e-3, 0) - Vec3::UnitX()).norm(), 0.0, 0.05);
+    EXPECT_NEAR((towards(3e-3, 1) + Vec3::UnitX()).norm(), 0.0, 0.05);
+    // A patient whose left is the model's -x: it lies to the right.
+    PatientFrame patient;
+    patient.axes.col(0) = -Vec3::UnitX();
+    patient.axes.col(1) = -Vec3::UnitY();
+    EXPECT_EQ(patient_letters(patient.axes * towards(3e-3, 0)), "R");
+    EXPECT_EQ(patient_letters(patient.axes * towards(3e-3, 1)), "L");
+}
+
 TEST(StructureWatch, a_long_head_is_measured_along_its_axis) {
     Ear ear;
     DrillTopic t = tools(5e-3);
@@ -304,6 +322,13 @@ TEST(DrillReport, contains_the_metrics_and_null_for_unknown_ones) {
     EXPECT_EQ(j["burr_visible_share"], 0.75);
     EXPECT_EQ(j["structures"][0]["name"], "facial nerve");
     EXPECT_NEAR(j["structures"][0]["nearest_mm"].get<double>(), 3.0, 0.03);
+    EXPECT_FALSE(j["structures"][0].contains("nearest_at_patient_mm")) << "the scan does not say where";
+    PatientFrame patient;
+    patient.origin_mm = Vec3(100.0, 200.0, 300.0);
+    const auto at =
+        drill_report(m.metrics(), ear.labels, {}, patient)["structures"][0]["nearest_at_patient_mm"];
+    EXPECT_NEAR(at.at(0).get<double>() - 100.0, 1e3 * m.metrics().structure[1].nearest_at_model_m.x(), 1e-6);
+    EXPECT_NEAR(at.at(2).get<double>() - 300.0, 1e3 * m.metrics().structure[1].nearest_at_model_m.z(), 1e-6);
     EXPECT_EQ(j["structures"][0]["injuries"], 1);
     EXPECT_FALSE(j["structures"][2].contains("nearest_mm"));  // not critical
     // Without labels there is no critical structure to avoid.

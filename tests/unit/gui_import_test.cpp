@@ -2,13 +2,16 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdlib>
 #include <fstream>
 #include <thread>
 
 #include "gui/window/browser_controller.hpp"
 #include "ipc/base/clock.hpp"
+#include "ipc/scene/file/scene_meta.hpp"
 #include "ipc/scene/file/scene_switch.hpp"
+#include "tests/support/map_file.hpp"
 
 namespace tact::gui_import_test {
 namespace {
@@ -32,6 +35,16 @@ protected:
             std::this_thread::sleep_for(std::chrono::milliseconds(5));
         } while (state_.importing && Monotonic::now() < until);
         EXPECT_FALSE(state_.importing);
+    }
+    static void write_map(const std::string& file) {
+        DensityGrid grid;
+        grid.size = {16, 16, 16};
+        grid.spacing_m = Vec3::Constant(kAngstromM);
+        for (int i = 0; i < 16 * 16 * 16; ++i) {
+            const Vec3 at(i % 16 - 6.0, i / 16 % 16 - 6.0, i / 256 - 6.0);
+            grid.values.push_back(static_cast<float>(std::exp(-at.squaredNorm() / 8.0)));
+        }
+        std::ofstream(file, std::ios::binary) << map_file_bytes(grid);
     }
     [[nodiscard]] std::size_t scenes() const {
         std::error_code none;
@@ -104,35 +117,96 @@ TEST_F(Import, clicked_rows_are_marked_and_imported_together) {
 
 TEST_F(Import, a_map_is_imported_only_after_its_resolution_is_typed) {
     const std::string map = (folder_ / "map.mrc").string(), model = (folder_ / "a.pdb").string();
-    std::ofstream(map) << "no map";
-    std::ofstream(model) << "no structure";
+    write_map(map);
+    std::ofstream(model)
+        << "ATOM      1  CA  ALA A   1       6.000   6.000   6.000  1.00  0.00           C\n"
+           "ATOM      2  CA  ALA A   2       8.000   7.000   6.000  1.00  0.00           C\n";
     BrowserController dashboard({});
     const auto type = [&](const char* words) {
-        std::snprintf(state_.asked->answer.data(), state_.asked->answer.size(), "%s", words);
-        state_.asked->answered = true;
+        std::snprintf(state_.form->numbers[0].typed.data(), state_.form->numbers[0].typed.size(), "%s",
+                      words);
+        state_.form->answered = true;
         dashboard.follow(state_);
     };
     dashboard.drop({map, model}, state_);
-    dashboard.follow(state_);
-    ASSERT_TRUE(state_.asked);
-    EXPECT_FALSE(state_.importing);
-    EXPECT_EQ(state_.asked->import, "Dock a.pdb into map.mrc.");
-    EXPECT_STREQ(state_.asked->question->label, "Resolution of the map");
+    EXPECT_FALSE(state_.form) << "the files are read first";
+    until_done(dashboard);
+    ASSERT_TRUE(state_.form) << state_.message;
+    EXPECT_EQ(state_.form->title, "Dock a.pdb into map.mrc.");
+    ASSERT_EQ(state_.form->numbers.size(), 2U);
+    EXPECT_EQ(state_.form->numbers[0].label, "Resolution of the map");
+    EXPECT_EQ(state_.form->numbers[1].label, "Contour");
+    EXPECT_TRUE(state_.form->numbers[1].value());
     for (const char* const wrong : {"", "0", "-7", "1e9", "seven", "7 ", "nan", "inf"}) {
         type(wrong);
-        ASSERT_TRUE(state_.asked) << wrong;
-        EXPECT_FALSE(value_of(*state_.asked)) << wrong;
+        ASSERT_TRUE(state_.form) << wrong;
+        EXPECT_FALSE(state_.form->complete()) << wrong;
     }
-    state_.asked->cancelled = true;
+    state_.form->cancelled = true;
     dashboard.follow(state_);
-    EXPECT_FALSE(state_.asked);
+    EXPECT_FALSE(state_.form);
     dashboard.drop({map, model}, state_);
-    type("7.5");
-    EXPECT_FALSE(state_.asked);
     until_done(dashboard);
-    // Beyond the resolution: the map itself is wrong.
+    ASSERT_TRUE(state_.form);
+    type("7.5");
+    EXPECT_FALSE(state_.form);
+    until_done(dashboard);
+    EXPECT_EQ(scenes(), 1U) << state_.message;
+}
+
+TEST_F(Import, files_that_cannot_be_read_are_refused_before_anything_is_asked) {
+    const std::string map = (folder_ / "map.mrc").string(), model = (folder_ / "a.pdb").string();
+    std::ofstream(map) << "no map";
+    std::ofstream(model) << "no structure";
+    BrowserController dashboard({});
+    dashboard.drop({map, model}, state_);
+    until_done(dashboard);
+    EXPECT_FALSE(state_.form);
+    EXPECT_EQ(state_.message_grade, Grade::bad);
     EXPECT_NE(state_.message.find("map.mrc"), std::string::npos) << state_.message;
-    EXPECT_EQ(state_.message.find("resolution"), std::string::npos) << state_.message;
+}
+
+TEST_F(Import, a_scan_shows_its_histogram_and_is_imported_with_the_values_that_were_chosen) {
+    const std::string scan = (folder_ / "head.nrrd").string();
+    std::string bytes =
+        "NRRD0004\ndimension: 3\ntype: uint8\nsizes: 24 24 24\nspacings: 1 1 1\nencoding: raw\n\n";
+    for (int i = 0; i < 24 * 24 * 24; ++i)
+        bytes += static_cast<char>(i % 20 < 9 ? 3 : i % 20 < 17 ? 90 + i % 7 : 200 + i % 5);
+    std::ofstream(scan, std::ios::binary) << bytes;
+    const auto scene_switch = folder_ / "scene_switch";
+    std::filesystem::create_directory(scene_switch);
+    BrowserController dashboard(scene_switch);
+    dashboard.drop({scan}, state_);
+    until_done(dashboard);
+    ASSERT_TRUE(state_.form) << state_.message;
+    ImportForm& form = *state_.form;
+    ASSERT_EQ(form.numbers.size(), 2U);
+    EXPECT_EQ(form.low, 3.0);
+    EXPECT_GT(form.bins.size(), 100U);
+    EXPECT_GT(form.numbers[0].value().value_or(0.0), 96.0);
+    EXPECT_LT(form.numbers[0].value().value_or(0.0), 200.0);
+    EXPECT_TRUE(form.arguments().empty()) << "what is proposed is no answer of a person";
+    form.numbers[0].set(80.0);
+    form.answered = true;
+    dashboard.follow(state_);
+    until_done(dashboard);
+    const auto asked = take_asked_scene(scene_switch);
+    ASSERT_TRUE(asked) << state_.message;
+    EXPECT_NE(read_note(SceneFile::open(*asked)).find("values above 80"), std::string::npos);
+}
+
+TEST_F(Import, an_examination_can_be_cancelled) {
+    const std::string scan = (folder_ / "head.nrrd").string();
+    std::ofstream(scan, std::ios::binary)
+        << "NRRD0004\ndimension: 3\ntype: uint8\nsizes: 4 4 4\nspacings: 1 1 1\nencoding: raw\n\n"
+        << std::string(64, '\7');
+    BrowserController dashboard({});
+    dashboard.drop({scan}, state_);
+    dashboard.follow(state_);
+    state_.cancel_wanted = true;
+    until_done(dashboard);
+    EXPECT_FALSE(state_.form);
+    EXPECT_EQ(scenes(), 0U);
 }
 
 TEST_F(Import, an_unknown_file_type_is_answered_with_the_known_ones) {

@@ -26,6 +26,7 @@ WindowState one_of_all() {
                  .depth_cue = false,
                  .frame_times = true,
                  .sound = false,
+                 .microscope = true,
                  .molecule = 3,
                  .colouring = 2};
     s.scene = 0xfedcba9876543210ULL;
@@ -45,6 +46,7 @@ TEST(WindowStateFile, a_written_state_reads_back_unchanged) {
     EXPECT_FALSE(again.toggles.surface);
     EXPECT_TRUE(again.toggles.backbone);
     EXPECT_FALSE(again.toggles.sound);
+    EXPECT_TRUE(again.toggles.microscope);
     EXPECT_FALSE(again.toggles.codebook);
     EXPECT_TRUE(again.toggles.box);
     EXPECT_FALSE(again.toggles.depth_cue);

@@ -28,8 +28,9 @@ add_test(NAME search_pairs_test COMMAND tests/e2e/search_pairs_test.py $<TARGET_
 set_tests_properties(search_pairs_test PROPERTIES LABELS "e2e;long" TIMEOUT 300 SKIP_RETURN_CODE 77)
 tact_tests(prep_scan_tests SOURCES
         unit/prep_volume_test.cpp unit/prep_scan_test.cpp unit/prep_patient_frame_test.cpp
-        unit/prep_structures_test.cpp
-    USES prep_drilling prep_volume prep_synthetic scene image base SYSTEM ZLIB::ZLIB)
+        unit/prep_structures_test.cpp unit/prep_examine_test.cpp
+    USES prep_drilling prep_drilling_command prep_console prep_volume prep_synthetic scene image base
+    SYSTEM ZLIB::ZLIB nlohmann_json::nlohmann_json)
 tact_test(unit/prep_dicom_packed_test.cpp USES prep_drilling prep_volume base)
 target_link_libraries(prep_dicom_packed_test PRIVATE ${TACT_GDCM_MSFF} ${TACT_GDCM_DSED} ${TACT_GDCM_Common})
 target_include_directories(prep_dicom_packed_test SYSTEM PRIVATE ${TACT_GDCM_INCLUDE})

@@ -3,6 +3,7 @@
 #include <zlib.h>
 
 #include <algorithm>
+#include <numeric>
 
 #include "ipc/base/error.hpp"
 #include "ipc/base/random.hpp"
@@ -377,9 +378,9 @@ TEST(Dicom, one_of_several_series_is_chosen_or_all_are_listed) {
     EXPECT_TRUE(
         says(refusal(of(f.path)), {"2 series", "1: CT, series number 1, 4 slices", "2: CT", "--series"}));
     BoneImport o = of(f.path);
-    o.series = 1;
+    o.request.series = 1;
     expect_bone(import_bone(o).bone);
-    o.series = 3;
+    o.request.series = 3;
     EXPECT_TRUE(says(refusal(o), {"series 3 is not in this list"}));
     // A planning view next to a volume requires no choice.
     const ScanFolder g;
@@ -533,7 +534,7 @@ TEST(Pictures, colours_are_structures_and_one_of_them_is_bone) {
         write_rgba(f.path / numbered("p", k, ".png"), 3, {nerve, bone, empty, bone, nerve, empty});
     BoneImport o = of(f.path);
     EXPECT_TRUE(says(refusal(o), {"--spacing-mm"}));
-    o.spacing_mm = Vec3(0.2, 0.2, 0.2);
+    o.request.spacing_mm = Vec3(0.2, 0.2, 0.2);
     o.label_names = f.write("names.txt", "1 9 8 7 1 1 1 \"nerve\"\n");
     const BoneData b = import_bone(o).bone;
     ASSERT_EQ(b.structure.size(), 1U);
@@ -560,7 +561,7 @@ TEST(RealScans, all_real_scans_are_read) {
     const auto share = [&](const char* name, double threshold, double solid, double voxel_mm) {
         BoneImport o = of(ct / name);
         o.voxel_mm = voxel_mm;
-        o.spacing_mm = Vec3(0.4, 0.4, 0.4);
+        o.request.spacing_mm = Vec3(0.4, 0.4, 0.4);
         if (solid > 0.0) {
             o.threshold = threshold;
             o.solid = solid;
@@ -597,8 +598,12 @@ TEST(BoneThreshold, of_a_body_lies_between_soft_tissue_and_bone) {
                                                                  : 255.0 * scale));
             }
         };
-        const std::optional<ProposedBone> bone = propose_bone(scan);
-        ASSERT_TRUE(bone);
+        const std::optional<ScanHistogram> histogram = scan_histogram(scan);
+        ASSERT_TRUE(histogram);
+        EXPECT_EQ(std::accumulate(histogram->count.begin(), histogram->count.end(), 0.0), 1e5);
+        EXPECT_NEAR(histogram->low, scale * 2.0, 1e-3);
+        EXPECT_LT(histogram->high, scale * 240.0) << "without the metal";
+        const std::optional<ProposedBone> bone = propose_bone(*histogram);
         EXPECT_GT(bone->threshold, scale * 113.0) << scale;
         EXPECT_LT(bone->threshold, scale * 172.0) << scale;
         EXPECT_NEAR(bone->share_above, 0.05, 0.004);
@@ -607,7 +612,7 @@ TEST(BoneThreshold, of_a_body_lies_between_soft_tissue_and_bone) {
         scan.read = [](std::uint32_t, std::span<float> pixels) {
             std::fill(pixels.begin(), pixels.end(), 7.0F);
         };
-        EXPECT_FALSE(propose_bone(scan));
+        EXPECT_FALSE(scan_histogram(scan));
     }
 }
 

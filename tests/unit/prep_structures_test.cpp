@@ -146,7 +146,7 @@ void write_stack(const fs::path& folder, const std::vector<std::array<std::uint8
 BoneInput imported(const fs::path& folder) {
     BoneImport o;
     o.scan = folder;
-    o.spacing_mm = Vec3::Constant(0.5);
+    o.request.spacing_mm = Vec3::Constant(0.5);
     return import_bone(o);
 }
 const BoneStructure& named(const BoneInput& input, const std::string& name) {

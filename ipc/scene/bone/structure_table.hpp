@@ -1,24 +1,30 @@
-// Where the names of a scan's structures lie beside it: `structures.toml` in a folder of slices, `NAME.structures.toml`
-// beside a file NAME.nrrd or NAME.nii.gz. Read by tact-prep; a scene depends on its content.
+// The names of a scan's structures, in a table beside it that a person edits: `structures.toml` in a folder of slices,
+// `NAME.structures.toml` beside a file NAME.nrrd or NAME.nii.gz. Read by tact-prep; a scene depends on its content.
 //
 // Thread   any
 #pragma once
 
+#include <array>
+#include <cstdint>
 #include <filesystem>
+#include <span>
 #include <string>
 
 namespace tact {
 
+// Where the table of a scan lies, or would lie.
+[[nodiscard]] std::filesystem::path structure_table_path(const std::filesystem::path& scan);
 // Empty: there is none.
-[[nodiscard]] inline std::filesystem::path structure_table_beside(const std::filesystem::path& scan) {
-    namespace fs = std::filesystem;
-    std::error_code ignored;
-    const fs::path in_folder = scan / "structures.toml";
-    if (fs::is_directory(scan, ignored))
-        return fs::is_regular_file(in_folder, ignored) ? in_folder : fs::path();
-    const std::string name = scan.filename().string();
-    const fs::path beside = scan.parent_path() / (name.substr(0, name.find('.', 1)) + ".structures.toml");
-    return fs::is_regular_file(beside, ignored) ? beside : fs::path();
-}
+[[nodiscard]] std::filesystem::path structure_table_beside(const std::filesystem::path& scan);
+
+struct StructureRow {
+    std::uint8_t label = 0;  // 0: known by its colour
+    std::array<std::uint8_t, 3> rgb{};
+    std::string name;
+    bool critical = false;
+    std::uint64_t voxels = 0;
+};
+// As TOML to be edited.
+[[nodiscard]] std::string structure_table_text(std::span<const StructureRow> rows);
 
 }  // namespace tact

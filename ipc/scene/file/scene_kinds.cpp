@@ -28,13 +28,6 @@ constexpr RawFileType kDockingRaw[] = {
     {"structure", "its structures", kStructureEndings, nullptr, kSceneBodiesMax,
      "A map needs a structure to dock into it: give both together."},
 };
-constexpr ImportQuestion kMapResolution{
-    "--resolution-a",
-    "Resolution of the map",
-    "Å",
-    "As published with the map. The structure is simulated at it, so a guess would rank wrong places first.",
-    0.5,
-    200.0};
 constexpr RawFileType kSurfaceRaw[] = {{"mesh", "a mesh", kMeshEndings, nullptr, 1, nullptr}};
 constexpr RawFileType kDrillingRaw[] = {
     {"scan", "a scan", kScanEndings, "DICOM files or images", 1, nullptr}};
@@ -49,10 +42,10 @@ constexpr SceneKindRow kKinds[] = {
      kDockingSections,
      {0.5e-10, 1e-7, 1e-12, 1e-30, 1, kSceneBodiesMax},
      kDockingRaw,
-     &kMapResolution},
-    {SceneKind::surface, "surface", "touch", "Touch", kSurfaceSections, kNoMap, kSurfaceRaw, nullptr},
-    {SceneKind::drilling, "drilling", "drill", "Drill", kDrillingSections, kNoMap, kDrillingRaw, nullptr},
-    {SceneKind::field, "field", "field", "Feel", kFieldSections, kNoMap, kFieldRaw, nullptr},
+     true},
+    {SceneKind::surface, "surface", "touch", "Touch", kSurfaceSections, kNoMap, kSurfaceRaw, false},
+    {SceneKind::drilling, "drilling", "drill", "Drill", kDrillingSections, kNoMap, kDrillingRaw, true},
+    {SceneKind::field, "field", "field", "Feel", kFieldSections, kNoMap, kFieldRaw, false},
 };
 
 }  // namespace

@@ -27,12 +27,6 @@ struct RawFileType {
     const char* missing;      // message if the other files come without this one; null: none needed
 };
 
-// A number that the command needs and no file states; a window asks for it before it imports.
-struct ImportQuestion {
-    const char *option, *label, *unit, *help;
-    double low, high;  // of an answer
-};
-
 // Limits of the values in section META.
 struct MetaLimits {
     double resolution_min_m, resolution_max_m, energy_min_j, map_sigma_min;
@@ -47,7 +41,7 @@ struct SceneKindRow {
     std::span<const SectionTag> sections;  // that must be present besides META and NOTE
     MetaLimits limits;
     std::span<const RawFileType> raw;  // in the order of the command's arguments
-    const ImportQuestion* question;    // null: the files say all
+    bool asks;  // tact-prep examine WORD FILE... says what a person must answer before the import
 };
 
 [[nodiscard]] std::span<const SceneKindRow> scene_kinds();
