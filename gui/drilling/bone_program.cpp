@@ -160,42 +160,18 @@ void main() {
 constexpr char kShowFragment[] = R"(#version 330 core
 uniform sampler2D u_colour;
 uniform sampler2D u_depth;
-uniform vec2 u_distance;  // eye distance of a depth d: x / (2 d - 1 + y)
-uniform vec3 u_blur;      // distance in focus; half width of the blur in the image, per relative distance from it; its most
-uniform float u_high;     // of a circle on the screen, in the image: height over width
 in vec2 v_at;
 out vec4 colour;
-float radius(float depth) {
-    float far = u_distance.x / (2.0 * depth - 1.0 + u_distance.y);
-    return min(u_blur.y * abs(far - u_blur.x) / far, u_blur.z);
-}
 void main() {
     float depth = texture(u_depth, v_at).r;
     if (depth >= 1.0) discard;
     vec4 c = texture(u_colour, v_at);
-    vec4 sum = vec4(c.rgb / max(c.a, 0.25), 1.0);
-    float r = u_blur.y > 0.0 ? radius(depth) : 0.0;
-    if (r > 0.08 * u_blur.z) {
-        // On a spiral. What is sharp and nearer does not spread over what is blurred behind it.
-        vec2 way = vec2(0.0, 1.0);
-        for (int i = 1; i <= 14; ++i) {
-            way = mat2(-0.7374, 0.6755, -0.6755, -0.7374) * way;
-            vec2 at = v_at + r * sqrt(float(i) / 14.0) * way * vec2(1.0, u_high);
-            float there = texture(u_depth, at).r;
-            if (there >= 1.0) continue;
-            float w = there >= depth ? 1.0 : clamp(radius(there) / r, 0.0, 1.0);
-            vec4 s = texture(u_colour, at);
-            sum += w * vec4(s.rgb / max(s.a, 0.25), 1.0);
-        }
-    }
-    colour = vec4(sum.rgb / sum.a, 1.0);
+    colour = vec4(c.rgb / max(c.a, 0.25), 1.0);
     gl_FragDepth = depth;
 }
 )";
 
 constexpr GLsizei kEdge = BoneBricks::kEdge;
-constexpr float kBlurMost = 0.012F;       // radius, of the view's height
-constexpr float kBlurPerDistance = 9.0F;  // of that, per relative distance from the focus
 
 void volume_texture(GLuint name, GLint filter, GLenum wrap, const std::array<std::uint32_t, 3>& size) {
     glBindTexture(GL_TEXTURE_3D, name);
@@ -457,28 +433,20 @@ void BoneProgram::use(BoneTextures& textures, const BoneField& field, const Eige
 }
 
 BoneOnScreen::BoneOnScreen()
-    : program_("bone on screen", kShowVertex, kShowFragment),
-      share_(program_.uniform("u_share")),
-      distance_(program_.uniform("u_distance")),
-      blur_(program_.uniform("u_blur")),
-      high_(program_.uniform("u_high")) {
+    : program_("bone on screen", kShowVertex, kShowFragment), share_(program_.uniform("u_share")) {
     program_.use();
     glUniform1i(program_.uniform("u_colour"), 0);
     glUniform1i(program_.uniform("u_depth"), 1);
 }
 
-void BoneOnScreen::use(const Image& image, const Eigen::Matrix4f& projection, float focus_a) {
+void BoneOnScreen::use(GLuint colour, GLuint depth, float share_x, float share_y, bool smooth) {
     program_.use();
-    glUniform2f(share_, image.share_x, image.share_y);
-    glUniform2f(distance_, projection(2, 3), projection(2, 2));
-    const float most = kBlurMost * image.share_x * image.height_over_width;
-    glUniform3f(blur_, focus_a, focus_a > 0.0F ? kBlurPerDistance * most : 0.0F, most);
-    glUniform1f(high_, image.share_y / image.share_x / image.height_over_width);
+    glUniform2f(share_, share_x, share_y);
     glActiveTexture(GL_TEXTURE1);
-    glBindTexture(GL_TEXTURE_2D, image.depth);
+    glBindTexture(GL_TEXTURE_2D, depth);
     glActiveTexture(GL_TEXTURE0);
-    glBindTexture(GL_TEXTURE_2D, image.colour);
-    const GLint filter = image.smooth ? GL_LINEAR : GL_NEAREST;
+    glBindTexture(GL_TEXTURE_2D, colour);
+    const GLint filter = smooth ? GL_LINEAR : GL_NEAREST;
     glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, filter);
     glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, filter);
 }

@@ -4,7 +4,6 @@
 //           entered the surface. Colour: of the structure, else by the density behind the surface. Light: as for
 //           everything else, times the open fraction of the sky above the surface, times a soft shadow of the lamp.
 //           Wet bone is darker and glitters; blood stains it.
-// Focus     the image on the screen is blurred with the distance from the focus, as in a microscope.
 // Frames    voxels (origin at the centre of voxel 0) inside the shader; eye space in ångström as in all programs
 // Thread    frame thread, context current
 #pragma once
@@ -68,19 +67,13 @@ private:
 // Draws part of an image with its depths over the existing content where it is nearer.
 class BoneOnScreen {
 public:
-    struct Image {
-        GLuint colour = 0, depth = 0;
-        float share_x = 1.0F, share_y = 1.0F;  // the part [0, share] is shown
-        float height_over_width = 1.0F;        // of the view
-        bool smooth = false;
-    };
     BoneOnScreen();
-    // Clip space as above. focus_a: distance from the eye; 0: all is sharp.
-    void use(const Image& image, const Eigen::Matrix4f& projection, float focus_a);
+    // Clip space as above, which shows the part [0, `share`] of the image.
+    void use(GLuint colour, GLuint depth, float share_x, float share_y, bool smooth);
 
 private:
     GlProgram program_;
-    GLint share_, distance_, blur_, high_;
+    GLint share_;
 };
 
 }  // namespace tact

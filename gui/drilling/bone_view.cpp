@@ -225,10 +225,7 @@ void BoneView::show(Eyeful& eye) {
     }
     const auto show_tiles = [&](Picture& picture, float x, float y, const std::vector<float>& corners) {
         if (corners.empty() || !(x > 0.0F)) return;
-        on_screen_.use({picture.colour.get(), picture.depth.get(), x, y,
-                        static_cast<float>(eye.last.height_px) / static_cast<float>(eye.last.width_px),
-                        &picture == &eye.coarse || eye.last.focus_a > 0.0F},
-                       eye.last.projection, eye.last.focus_a);
+        on_screen_.use(picture.colour.get(), picture.depth.get(), x, y, &picture == &eye.coarse);
         glBufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(corners.size() * sizeof(float)), corners.data(),
                      GL_STREAM_DRAW);
         glDrawArrays(GL_TRIANGLES, 0, static_cast<GLsizei>(corners.size() / 2));

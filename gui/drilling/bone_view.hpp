@@ -26,7 +26,6 @@ struct BoneFrame {
     std::size_t eye = 0;  // index; each keeps an image
     double fill_s = 1e9;  // at most, to upload bone
     bool coaxial_light = false;
-    float focus_a = 0.0F;  // distance from the eye that is sharp; 0: all is
 };
 
 class BoneView {

@@ -34,8 +34,6 @@ void DrillingLayer::draw_structures(const LayerPass& pass) {
 void DrillingLayer::draw_volume(const LayerPass& pass) {
     if (!bone_) return;
     const PassClock::Scope scope(pass.passes, Pass::bone);
-    const Eigen::Vector3f focus_a = ((frame.focus_model_m - centre_model_m_) / kAngstromM).cast<float>();
-    const float ahead_a = -(pass.eye_from_scene * focus_a.homogeneous()).z();
     try {
         bone_->draw({.eye_from_scene = pass.eye_from_scene,
                      .projection = pass.projection,
@@ -47,8 +45,7 @@ void DrillingLayer::draw_volume(const LayerPass& pass) {
                      .rays_most = frame.bone_rays / static_cast<std::uint32_t>(pass.eyes),
                      .eye = pass.eye,
                      .fill_s = frame.bone_fill_s,
-                     .coaxial_light = frame.microscope,
-                     .focus_a = frame.microscope ? std::max(ahead_a, 0.0F) : 0.0F});
+                     .coaxial_light = frame.microscope});
     } catch (const StartupError& e) {
         bone_error_ = e.what();
         bone_.reset();
@@ -57,7 +54,17 @@ void DrillingLayer::draw_volume(const LayerPass& pass) {
 }
 
 void DrillingLayer::draw_fluids(const LayerPass& pass) {
-    if (frame.particles == nullptr) return;
+    if (frame.particles != nullptr) draw_particles(pass);
+    if (!frame.microscope) return;
+    const PassClock::Scope scope(pass.passes, Pass::edges);
+    if (!microscope_) microscope_ = std::make_unique<Microscope>();
+    const Eigen::Vector3f focus_a = ((frame.focus_model_m - centre_model_m_) / kAngstromM).cast<float>();
+    const float ahead_a = -(pass.eye_from_scene * focus_a.homogeneous()).z();
+    microscope_->draw(
+        {pass.x_px, pass.y_px, pass.width_px, pass.height_px, pass.projection, std::max(ahead_a, 0.0F)});
+}
+
+void DrillingLayer::draw_particles(const LayerPass& pass) {
     if (frame.time_particles) {  // excludes remaining work on the bone
         const PassClock::Scope scope(pass.passes, Pass::bone);
         glFinish();
@@ -76,12 +83,6 @@ void DrillingLayer::draw_fluids(const LayerPass& pass) {
     if (!frame.time_particles) return;
     glFinish();
     particles_draw_s_ = to_s(Monotonic::now() - begin);
-}
-
-void DrillingLayer::draw_in_front(const LayerPass& pass) {
-    if (!frame.microscope) return;
-    if (!field_) field_ = std::make_unique<MicroscopeField>();
-    field_->draw(pass.width_px, pass.height_px);
 }
 
 }  // namespace tact

@@ -11,7 +11,7 @@
 
 #include "gui/drilling/bone_view.hpp"
 #include "gui/drilling/drill_tools.hpp"
-#include "gui/drilling/microscope_field.hpp"
+#include "gui/drilling/microscope.hpp"
 #include "gui/drilling/particle_cloud.hpp"
 #include "gui/render/scene_layer.hpp"
 #include "gui/render/triangle_buffers.hpp"
@@ -52,9 +52,9 @@ public:
     void draw_structures(const LayerPass& pass) override;
     void draw_volume(const LayerPass& pass) override;
     void draw_fluids(const LayerPass& pass) override;
-    void draw_in_front(const LayerPass& pass) override;
 
 private:
+    void draw_particles(const LayerPass& pass);
     struct ToolInHand {
         DrawnDrillTool shape;
         TriangleBuffers head, rest;
@@ -65,7 +65,7 @@ private:
     std::string bone_error_;
     std::array<ToolInHand, 2> tool_;          // with the shapes of their meshes
     std::unique_ptr<ParticleCloud> cloud_;    // created with the first particles
-    std::unique_ptr<MicroscopeField> field_;  // created when first needed
+    std::unique_ptr<Microscope> microscope_;  // created when first needed
     double particles_draw_s_ = 0.0;
 };
 

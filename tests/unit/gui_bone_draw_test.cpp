@@ -7,7 +7,7 @@
 #include <set>
 
 #include "gui/drilling/bone_view.hpp"
-#include "gui/drilling/microscope_field.hpp"
+#include "gui/drilling/microscope.hpp"
 #include "gui/render/camera.hpp"
 #include "gui/render/elements.hpp"
 #include "ipc/base/units.hpp"
@@ -315,12 +315,14 @@ TEST_F(BoneDraw, a_microscope_blurs_what_is_out_of_its_focus_and_lights_along_th
     BoneView view(*bone_, centre_model_m_, now_);
     draw(view);
     const double at_a = depth_a(kWidth / 2, kHeight / 2);
+    Microscope microscope;
     const auto seen = [&](bool coaxial, double focus_a) {
         glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
         BoneFrame f = frame(kAllRays);
         f.coaxial_light = coaxial;
-        f.focus_a = static_cast<float>(focus_a);
         view.draw(f);
+        if (focus_a > 0.0)
+            microscope.draw({0, 0, kWidth, kHeight, f.projection, static_cast<float>(focus_a)});
         return read_pixels(kWidth, kHeight);
     };
     // How sharp edges are: second differences in the middle of the picture.
@@ -354,11 +356,11 @@ TEST_F(BoneDraw, a_microscope_blurs_what_is_out_of_its_focus_and_lights_along_th
 }
 
 TEST_F(BoneDraw, a_microscope_has_a_round_field) {
-    MicroscopeField field;
+    Microscope microscope;
     glViewport(0, 0, kWidth, kHeight);
     glClearColor(1.0F, 1.0F, 1.0F, 1.0F);
     glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
-    field.draw(kWidth, kHeight);
+    microscope.draw({0, 0, kWidth, kHeight, camera_.projection(static_cast<float>(kWidth) / kHeight), 0.0F});
     const double radius = 0.495 * kHeight;
     for (int y = 0; y < kHeight; ++y)
         for (int x = 0; x < kWidth; ++x) {
