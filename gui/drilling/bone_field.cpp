@@ -3,14 +3,26 @@
 #include <algorithm>
 
 namespace tact {
+namespace {
+
+constexpr int kReach = 2;  // voxels that smoothing looks at, on each side
+constexpr std::array<std::uint32_t, 2 * kReach + 1> kWeight{1, 4, 6, 4, 1};
+constexpr std::uint32_t kWeights = 16;
+constexpr std::uint8_t kFaint = 48, kFull = 250;  // of a scan's partly filled voxels lie between
+constexpr std::size_t kEveryVoxel = 13;           // looked at to tell
+constexpr std::uint16_t kMixed = 256, kUnknown = 257;
+constexpr double kPartlyFilled = 0.02;  // of the voxels with bone, at most in a segmented volume
+
+}  // namespace
 
 BoneField::BoneField(const BoneVolumeView& baked, const BoneLabelsView& labels, const BoneVolumeView& now,
                      std::span<const std::uint8_t> free_cells)
-    : baked_(baked), labels_(labels), now_(now) {
+    : baked_(baked), labels_(labels), now_(now), smooth_(segmented()) {
     const auto n = now.bricks.bricks();
     constexpr std::uint32_t kCellsOfBrick = BoneBricks::kEdge / kCell;
     for (std::size_t i = 0; i < 3; ++i) cells_[i] = n[i] * kCellsOfBrick;
     free_.resize(std::size_t{cells_[0]} * cells_[1] * cells_[2]);
+    if (smooth_) one_value_.assign(now.bricks.brick_count(), kUnknown);
     if (free_cells.size() == free_.size())
         std::copy(free_cells.begin(), free_cells.end(), free_.begin());
     else
@@ -22,10 +34,95 @@ std::uint8_t BoneField::solid(std::uint32_t x, std::uint32_t y, std::uint32_t z)
     return solid_of(now_.density[v], baked_.density[v], label(v));
 }
 
-void BoneField::solids(std::uint32_t brick, std::span<std::uint8_t, BoneBricks::kVoxels> out) const {
+bool BoneField::segmented() const {
+    std::uint64_t bone = 0, partly = 0;
+    for (std::size_t i = 0; i < baked_.density.size(); i += kEveryVoxel) {
+        const std::uint8_t d = baked_.density[i];
+        bone += d > kFaint ? 1U : 0U;
+        partly += d > kFaint && d < kFull ? 1U : 0U;
+    }
+    return bone > 0 && static_cast<double>(partly) <= kPartlyFilled * static_cast<double>(bone);
+}
+
+// Along one axis after the other, over the brick and two voxels around it.
+void BoneField::smoothed(std::uint32_t brick, std::span<std::uint8_t, BoneBricks::kVoxels> out) const {
+    constexpr int kEdge = BoneBricks::kEdge, kWide = kEdge + 2 * kReach;
+    const auto n = now_.bricks.bricks();
+    const std::array<int, 3> corner{static_cast<int>(brick % n[0]) * kEdge - kReach,
+                                    static_cast<int>(brick / n[0] % n[1]) * kEdge - kReach,
+                                    static_cast<int>(brick / n[0] / n[1]) * kEdge - kReach};
+    std::array<std::uint16_t, std::size_t{kWide} * kWide * kWide> wide{}, along{};
+    const auto inside = [&](int at, std::size_t axis) {
+        return at >= 0 && at < static_cast<int>(now_.bricks.size[axis]);
+    };
+    const auto place = [](int x, int y, int z) {
+        return static_cast<std::size_t>((z * kWide + y) * kWide + x);
+    };
+    for (int z = 0; z < kWide; ++z)
+        for (int y = 0; y < kWide; ++y)
+            for (int x = 0; x < kWide; ++x)
+                if (inside(corner[0] + x, 0) && inside(corner[1] + y, 1) && inside(corner[2] + z, 2))
+                    wide[place(x, y, z)] = solid(static_cast<std::uint32_t>(corner[0] + x),
+                                                 static_cast<std::uint32_t>(corner[1] + y),
+                                                 static_cast<std::uint32_t>(corner[2] + z));
+    const auto pass = [&](std::size_t step, const std::array<bool, 3>& inner) {
+        along = wide;
+        const auto from = [&](std::size_t axis) { return inner[axis] ? kReach : 0; };
+        const auto to = [&](std::size_t axis) { return inner[axis] ? kWide - kReach : kWide; };
+        for (int z = from(2); z < to(2); ++z)
+            for (int y = from(1); y < to(1); ++y)
+                for (int x = from(0); x < to(0); ++x) {
+                    const std::size_t first = place(x, y, z) - kReach * step;
+                    std::uint32_t sum = kWeights / 2;
+                    for (std::size_t i = 0; i < kWeight.size(); ++i)
+                        sum += kWeight[i] * along[first + i * step];
+                    wide[place(x, y, z)] = static_cast<std::uint16_t>(sum / kWeights);
+                }
+    };
+    pass(1, {true, false, false});
+    pass(kWide, {true, true, false});
+    pass(std::size_t{kWide} * kWide, {true, true, true});
+    for (int i = 0; i < static_cast<int>(out.size()); ++i)
+        out[static_cast<std::size_t>(i)] = static_cast<std::uint8_t>(
+            wide[place(kReach + i % kEdge, kReach + i / kEdge % kEdge, kReach + i / kEdge / kEdge)]);
+}
+
+void BoneField::as_stored(std::uint32_t brick, std::span<std::uint8_t, BoneBricks::kVoxels> out) const {
     const std::size_t first = std::size_t{brick} * BoneBricks::kVoxels;
     for (std::size_t i = 0; i < out.size(); ++i)
         out[i] = solid_of(now_.density[first + i], baked_.density[first + i], label(first + i));
+}
+
+std::optional<std::uint8_t> BoneField::one_value_around(std::uint32_t brick) const {
+    const auto n = now_.bricks.bricks();
+    const std::array<std::uint32_t, 3> at{brick % n[0], brick / n[0] % n[1], brick / n[0] / n[1]};
+    std::optional<std::uint8_t> value;
+    // Outside of the volume there is nothing.
+    for (std::size_t axis = 0; axis < 3; ++axis)
+        if (at[axis] == 0 || at[axis] + 1 == n[axis]) value = 0;
+    for (std::uint32_t z = at[2] - std::min(at[2], 1U); z < std::min(at[2] + 2, n[2]); ++z)
+        for (std::uint32_t y = at[1] - std::min(at[1], 1U); y < std::min(at[1] + 2, n[1]); ++y)
+            for (std::uint32_t x = at[0] - std::min(at[0], 1U); x < std::min(at[0] + 2, n[0]); ++x) {
+                std::uint16_t& known = one_value_[(std::size_t{z} * n[1] + y) * n[0] + x];
+                if (known == kUnknown) {
+                    std::array<std::uint8_t, BoneBricks::kVoxels> voxels{};
+                    as_stored((z * n[1] + y) * n[0] + x, voxels);
+                    const bool same = std::all_of(voxels.begin(), voxels.end(),
+                                                  [&](std::uint8_t v) { return v == voxels[0]; });
+                    known = same ? voxels[0] : kMixed;
+                }
+                if (known == kMixed || (value && *value != known)) return std::nullopt;
+                value = static_cast<std::uint8_t>(known);
+            }
+    return value;
+}
+
+void BoneField::solids(std::uint32_t brick, std::span<std::uint8_t, BoneBricks::kVoxels> out) const {
+    if (!smooth_) return as_stored(brick, out);
+    if (const auto value = one_value_around(brick))
+        std::fill(out.begin(), out.end(), *value);
+    else
+        smoothed(brick, out);
 }
 
 double BoneField::reach_voxels(const Vec3& centre) const {
@@ -40,13 +137,14 @@ double BoneField::reach_voxels(const Vec3& centre) const {
 }
 
 // Between two voxels the surface may lie up to a whole edge from the solid one. The voxels around a cell are
-// therefore included, so that no surface lies in an empty cell.
+// therefore included, so that no surface lies in an empty cell; and those that smoothing spreads into it.
 bool BoneField::empty(std::uint32_t cx, std::uint32_t cy, std::uint32_t cz) const {
     const std::array<std::uint32_t, 3> c{cx, cy, cz};
     std::array<std::uint32_t, 3> from{}, to{};
+    const std::uint32_t around = smooth_ ? 1 + kReach : 1;
     for (std::size_t i = 0; i < 3; ++i) {
-        from[i] = c[i] * kCell - (c[i] > 0 ? 1 : 0);
-        to[i] = std::min((c[i] + 1) * kCell + 1, now_.bricks.size[i]);
+        from[i] = c[i] * kCell - std::min(c[i] * kCell, around);
+        to[i] = std::min((c[i] + 1) * kCell + around, now_.bricks.size[i]);
     }
     for (std::uint32_t z = from[2]; z < to[2]; ++z)
         for (std::uint32_t y = from[1]; y < to[1]; ++y)
@@ -56,6 +154,7 @@ bool BoneField::empty(std::uint32_t cx, std::uint32_t cy, std::uint32_t cz) cons
 }
 
 void BoneField::changed(std::uint32_t brick, bool grown) {
+    if (smooth_) one_value_[brick] = kUnknown;
     constexpr std::uint32_t kCellsOfBrick = BoneBricks::kEdge / kCell;
     const auto n = now_.bricks.bricks();
     const std::array<std::uint32_t, 3> brick_at{brick % n[0], brick / n[0] % n[1], brick / n[0] / n[1]};
@@ -114,7 +213,7 @@ void BoneField::mark_own() {
     constexpr std::uint32_t kCellsOfBrick = BoneBricks::kEdge / kCell;
     std::array<std::uint8_t, BoneBricks::kVoxels> voxels{};
     for (std::uint32_t b = 0; b < now_.bricks.brick_count(); ++b) {
-        solids(b, voxels);
+        as_stored(b, voxels);
         const std::size_t bx = b % n[0], by = b / n[0] % n[1], bz = b / n[0] / n[1];
         for (std::uint32_t i = 0; i < voxels.size(); ++i) {
             if (voxels[i] < kSurface) continue;

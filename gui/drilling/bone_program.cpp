@@ -31,6 +31,7 @@ uniform vec3 u_label_size;
 uniform sampler2D u_palette;
 uniform sampler3D u_wet;
 uniform vec3 u_wet_size;   // voxels
+uniform int u_slopes;
 uniform float u_coaxial;  // 1: only the lamp of a microscope
 uniform vec3 u_size;
 uniform vec3 u_cells;
@@ -90,11 +91,11 @@ void main() {
     vec3 p = u_origin + high * d;
 
     // Gradient from a tetrahedron's corners, four samples instead of six; narrow for fine detail, and wide because the
-    // steps between voxels would otherwise appear as terraces.
+    // steps between voxels would otherwise appear as terraces: of a segmented volume, wider still.
     vec2 e = vec2(1.0, -1.0);
     vec3 slope = vec3(0.0), fine = vec3(0.0);
-    for (int i = 0; i < 2; ++i) {
-        float w = i == 0 ? 1.1 : 2.3;
+    for (int i = 0; i < u_slopes; ++i) {
+        float w = i == 0 ? 1.1 : i == 1 ? 2.3 : 4.5;
         slope += e.xyy * bone(p + w * e.xyy) + e.yyx * bone(p + w * e.yyx) + e.yxy * bone(p + w * e.yxy) +
                  e.xxx * bone(p + w * e.xxx);
         if (i == 0) fine = -slope;
@@ -392,7 +393,8 @@ BoneProgram::BoneProgram()
       step_(program_.uniform("u_step")),
       lamp_(program_.uniform("u_lamp")),
       wet_size_(program_.uniform("u_wet_size")),
-      coaxial_(program_.uniform("u_coaxial")) {
+      coaxial_(program_.uniform("u_coaxial")),
+      slopes_(program_.uniform("u_slopes")) {
     program_.use();
     GLint unit = 0;
     for (const char* const name : {"u_bone", "u_free", "u_label", "u_wet", "u_palette"})
@@ -428,6 +430,7 @@ void BoneProgram::use(BoneTextures& textures, const BoneField& field, const Eige
     glUniform3fv(lamp_, 1, lamp.data());
     const Eigen::Array3f wet = textures.wet_size_voxels();
     glUniform3fv(wet_size_, 1, wet.data());
+    glUniform1i(slopes_, field.smooth() ? 3 : 2);
     glUniform1f(coaxial_, coaxial_light ? 1.0F : 0.0F);
     textures.bind();
 }

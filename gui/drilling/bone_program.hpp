@@ -61,7 +61,7 @@ public:
 private:
     GlProgram program_;
     ViewUniforms view_;
-    GLint size_, label_size_, cells_, origin_, from_eye_, tan_, step_, lamp_, wet_size_, coaxial_;
+    GLint size_, label_size_, cells_, origin_, from_eye_, tan_, step_, lamp_, wet_size_, coaxial_, slopes_;
 };
 
 // Draws part of an image with its depths over the existing content where it is nearer.

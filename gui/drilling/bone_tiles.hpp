@@ -1,8 +1,9 @@
 // Selects the parts of the sharp bone image to redraw: tiles of 64 pixels.
 //
 // Wrong     of another view: must not be shown.   Stale   its bone has changed: shown until redrawn.
-// Order     stale ones first, then wrong ones from the centre of the view outwards, as many as the rays suffice for;
-//           at least one, so that the image is complete at last.
+// Order     stale and wrong ones first in turn, stale ones by their age, wrong ones from the centre of the view outwards, as
+//           many as the rays suffice for; at least one, so that the image is complete at last, also while a burr makes
+//           the same few tiles stale in every frame.
 // Thread    any; plain data
 #pragma once
 
@@ -33,6 +34,7 @@ public:
         columns_ = (width_px + kEdge - 1) / kEdge;
         const int rows = (height_px + kEdge - 1) / kEdge;
         tile_.assign(static_cast<std::size_t>(columns_) * static_cast<std::size_t>(rows), State::wrong);
+        stale_at_.assign(tile_.size(), 0);
         order_.resize(tile_.size());
         for (std::size_t i = 0; i < order_.size(); ++i) order_[i] = static_cast<std::uint32_t>(i);
         const auto off = [this](std::uint32_t i) {
@@ -50,7 +52,10 @@ public:
     }
     void stale(const PixelBox& where) {
         for (std::uint32_t i = 0; i < tile_.size(); ++i)
-            if (tile_[i] == State::good && !box(i).cut(where).empty()) tile_[i] = State::stale;
+            if (tile_[i] == State::good && !box(i).cut(where).empty()) {
+                tile_[i] = State::stale;
+                stale_at_[i] = ++clock_;
+            }
     }
     [[nodiscard]] PixelBox box(std::uint32_t i) const {
         const int x = static_cast<int>(i) % columns_ * kEdge, y = static_cast<int>(i) / columns_ * kEdge;
@@ -72,9 +77,15 @@ public:
         taken_.clear();
         std::uint32_t left = rays_most;
         bool room = true;
-        for (const State wanted : {State::stale, State::wrong})
-            for (const std::uint32_t i : order_) {
-                if (!room || tile_[i] != wanted) continue;
+        stale_first_ = !stale_first_;
+        stale_.clear();
+        for (const std::uint32_t i : order_)
+            if (tile_[i] == State::stale) stale_.push_back(i);
+        std::sort(stale_.begin(), stale_.end(),
+                  [this](std::uint32_t a, std::uint32_t b) { return stale_at_[a] < stale_at_[b]; });
+        for (const bool stale : {stale_first_, !stale_first_})
+            for (const std::uint32_t i : stale ? stale_ : order_) {
+                if (!room || tile_[i] != (stale ? State::stale : State::wrong)) continue;
                 const std::uint32_t need = rays(i);
                 if (need == 0) {
                     tile_[i] = State::good;
@@ -96,7 +107,10 @@ private:
     PixelBox view_, bounds_;
     int columns_ = 1;
     std::vector<State> tile_;
-    std::vector<std::uint32_t> order_, taken_;
+    std::vector<std::uint32_t> order_, taken_, stale_;
+    std::vector<std::uint64_t> stale_at_;  // order in which they became so
+    std::uint64_t clock_ = 0;
+    bool stale_first_ = false;
 };
 
 }  // namespace tact

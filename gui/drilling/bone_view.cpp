@@ -80,7 +80,14 @@ float BoneView::reach_a() const {
 
 void BoneView::changed(std::uint32_t brick, bool grown) {
     field_.changed(brick, grown);
-    changed_.push_back(brick);
+    const auto n = field_.bricks().bricks();
+    const std::uint32_t around = field_.smooth() ? 1 : 0;
+    const std::array<std::uint32_t, 3> at{brick % n[0], brick / n[0] % n[1], brick / n[0] / n[1]};
+    for (std::uint32_t z = at[2] - std::min(at[2], around); z <= std::min(at[2] + around, n[2] - 1); ++z)
+        for (std::uint32_t y = at[1] - std::min(at[1], around); y <= std::min(at[1] + around, n[1] - 1); ++y)
+            for (std::uint32_t x = at[0] - std::min(at[0], around); x <= std::min(at[0] + around, n[0] - 1);
+                 ++x)
+                changed_.push_back((z * n[1] + y) * n[0] + x);
     for (Eyeful& eye : eye_)
         if (eye.pixels() > 0) eye.changed.push_back(brick);
 }
@@ -115,6 +122,8 @@ PixelBox BoneView::on_screen(const BoneFrame& frame, const Vec3& low, const Vec3
 
 void BoneView::send_changes() {
     const bool cells_anew = field_.settle();
+    std::sort(changed_.begin(), changed_.end());
+    changed_.erase(std::unique(changed_.begin(), changed_.end()), changed_.end());
     for (const std::uint32_t b : changed_) textures_.send(field_, b);
     if (cells_anew) textures_.send_cells(field_);
     changed_.clear();

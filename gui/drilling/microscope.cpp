@@ -23,7 +23,6 @@ uniform sampler2D u_depth;
 uniform vec3 u_scale;
 uniform vec2 u_distance;  // eye distance of a depth d: x / (2 d - 1 + y)
 uniform vec3 u_blur;      // distance in focus; pixels per relative distance from it; most pixels
-uniform vec2 u_texel;
 in vec2 v_off;
 in vec2 v_at;
 out vec4 colour;
@@ -36,17 +35,7 @@ void main() {
     float depth = textureLod(u_depth, v_at, 0.0).r;
     float away = u_distance.x / (2.0 * depth - 1.0 + u_distance.y);
     float blur = depth < 1.0 ? min(u_blur.y * abs(away - u_blur.x) / away, u_blur.z) : 0.0;
-    vec3 seen;
-    if (blur < 0.7) {
-        seen = textureLod(u_colour, v_at, 0.0).rgb;
-    } else {
-        float level = max(log2(blur) - 0.3, 0.0);
-        vec2 off = 0.6 * blur * u_texel;
-        seen = 0.25 * (textureLod(u_colour, v_at + off * vec2(0.92, 0.38), level).rgb +
-                       textureLod(u_colour, v_at + off * vec2(-0.38, 0.92), level).rgb +
-                       textureLod(u_colour, v_at - off * vec2(0.92, 0.38), level).rgb +
-                       textureLod(u_colour, v_at - off * vec2(-0.38, 0.92), level).rgb);
-    }
+    vec3 seen = textureLod(u_colour, v_at, blur < 0.7 ? 0.0 : max(log2(blur) - 0.3, 0.0)).rgb;
     float light = 1.0 - 0.45 * smoothstep(0.55, 1.0, r);
     colour = vec4(seen * light * (1.0 - smoothstep(1.0 - 2.0 * u_scale.z, 1.0, r)), 1.0);
 }
@@ -68,8 +57,7 @@ Microscope::Microscope()
     : program_("microscope", kMicroscopeVertex, kMicroscopeFragment),
       scale_(program_.uniform("u_scale")),
       distance_(program_.uniform("u_distance")),
-      blur_(program_.uniform("u_blur")),
-      texel_(program_.uniform("u_texel")) {
+      blur_(program_.uniform("u_blur")) {
     program_.use();
     glUniform1i(program_.uniform("u_colour"), 0);
     glUniform1i(program_.uniform("u_depth"), 1);
@@ -85,6 +73,8 @@ void Microscope::resize(int width_px, int height_px) {
     if (width_px == width_px_ && height_px == height_px_) return;
     picture_texture(colour_.get(), GL_RGBA8, GL_RGBA, GL_UNSIGNED_BYTE, GL_LINEAR_MIPMAP_LINEAR, width_px,
                     height_px);
+    constexpr GLint kLevels = 3;  // copies of an eighth of the size are blurred enough
+    glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAX_LEVEL, kLevels);
     picture_texture(depth_.get(), GL_DEPTH_COMPONENT24, GL_DEPTH_COMPONENT, GL_UNSIGNED_INT, GL_NEAREST,
                     width_px, height_px);
     width_px_ = width_px;
@@ -107,7 +97,6 @@ void Microscope::draw(const View& view) {
     glUniform3f(scale_, 0.5F * w / radius_px, 0.5F * h / radius_px, 1.0F / radius_px);
     glUniform2f(distance_, view.projection(2, 3), view.projection(2, 2));
     glUniform3f(blur_, view.focus_a, view.focus_a > 0.0F ? kBlurPerDistance * most_px : 0.0F, most_px);
-    glUniform2f(texel_, 1.0F / w, 1.0F / h);
     glDisable(GL_DEPTH_TEST);
     glDisable(GL_BLEND);
     glBindVertexArray(array_.get());

@@ -251,6 +251,41 @@ TEST_F(BoneDraw, a_large_volume_is_uploaded_front_to_back_over_several_frames) {
     EXPECT_EQ(read_pixels(kWidth, kHeight).rgb, whole.rgb);
 }
 
+// A slope of one voxel in six, of voxels that are bone or not: without smoothing its steps are stripes.
+TEST_F(BoneDraw, a_segmented_slope_has_no_steps) {
+    for (std::uint32_t z = 0; z < kEdge; ++z)
+        for (std::uint32_t y = 0; y < kEdge; ++y)
+            for (std::uint32_t x = 0; x < kEdge; ++x)
+                block_->density[block_->bricks.voxel(x, y, z)] = drilled_[block_->bricks.voxel(x, y, z)] =
+                    z < 20 + x / 6 ? 255 : 0;
+    BoneView view(*bone_, centre_model_m_, now_);
+    draw(view);
+    const Image image = read_pixels(kWidth, kHeight);
+    // Along the slope, in the middle of the picture: how much brightness goes to and fro.
+    double to_and_fro = 0.0, rise = 0.0;
+    for (int x = kWidth / 2 - 40; x < kWidth / 2 + 40; ++x) {
+        const auto at = static_cast<std::size_t>(3 * (kHeight / 2 * kWidth + x));
+        const double step = static_cast<double>(image.rgb[at + 3]) - image.rgb[at];
+        to_and_fro += std::abs(step);
+        rise += step;
+    }
+    EXPECT_LT(to_and_fro - std::abs(rise), 100.0) << "without smoothing it is 160";
+    // A brick beside a change is drawn as changed, too.
+    std::vector<std::uint32_t> hole;
+    for (std::uint32_t z = 16; z < 32; ++z)
+        for (std::uint32_t y = 16; y < 24; ++y)
+            for (std::uint32_t x = 16; x < 24; ++x) {
+                drilled_[block_->bricks.voxel(x, y, z)] = 0;
+                hole.push_back(static_cast<std::uint32_t>(block_->bricks.brick(x, y, z)));
+            }
+    for (const std::uint32_t b : hole) view.changed(b);
+    draw(view);
+    const Image now = read_pixels(kWidth, kHeight);
+    BoneView anew(*bone_, centre_model_m_, now_);
+    draw(anew);
+    EXPECT_EQ(read_pixels(kWidth, kHeight).rgb, now.rgb);
+}
+
 TEST_F(BoneDraw, a_wet_place_is_darker_a_stain_is_red_and_only_they_are_drawn_again) {
     BoneView view(*bone_, centre_model_m_, now_);
     draw(view);

@@ -107,6 +107,99 @@ void expect_true_distances(const BoneField& field, const BoneVolumeView& now) {
     EXPECT_GT(far, 50U) << "large steps must be possible";
 }
 
+// A segmented volume: a ball and a plate of one voxel, of voxels that are bone or not.
+struct Segmented {
+    BoneBlock block{
+        45, 3e-4,
+        [](const Vec3& p) {
+            return (p - Vec3(20.0, 22.0, 24.0)).norm() < 11.0 || std::abs(p.z() - 40.0) < 0.4 ? 1.0 : 0.0;
+        },
+        1};
+    BoneVolumeView baked, now;
+    std::vector<std::uint8_t> drilled = block.density;
+    BoneLabelsView labels;
+    Segmented() {
+        baked.bricks = now.bricks = block.bricks;
+        baked.density = block.density;
+        now.density = drilled;
+    }
+    // As shown: all 125 voxels around each, weighted at once.
+    [[nodiscard]] double smoothed(int x, int y, int z) const {
+        constexpr std::array<double, 5> kWeight{1.0, 4.0, 6.0, 4.0, 1.0};
+        double sum = 0.0;
+        for (int c = -2; c <= 2; ++c)
+            for (int b = -2; b <= 2; ++b)
+                for (int a = -2; a <= 2; ++a) {
+                    const std::array<int, 3> at{x + a, y + b, z + c};
+                    if (std::any_of(at.begin(), at.end(), [](int i) { return i < 0 || i >= 45; })) continue;
+                    sum += kWeight[static_cast<std::size_t>(a + 2)] *
+                           kWeight[static_cast<std::size_t>(b + 2)] *
+                           kWeight[static_cast<std::size_t>(c + 2)] / 4096.0 *
+                           now.at(static_cast<std::uint32_t>(at[0]), static_cast<std::uint32_t>(at[1]),
+                                  static_cast<std::uint32_t>(at[2]));
+                }
+        return sum;
+    }
+};
+
+TEST(BoneField, a_segmented_volume_is_shown_smooth_and_a_scan_as_it_is) {
+    TwoBalls scan;
+    EXPECT_FALSE(BoneField(scan.baked, scan.labels, scan.now).smooth());
+    Segmented s;
+    const BoneField field(s.baked, s.labels, s.now);
+    ASSERT_TRUE(field.smooth());
+    const auto n = s.block.bricks.bricks();
+    std::array<std::uint8_t, BoneBricks::kVoxels> shown{};
+    int between = 0;
+    for (std::uint32_t b = 0; b < s.block.bricks.brick_count(); ++b) {
+        field.solids(b, shown);
+        for (int i = 0; i < 512; ++i) {
+            const int x = static_cast<int>(b % n[0]) * 8 + i % 8,
+                      y = static_cast<int>(b / n[0] % n[1]) * 8 + i / 8 % 8,
+                      z = static_cast<int>(b / n[0] / n[1]) * 8 + i / 64;
+            if (x >= 45 || y >= 45 || z >= 45) continue;
+            const int value = shown[static_cast<std::size_t>(i)];
+            ASSERT_NEAR(value, s.smoothed(x, y, z), 2.0) << x << "," << y << "," << z;
+            between += value > 20 && value < 235 ? 1 : 0;
+        }
+    }
+    EXPECT_GT(between, 1000);
+    // A plate of one voxel does not vanish.
+    field.solids(static_cast<std::uint32_t>(s.block.bricks.brick(4, 4, 40)), shown);
+    EXPECT_GE(shown[(0 * 8 + 4) * 8 + 4], BoneField::kSurface);
+}
+
+TEST(BoneField, distances_stay_true_in_a_segmented_volume_while_bone_goes_and_comes_back) {
+    Segmented s;
+    BoneField field(s.baked, s.labels, s.now);
+    const auto check = [&] {
+        std::vector<std::uint8_t> shown(s.block.bricks.bytes());
+        for (std::uint32_t b = 0; b < s.block.bricks.brick_count(); ++b)
+            field.solids(b, std::span<std::uint8_t, BoneBricks::kVoxels>(
+                                shown.data() + b * BoneBricks::kVoxels, BoneBricks::kVoxels));
+        BoneVolumeView view = s.now;
+        view.density = shown;
+        expect_true_distances(field, view);
+    };
+    check();
+    // A brick in the ball goes, then others, and all come back.
+    const std::array<std::uint32_t, 3> bricks{static_cast<std::uint32_t>(s.block.bricks.brick(20, 22, 24)),
+                                              static_cast<std::uint32_t>(s.block.bricks.brick(28, 22, 24)),
+                                              static_cast<std::uint32_t>(s.block.bricks.brick(20, 30, 30))};
+    for (const std::uint32_t b : bricks) {
+        std::fill_n(s.drilled.begin() + b * BoneBricks::kVoxels, BoneBricks::kVoxels, std::uint8_t{0});
+        field.changed(b);
+        check();
+    }
+    for (const std::uint32_t b : bricks) {
+        std::copy_n(s.block.density.begin() + b * BoneBricks::kVoxels, BoneBricks::kVoxels,
+                    s.drilled.begin() + b * BoneBricks::kVoxels);
+        field.changed(b, true);
+        static_cast<void>(field.settle());
+        check();
+    }
+}
+
 TEST(BoneField, free_cells_contain_no_surface) {
     const TwoBalls two;
     const BoneField field(two.baked, two.labels, two.now);
@@ -209,6 +302,27 @@ TEST(BoneTiles, only_stale_tiles_are_redrawn) {
     EXPECT_EQ(tiles.rays_wrong(), 0U) << "stale tiles stay visible until redrawn";
     const auto now = tiles.take(640 * 640);
     EXPECT_EQ(std::set<std::uint32_t>(now.begin(), now.end()), (std::set<std::uint32_t>{0, 1}));
+}
+
+TEST(BoneTiles, a_picture_is_completed_while_a_burr_keeps_some_tiles_stale) {
+    BoneTiles tiles;
+    tiles.resize(640, 640);
+    tiles.all_wrong({0, 0, 640, 640});
+    constexpr std::uint32_t kOne = 64 * 64;
+    int frames = 0;
+    std::map<std::uint32_t, int> drawn;
+    std::uint32_t wrong = tiles.rays_wrong();
+    for (; frames < 400 && wrong > 0; ++frames) {
+        for (const std::uint32_t i : tiles.take(kOne)) ++drawn[i];
+        tiles.stale({250, 250, 400, 300});  // of eight tiles about the middle
+        wrong = tiles.rays_wrong();
+    }
+    EXPECT_EQ(wrong, 0U);
+    EXPECT_LE(frames, 210);
+    // And the burr's own tiles are each drawn again and again.
+    int often = 0;
+    for (const auto& [tile, times] : drawn) often += times >= 8 ? 1 : 0;
+    EXPECT_EQ(often, 8);
 }
 
 TEST(BoneTiles, beyond_the_bone_nothing_is_drawn) {
