@@ -17,6 +17,7 @@ namespace tact {
 namespace {
 
 constexpr std::size_t kLookedAtMost = 20'000;  // entries of a folder
+constexpr std::size_t kImagesLeast = 2;        // of a stack
 constexpr std::size_t kOpenedMost = 16;        // of them, to check for DICOM
 
 // Only the reason: attempt and fix are for a terminal.
@@ -112,6 +113,7 @@ FolderRows folder_rows(const std::filesystem::path& folder, std::int64_t now_uni
     std::vector<std::filesystem::path> folders, scenes, raw;
     std::error_code failed;
     std::size_t looked_at = 0, opened = 0;
+    std::size_t images = 0;
     bool dicom = false;
     for (std::filesystem::directory_iterator it(folder, failed), end; !failed && it != end;
          it.increment(failed)) {
@@ -127,6 +129,8 @@ FolderRows folder_rows(const std::filesystem::path& folder, std::int64_t now_uni
         } else if (it->is_regular_file(ignored)) {
             if (raw_file_text(name)[0] != '\0')
                 raw.push_back(path);
+            else if (path.extension() == ".png")
+                ++images;
             else if (!dicom && opened++ < kOpenedMost)
                 dicom = is_dicom(path);
         }
@@ -141,9 +145,10 @@ FolderRows folder_rows(const std::filesystem::path& folder, std::int64_t now_uni
         out.rows.push_back(std::move(row));
     };
     if (folder.has_parent_path() && folder.parent_path() != folder) add_folder(folder.parent_path(), "..");
-    if (dicom) {
+    if (dicom || images >= kImagesLeast) {
         SceneRow row = raw_row_of(folder, raw_folder_text(), now_unix_s);
-        row.name = "This folder (DICOM files)";
+        row.name =
+            dicom ? "This folder (DICOM files)" : "This folder (" + std::to_string(images) + " images)";
         row.size.clear();
         out.rows.push_back(std::move(row));
     }

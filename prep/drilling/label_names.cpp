@@ -7,9 +7,10 @@ namespace tact {
 namespace {
 
 constexpr const char* kCriticalWords[] = {
-    "nerve",  "nerv",     "facial", "chorda", "sinus",  "dura",    "carotid", "internal auditory",
-    "artery", "arteria",  "vein",   "vena",   "vessel", "jugular", "labyr",   "cochlea",
-    "vestib", "semicirc", "incus",  "stapes", "ossic",  "brain",   "orbit",   "optic"};
+    "nerve",  "nerv",     "facial", "chorda", "sinus",   "dura",    "carotid", "internal auditory",
+    "artery", "arteria",  "vein",   "vena",   "vessel",  "jugular", "labyr",   "cochlea",
+    "vestib", "semicirc", "incus",  "stapes", "malleus", "ossic",   "brain",   "orbit",
+    "optic"};
 
 // Abbreviations, which count as whole words only: "ica" is in "topical".
 constexpr const char* kCriticalShort[] = {"ica", "iac", "iam", "ijv",  "fn",

@@ -112,7 +112,11 @@ std::size_t LevelFit::best(const Limits& limits, double part, double cost_s_most
     for (std::size_t i = 0; i < count_; ++i)
         if (good(i)) least_cost_s = std::min(least_cost_s, rows_[i].cost_s);
     std::size_t chosen = 0;
+    // Nothing is felt yet: the highest level that fits, so that a contact begins with it.
+    const bool nothing = least_error <= kSameError;
     for (std::size_t i = 0; i < count_; ++i)
+        if (nothing && fitting[i]) chosen = i;
+    for (std::size_t i = 0; i < count_ && !nothing; ++i)
         if (good(i) && rows_[i].cost_s <= (1.0 + kSameCost) * least_cost_s) chosen = i;
     return chosen;
 }

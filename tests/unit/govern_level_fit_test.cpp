@@ -121,6 +121,12 @@ TEST(LevelFit, time_that_buys_no_accuracy_is_not_spent) {
               1.0F);
 }
 
+TEST(LevelFit, where_nothing_is_felt_the_highest_level_that_fits_waits_for_the_contact) {
+    EXPECT_EQ(with({{0.0F, 50 * kUs, 0.0}, {0.5F, 200 * kUs, 0.0}, {1.0F, 900 * kUs, 0.0}})
+                  .choose({.period_s = 1e-3}),
+              0.5F);
+}
+
 TEST(LevelFit, a_costlier_row_with_a_larger_error_is_never_chosen) {
     // A blend of two levels costs both and lies between their errors.
     LevelFit fit = with({{0.0F, 50 * kUs, 1.0}, {0.5F, 250 * kUs, 0.5}, {1.0F, 200 * kUs, 0.1}});
