@@ -27,6 +27,10 @@ std::filesystem::path path_for(const BakeRequest& request, const std::filesystem
         for (const auto& w : request.words) hash.add(w);
     for (const auto& o : request.options) hash.add(o);
     std::string stem = request.inputs.empty() ? "demo" : request.inputs.front().stem().string();
+    std::error_code ignored;
+    if (!request.inputs.empty() && request.words.size() > 1 &&
+        std::filesystem::is_directory(request.words[1], ignored))
+        stem = std::filesystem::path(request.words[1]).filename().string();  // of a folder of slices
     stem = stem.substr(0, 60);
     return cache_folder() / (stem + "-" + hash.hex() + ".tact");
 }

@@ -19,7 +19,7 @@ namespace fs = std::filesystem;
 
 constexpr const char* kSpacingHelp = "Images state no size. One number for pixels and slices alike.";
 constexpr const char* kThresholdHelp =
-    "What is at or below holds no bone: the blue part of the histogram is bone.";
+    "What is at or below holds no bone: the coloured part of the histogram is bone.";
 constexpr const char* kSolidHelp = "From here on bone is as hard as it gets.";
 
 std::string scan_size(const Scan& scan) {
