@@ -99,7 +99,7 @@ void structure(const Theme& theme, const DrillingState& d, const DrillingState::
         text_small(theme, colour::kDim, s.side, false);
     }
     if (calm) return;
-    ImGui::SameLine(0.0F, theme.px(8.0F));
+    ImGui::SameLine(0.0F, theme.px(5.0F));
     text_coloured(grade_colour(v.grade), v.text);
 }
 
@@ -162,7 +162,7 @@ void DrillingPanels::draw_in_scene_card(const Theme& theme, DashboardState& stat
     if (ImGui::IsItemHovered())
         ImGui::SetTooltip(
             "as through an operating microscope: round field, light along the line of sight,\n"
-            "and blur away from the burr's depth (V)");
+            "and blur away from the depth where the burr cuts (V)");
 }
 
 void DrillingPanels::draw_over_view(const OverlayPen& pen, const DashboardState& state,

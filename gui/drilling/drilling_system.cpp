@@ -22,6 +22,7 @@ constexpr float kBurrsShown = 4.0F;    // radii around a burr in close view
 constexpr float kArrowShare = 0.006F;  // thickness of the force arrow, which stands beside the burr
 constexpr double kLoadM3S = 12e-9;     // of bone: two thirds of the load that is heard
 constexpr double kLoadS = 0.05;
+constexpr double kFocusS = 0.4;       // in which the microscope's focus follows the burr
 constexpr float kBesideRadii = 1.8F;  // of the burr
 
 Eigen::Vector4f glow_of(Grade nearness) {
@@ -37,6 +38,7 @@ void DrillingSystem::use(const std::shared_ptr<const SceneContent>& content,
     content_ = content;
     view_ = &view;
     reach_a_ = 0.0F;
+    focus_model_m_.reset();
     site_.reset();
     layer_ = std::make_unique<DrillingLayer>(content->centre_model_m);
     view.set_layer(layer_.get());
@@ -207,9 +209,23 @@ std::uint32_t DrillingSystem::rays_most(const ViewFrame& frame, bool sharp, cons
     return context.software ? std::min(rays, ray_pace_.rays_most()) : rays;
 }
 
+// Of the microscope: the last place where the burr was in bone, else what the view turns about.
+Vec3 DrillingSystem::focus(std::int64_t now_ns, const SystemContext& context) {
+    const Controller& controller = context.controller;
+    const double dt_s = std::clamp(1e-9 * static_cast<double>(now_ns - focus_ns_), 0.0, 1.0);
+    focus_ns_ = now_ns;
+    const DrillHand& burr = controller.drill.hand[0];
+    if (controller.attached() && controller.have_drill && burr.depth > 0.0F) {
+        const Vec3 at(burr.pos_model_m[0], burr.pos_model_m[1], burr.pos_model_m[2]);
+        if (!focus_model_m_) focus_model_m_ = at;
+        *focus_model_m_ += (1.0 - std::exp(-dt_s / kFocusS)) * (at - *focus_model_m_);
+    }
+    return focus_model_m_.value_or(content_->centre_model_m +
+                                   kAngstromM * context.camera.target_a().cast<double>());
+}
+
 void DrillingSystem::prepare(std::int64_t now_ns, bool sharp, ViewFrame& frame,
                              const SystemContext& context) {
-    static_cast<void>(now_ns);
     const Controller& controller = context.controller;
     if (site_) {
         DrillingLayer::Frame& drawn = layer_->frame = {};
@@ -224,11 +240,9 @@ void DrillingSystem::prepare(std::int64_t now_ns, bool sharp, ViewFrame& frame,
         drawn.particles = &site_->particles();
         drawn.time_particles = context.software;
         drawn.microscope = context.state.toggles.microscope;
-        drawn.focus_model_m =
-            content_->centre_model_m + kAngstromM * context.camera.target_a().cast<double>();
+        drawn.focus_model_m = focus(now_ns, context);
         if (!drawn.tools.empty()) {
             frame.force_at_model_m = drawn.tools.front().T_model_tool.p_m;
-            drawn.focus_model_m = *frame.force_at_model_m;
             frame.force_thickness = kArrowShare;
             frame.force_beside_a =
                 kBesideRadii * static_cast<float>(drawn.tools.front().radius_m / kAngstromM);

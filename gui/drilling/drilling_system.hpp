@@ -8,6 +8,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "gui/drilling/bone_controller.hpp"
@@ -60,6 +61,7 @@ private:
     [[nodiscard]] std::uint32_t rays_most(const ViewFrame& frame, bool sharp, const SystemContext& context);
     [[nodiscard]] float particles_share(const SystemContext& context) const;
     void approach_burr(const SystemContext& context) const;
+    [[nodiscard]] Vec3 focus(std::int64_t now_ns, const SystemContext& context);
     void sound(const SystemContext& context);
     void begin_training(const BoneContent& bone);
     void train(const SystemContext& context);
@@ -84,6 +86,8 @@ private:
     double rays_share_ = 1.0;  // of the pixels
     float reach_a_ = 0.0F;     // radius of the bone when loaded; 0: none drawn
     bool near_burr_wanted_ = options_.near_burr;
+    std::optional<Vec3> focus_model_m_;
+    std::int64_t focus_ns_ = 0;
     DrillController controller_;
     DrillHands hands_;
     DrillVoice voice_;
