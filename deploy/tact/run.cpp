@@ -37,14 +37,15 @@ constexpr int kHeaderEvery = 20;
 class OneRun {
 public:
     // The first scene of a run is armed when the run is up; for a scene opened from the window, a person arms it.
-    OneRun(const std::filesystem::path& scene, RunOptions options, SceneSwitch* scene_switch, bool first)
+    OneRun(const SceneSwitch::Asked& asked, RunOptions options, SceneSwitch* scene_switch, bool first)
         : options_(std::move(options)),
           scene_switch_(scene_switch),
           first_(first),
-          file_(SceneFile::open(scene)),
+          bone_(asked.bone),
+          file_(SceneFile::open(asked.scene)),
           system_(system_of(file_).open_run(file_)),
           observer_(options_.session) {
-        facts_.scene = std::filesystem::absolute(scene);
+        facts_.scene = std::filesystem::absolute(asked.scene);
         facts_.session = options_.session;
         if (!options_.save.empty()) system_->check_save(options_.save);  // fails before the run, not after it
     }
@@ -60,8 +61,8 @@ public:
         return finish();
     }
 
-    // The scene that the window requested, if the run ended for it.
-    [[nodiscard]] const std::optional<std::filesystem::path>& next() const { return next_; }
+    // What the window requested, if the run ended for it.
+    [[nodiscard]] const std::optional<SceneSwitch::Asked>& next() const { return next_; }
     [[nodiscard]] bool came_up() const { return seen_at_.has_value(); }
 
 private:
@@ -79,6 +80,8 @@ private:
         if (!first_) {  // they were meant for the scene before
             options_.keep.clear();
             options_.drop_controller_option("--resume");
+            if (!bone_.empty())
+                options_.controller.insert(options_.controller.end(), {"--resume", bone_.string()});
         }
         // Before the controller, like a recording.
         auto words = system_->keeper_arguments(options_);
@@ -151,8 +154,9 @@ private:
         judge(now);
         if (scene_switch_ != nullptr && !ending_ && now >= asked_due_) {
             asked_due_ = now + kSampleEvery;
-            if ((next_ = scene_switch_->poll())) {
-                end(true, "another scene was requested: " + next_->string());
+            if ((next_ = scene_switch_->poll(file_))) {
+                end(true, next_->bone.empty() ? "another scene was requested: " + next_->scene.string()
+                                              : "drilled bone was requested: " + next_->bone.string());
                 rt_->stop();  // at once: the force ends before the window closes
             }
         }
@@ -283,7 +287,8 @@ private:
     RunOptions options_;
     SceneSwitch* scene_switch_;  // null: the window cannot request scenes
     bool first_;
-    std::optional<std::filesystem::path> next_;
+    std::optional<SceneSwitch::Asked> next_;
+    std::filesystem::path bone_;  // to begin with; empty: as baked, or as the options say
     RunDescription facts_;
     SceneFile file_;
     std::unique_ptr<SystemRun> system_;
@@ -307,29 +312,29 @@ int run_scene(const std::filesystem::path& scene, RunOptions options) {
     options.settle();
     std::optional<SceneSwitch> scene_switch;
     if (options.gui && !options.headless) scene_switch.emplace(options);
-    std::filesystem::path now = scene, before;
+    SceneSwitch::Asked now{scene}, before;
     for (bool first = true;; first = false) {
         int code = 1;
         bool came_up = false;
-        std::optional<std::filesystem::path> next;
+        std::optional<SceneSwitch::Asked> next;
         try {
             OneRun run(now, options, scene_switch ? &*scene_switch : nullptr, first);
             code = run.go();
             came_up = run.came_up();
             next = run.next();
         } catch (const StartupError& e) {
-            if (before.empty()) throw;
+            if (before.scene.empty()) throw;
             std::fprintf(stderr, "tact: %s\n", e.what());
         }
         if (next && code == 0) {
             before = std::exchange(now, *next);
             options.forget_scene();
-        } else if (code != 0 && !came_up && !before.empty()) {
+        } else if (code != 0 && !came_up && !before.scene.empty()) {
             scene_switch->refuse(
-                "opening " + now.string() +
+                "opening " + (now.bone.empty() ? now.scene : now.bone).string() +
                 ": the scene could not be started with the options of this run; the terminal shows "
                 "the messages of the programs\n  fix: close the window and start: tact run " +
-                now.string());
+                now.scene.string() + (now.bone.empty() ? "" : " --resume " + now.bone.string()));
             now = std::exchange(before, {});
         } else {
             return code;

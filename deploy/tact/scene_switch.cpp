@@ -3,6 +3,7 @@
 #include <cstdio>
 
 #include "ipc/base/error.hpp"
+#include "ipc/scene/bone/drilled_bone.hpp"
 #include "ipc/scene/file/scene_meta.hpp"
 #include "ipc/scene/file/scene_switch.hpp"
 
@@ -18,7 +19,7 @@ std::string bound_to_one_scene(const RunOptions& o) {
     return {};
 }
 
-std::optional<std::filesystem::path> SceneSwitch::poll() {
+std::optional<SceneSwitch::Asked> SceneSwitch::poll(const SceneFile& shown) {
     try {
         const auto scene = take_asked_scene(folder());
         if (!scene) return std::nullopt;
@@ -26,8 +27,18 @@ std::optional<std::filesystem::path> SceneSwitch::poll() {
             throw StartupError("opening " + scene->string(),
                                "this run writes files about its own scene at its end (" + bound_by_ + ")",
                                "close the window and start: tact run " + scene->string());
+        if (scene->extension() == ".bone") {
+            const std::uint64_t belongs_to = drilled_bone_scene(*scene);
+            if (belongs_to != shown.checksum())
+                throw StartupError("opening " + scene->string(),
+                                   belongs_to == 0
+                                       ? "it is no file of drilled bone"
+                                       : "its bone is of another scene than the one that is shown",
+                                   "open the scene that was drilled, then this file");
+            return Asked{std::filesystem::absolute(shown.name()), *scene};
+        }
         static_cast<void>(read_meta(SceneFile::open(*scene)));
-        return scene;
+        return Asked{*scene};
     } catch (const StartupError& e) {
         refuse(e.what());
         return std::nullopt;

@@ -1,4 +1,4 @@
-// The window's request for another scene. It is checked before any program ends: a scene that cannot be opened is
+// The window's request for another scene, or for a file of drilled bone (*.bone). It is checked before any program ends: a scene that cannot be opened is
 // refused with a message, and the current one continues.
 //
 // Input    from another process (ipc/scene/file/scene_switch): bounded; the scene is checked completely
@@ -11,6 +11,7 @@
 
 #include "deploy/tact/files.hpp"
 #include "deploy/tact/run_options.hpp"
+#include "ipc/scene/file/scene_file.hpp"
 
 namespace tact::launch {
 
@@ -23,8 +24,12 @@ public:
     [[nodiscard]] const std::filesystem::path& folder() const { return scratch_.path(); }
     // Window state for the next window of this run, if the user keeps no such file.
     [[nodiscard]] std::filesystem::path window_state() const { return folder() / "window.toml"; }
-    // The scene that was requested and can be opened.
-    [[nodiscard]] std::optional<std::filesystem::path> poll();
+    // What was requested and can be opened: a scene, or the scene that is shown with bone that was kept of it.
+    struct Asked {
+        std::filesystem::path scene;
+        std::filesystem::path bone{};  // empty: as baked
+    };
+    [[nodiscard]] std::optional<Asked> poll(const SceneFile& shown);
     void refuse(const std::string& why);
 
 private:

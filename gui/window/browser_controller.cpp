@@ -10,6 +10,7 @@
 #include "ipc/base/error.hpp"
 #include "ipc/base/state_folder.hpp"
 #include "ipc/base/whole_file.hpp"
+#include "ipc/scene/file/scene_file.hpp"
 #include "ipc/scene/file/scene_kinds.hpp"
 #include "ipc/scene/file/scene_switch.hpp"
 
@@ -58,7 +59,7 @@ void BrowserController::used(const std::filesystem::path& scene, BrowserState& s
 }
 
 void BrowserController::read(const BrowserState& state) {
-    reading_ = std::async(std::launch::async, [folder = state.folder] {
+    reading_ = std::async(std::launch::async, [folder = state.folder, current = current_] {
         Read out;
         const std::int64_t now = unix_now_s();
         if (const auto used = state_folder(); used.empty()) {
@@ -68,6 +69,11 @@ void BrowserController::read(const BrowserState& state) {
                 out.recent = recent_rows(read_recents(used / kRecentName), now);
             } catch (const StartupError& e) {
                 out.recent_trouble = e.what();
+            }
+            try {
+                if (!current.empty())
+                    out.drilled = drilled_rows(used / "drilled", SceneFile::open(current).checksum(), now);
+            } catch (const StartupError&) {  // the scene is gone: nothing belongs to it
             }
         }
         if (!folder.empty()) out.folder = folder_rows(folder, now);
@@ -288,6 +294,7 @@ void BrowserController::follow(BrowserState& state) {
     if (ready(reading_)) {
         Read got = reading_.get();
         state.recent = std::move(got.recent);
+        state.drilled = std::move(got.drilled);
         state.recent_trouble = std::move(got.recent_trouble);
         state.here = std::move(got.folder.rows);
         state.folder_trouble = std::move(got.folder.trouble);

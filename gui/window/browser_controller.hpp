@@ -42,7 +42,7 @@ private:
     void follow_form(BrowserState& state);
     void start_import(Dropped meant, BrowserState& state);
     struct Read {
-        std::vector<SceneRow> recent;
+        std::vector<SceneRow> recent, drilled;
         std::string recent_trouble;
         FolderRows folder;
     };

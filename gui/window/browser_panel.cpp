@@ -115,7 +115,7 @@ void draw_browser(const Theme& theme, BrowserState& browser, const PixelRect& vi
     ImGui::GetBackgroundDrawList()->AddRectFilled(
         {card.x, card.y}, {card.x + card.width, card.y + card.height}, IM_COL32(18, 22, 29, 250));
     begin_card(theme, "Scenes", card);
-    static constexpr std::array<const char*, 2> kTabs{"Recently used", "Folder"};
+    static constexpr std::array<const char*, 3> kTabs{"Recently used", "Folder", "Drilled bone"};
     ImGui::SameLine(0.0F, theme.px(18.0F));
     choose(theme, kTabs, browser.tab);
     ImGui::SameLine(width - theme.px(64.0F));
@@ -132,7 +132,14 @@ void draw_browser(const Theme& theme, BrowserState& browser, const PixelRect& vi
         return;
     }
     if (browser.tab == 1) text_small(theme, colour::kDim, browser.folder);
-    const std::string& trouble = browser.tab == 0 ? browser.recent_trouble : browser.folder_trouble;
+    if (browser.tab == 2)
+        text_small(theme, colour::kDim,
+                   "Bone of this scene as earlier runs left it. Opening one ends the present run, whose bone "
+                   "is kept.");
+    static const std::string kNone;
+    const std::string& trouble = browser.tab == 0   ? browser.recent_trouble
+                                 : browser.tab == 1 ? browser.folder_trouble
+                                                    : kNone;
     if (!trouble.empty()) {
         ImGui::PushTextWrapPos(0.0F);
         text_coloured(colour::kWatch, trouble);
@@ -140,12 +147,16 @@ void draw_browser(const Theme& theme, BrowserState& browser, const PixelRect& vi
     }
     const float below = marks_height(theme, browser);
     ImGui::BeginChild("rows", {0.0F, -below}, false, ImGuiWindowFlags_NoBackground);
-    const std::vector<SceneRow>& list = browser.tab == 0 ? browser.recent : browser.here;
+    const std::vector<SceneRow>& list = browser.tab == 0   ? browser.recent
+                                        : browser.tab == 1 ? browser.here
+                                                           : browser.drilled;
     rows(theme, list, browser);
     if (browser.reading) {
         text_coloured(colour::kDim, "reading ...");
     } else if (browser.tab == 0 && list.empty() && trouble.empty()) {
         text_coloured(colour::kDim, "No recent scenes. The Folder tab shows scenes and raw data.");
+    } else if (browser.tab == 2 && list.empty()) {
+        text_coloured(colour::kDim, "No drilled bone of this scene is kept.");
     } else if (browser.tab == 1 && trouble.empty() &&
                std::none_of(list.begin(), list.end(), [](const SceneRow& r) { return !r.folder; })) {
         text_coloured(colour::kDim, "This folder has no files that Tact reads.");

@@ -25,8 +25,8 @@ struct SceneRow {
 
 struct BrowserState {
     bool open = false;
-    int tab = 0;  // recently used, a folder
-    std::vector<SceneRow> recent, here;
+    int tab = 0;  // recently used, a folder, drilled bone
+    std::vector<SceneRow> recent, here, drilled;
     std::string recent_trouble;
     std::string folder, folder_trouble;
     bool reading = false;

@@ -15,12 +15,13 @@ struct RawKind {
     std::size_t type = 0;                  // in system->raw
 };
 
+// A scene, or bone that was drilled in the one that is shown.
 bool is_scene(const std::string& file) {
     std::error_code ignored;
     if (std::filesystem::is_directory(file, ignored)) return false;
     std::string ending = std::filesystem::path(file).extension().string();
     for (char& c : ending) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-    return ending == ".tact";
+    return ending == ".tact" || ending == ".bone";
 }
 
 template <class Fits>
@@ -68,7 +69,7 @@ std::string shown_name(const std::string& file) {
 
 const std::string& dropped_kinds_text() {
     static const std::string text = [] {
-        std::string all = "Files to drop: a scene (.tact)";
+        std::string all = "Files to drop: a scene (.tact); drilled bone of the scene that is shown (.bone)";
         for (const SceneKindRow& system : scene_kinds()) {
             for (const RawFileType& type : system.raw) {
                 all +=

@@ -11,6 +11,7 @@
 
 #include "gui/window/dropped_files.hpp"
 #include "ipc/base/error.hpp"
+#include "ipc/scene/bone/drilled_bone.hpp"
 #include "ipc/scene/file/scene_peek.hpp"
 
 namespace tact {
@@ -105,6 +106,34 @@ std::vector<SceneRow> recent_rows(const std::vector<RecentScene>& scenes, std::i
     std::vector<SceneRow> rows;
     rows.reserve(scenes.size());
     for (const RecentScene& s : scenes) rows.push_back(scene_row_of(s.path, s.used_unix_s, now_unix_s));
+    return rows;
+}
+
+std::vector<SceneRow> drilled_rows(const std::filesystem::path& folder, std::uint64_t scene_checksum,
+                                   std::int64_t now_unix_s) {
+    std::vector<std::pair<std::int64_t, SceneRow>> found;
+    std::error_code failed;
+    for (std::filesystem::directory_iterator it(folder, failed), end; !failed && it != end;
+         it.increment(failed)) {
+        const std::filesystem::path& path = it->path();
+        struct stat info {};
+        if (path.extension() != ".bone" || found.size() >= kFolderRowsMost ||
+            ::stat(path.c_str(), &info) != 0 || drilled_bone_scene(path) != scene_checksum)
+            continue;
+        SceneRow row;
+        row.path = path.string();
+        row.name = path.filename().string();
+        row.place = folder.string();
+        row.kind = "bone";
+        row.size = size_text(static_cast<std::uint64_t>(info.st_size));
+        row.when = ago_text(info.st_mtime, now_unix_s);
+        found.emplace_back(info.st_mtime, std::move(row));
+    }
+    std::sort(found.begin(), found.end(), [](const auto& a, const auto& b) {
+        return a.first != b.first ? a.first > b.first : a.second.name > b.second.name;
+    });
+    std::vector<SceneRow> rows;
+    for (auto& [time, row] : found) rows.push_back(std::move(row));
     return rows;
 }
 

@@ -26,6 +26,9 @@ struct FolderRows {
                                     std::int64_t now_unix_s);
 [[nodiscard]] std::vector<SceneRow> recent_rows(const std::vector<RecentScene>& scenes,
                                                 std::int64_t now_unix_s);
+// Files of drilled bone of a scene, newest first.
+[[nodiscard]] std::vector<SceneRow> drilled_rows(const std::filesystem::path& folder,
+                                                 std::uint64_t scene_checksum, std::int64_t now_unix_s);
 [[nodiscard]] FolderRows folder_rows(const std::filesystem::path& folder, std::int64_t now_unix_s);
 
 // "820 kB", "12.3 MB"

@@ -137,13 +137,15 @@ inline int window(int argc, char** argv) {
     const std::string seconds = value_of(argc, argv, "--seconds");
     if (const char* const other = std::getenv("ASKS_FOR"); other != nullptr) {
         const std::filesystem::path folder = value_of(argc, argv, "--scene-switch");
+        const bool before = std::filesystem::exists(std::getenv("TOLD"));
         std::ofstream told(std::getenv("TOLD"), std::ios::app);
         told << argv[1] << '\n';
         if (auto refusal = take_refusal(folder)) {
             told << *refusal << std::endl;
             return 0;  // the person closes the window
         }
-        if (std::strcmp(argv[1], other) != 0) {
+        const bool bone = std::filesystem::path(other).extension() == ".bone";  // the scene stays
+        if (bone ? !before : std::strcmp(argv[1], other) != 0) {
             ask_for_scene(folder, other);
             told << std::flush;
             for (;;) {

@@ -3,6 +3,7 @@
 #include <sstream>
 
 #include "deploy/tact/scene_switch.hpp"
+#include "ipc/scene/bone/drilled_bone.hpp"
 #include "tests/unit/deploy_run_stand_ins.hpp"
 
 namespace tact::launch {
@@ -97,6 +98,48 @@ TEST_F(OtherScene, if_the_other_scene_fails_to_start_the_old_one_returns_with_th
     ASSERT_GE(told.size(), 3U);
     EXPECT_EQ(told[told.size() - 3], scene_.string());
     EXPECT_NE(told[told.size() - 2].find("could not be started"), std::string::npos) << said_;
+}
+
+class KeptBone : public OtherScene {
+protected:
+    [[nodiscard]] std::filesystem::path bone_of(std::uint64_t checksum) const {
+        BoneBricks bricks;
+        bricks.size = {8, 8, 8};
+        bricks.voxel_m = 1e-3;
+        const DrilledBoneHead head = drilled_bone_head(bricks, checksum);
+        const auto path = scratch_.path() / "kept.bone";
+        std::ofstream(path, std::ios::binary).write(reinterpret_cast<const char*>(&head), sizeof head);
+        return path;
+    }
+};
+
+TEST_F(KeptBone, of_the_scene_that_is_shown_starts_its_run_anew_with_it) {
+    const auto bone = bone_of(SceneFile::open(scene_).checksum());
+    ask(bone);
+    options_.controller = {"--rate", "500", "--resume", "/elsewhere.bone"};
+    ASSERT_EQ(run(), 0) << said_;
+    const auto controllers = lines("controllers");
+    ASSERT_EQ(controllers.size(), 2U) << said_;
+    EXPECT_EQ(controllers[1], scene_.string() + " --session default --rate 500 --resume " + bone.string());
+    EXPECT_NE(said_.find("drilled bone was requested: " + bone.string()), std::string::npos) << said_;
+}
+
+TEST_F(KeptBone, of_another_scene_and_what_is_none_are_refused_and_the_run_continues) {
+    for (const bool of_another : {true, false}) {
+        const auto bone = bone_of(7);
+        if (!of_another) std::ofstream(bone) << "no bone";
+        std::filesystem::remove(scratch_.path() / "told");
+        std::filesystem::remove(scratch_.path() / "controllers");
+        ask(bone);
+        ASSERT_EQ(run(), 0) << said_;
+        EXPECT_EQ(lines("controllers").size(), 1U);
+        const auto told = lines("told");
+        ASSERT_GE(told.size(), 3U);
+        EXPECT_NE(told[1].find(of_another ? "of another scene" : "no file of drilled bone"),
+                  std::string::npos)
+            << told[1];
+        EXPECT_NE(told[2].find("fix:"), std::string::npos) << told[2];
+    }
 }
 
 TEST_F(OtherScene, a_run_with_a_report_of_its_scene_keeps_the_scene) {

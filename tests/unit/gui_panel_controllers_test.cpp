@@ -1,6 +1,9 @@
 // The recent scenes, the contents of a folder, dropped files and the progress of an import.
 #include <gtest/gtest.h>
+
 #include <sys/stat.h>
+#include <chrono>
+#include <ctime>
 
 #include <algorithm>
 #include <cstdlib>
@@ -12,6 +15,7 @@
 #include "gui/window/scene_list.hpp"
 #include "ipc/base/error.hpp"
 #include "ipc/base/state_folder.hpp"
+#include "ipc/scene/bone/drilled_bone.hpp"
 #include "ipc/scene/file/scene_peek.hpp"
 #include "tests/unit/scene_samples.hpp"
 
@@ -196,6 +200,40 @@ TEST_F(TestDashboard, a_folder_lists_readable_raw_data_by_extension) {
     const SceneRow whole = folder_rows(folder_, 0).rows.at(1);
     EXPECT_TRUE(whole.raw && whole.kind == "scan");
     EXPECT_EQ(meaning_of({whole.path}).import, (std::vector<std::string>{"drill", folder_}));
+}
+
+TEST_F(TestDashboard, a_folder_of_images_can_be_imported_as_a_whole) {
+    std::ofstream(folder_ / "plane0.png") << "one image is a picture";
+    EXPECT_EQ(folder_rows(folder_, 0).rows.size(), 1U);
+    std::ofstream(folder_ / "plane1.png") << "two are a stack";
+    const FolderRows got = folder_rows(folder_, 0);
+    ASSERT_EQ(got.rows.size(), 2U);
+    EXPECT_TRUE(got.rows[1].raw);
+    EXPECT_EQ(got.rows[1].name, "This folder (2 images)");
+    EXPECT_EQ(meaning_of({got.rows[1].path}).import, (std::vector<std::string>{"drill", folder_}));
+}
+
+TEST_F(TestDashboard, drilled_bone_is_listed_for_its_own_scene_newest_first) {
+    BoneBricks bricks;
+    bricks.size = {8, 8, 8};
+    bricks.voxel_m = 1e-3;
+    const auto keep = [&](const char* name, std::uint64_t scene, int age_s) {
+        const DrilledBoneHead head = drilled_bone_head(bricks, scene);
+        std::ofstream(folder_ / name, std::ios::binary)
+            .write(reinterpret_cast<const char*>(&head), sizeof head);
+        fs::last_write_time(folder_ / name, fs::file_time_type::clock::now() - std::chrono::seconds(age_s));
+    };
+    keep("old.bone", 7, 4000);
+    keep("new.bone", 7, 10);
+    keep("other.bone", 8, 5);
+    std::ofstream(folder_ / "none.bone") << "no bone";
+    const auto rows = drilled_rows(folder_, 7, std::time(nullptr));
+    ASSERT_EQ(rows.size(), 2U);
+    EXPECT_EQ(rows[0].name, "new.bone");
+    EXPECT_EQ(rows[0].when, "just now");
+    EXPECT_EQ(rows[1].name, "old.bone");
+    EXPECT_EQ(meaning_of({rows[0].path}).scene, rows[0].path);
+    EXPECT_TRUE(drilled_rows(folder_ / "none", 7, 0).empty());
 }
 
 TEST_F(TestDashboard, raw_data_and_folders_share_the_rows_left_by_the_scenes) {
