@@ -10,7 +10,7 @@ if(TACT_GUI)
     tact_tests(gui_drilling_tests SOURCES
             unit/gui_particles_test.cpp unit/gui_site_test.cpp unit/gui_drilling_test.cpp unit/gui_bone_test.cpp
             unit/gui_bone_follower_test.cpp unit/gui_drill_controller_test.cpp unit/gui_burr_tray_test.cpp
-            unit/gui_wet_bone_test.cpp
+            unit/gui_wet_bone_test.cpp unit/gui_bone_tiles_test.cpp
         USES gui_drilling_site threads servo scene base gui_link topics shm gui_drilling gui_render gui_window gui_dashboard
             prep_mesh SYSTEM nlohmann_json::nlohmann_json CLI11::CLI11)
     tact_test(unit/gui_drill_sound_test.cpp USES gui_drilling_sound)
