@@ -314,13 +314,13 @@ def labels(work):
     label = bytes(2 if math.dist(STRAIGHT.lps(i, j, k), MARKS_LPS[1]) < 2.5 else 5 if math.dist(STRAIGHT.lps(i, j, k), MARKS_LPS[2]) < 2.0 else 0
                   for k in range(n[2]) for j in range(n[1]) for i in range(n[0]))
     text = nrrd(STRAIGHT, kind="uchar") + (b"Segment0_Name:=Facial nerve\nSegment0_LabelValue:=2\nSegment0_Layer:=0\nSegment0_Color:=1 0.9 0.2\n"
-                                           b"Segment1_Name:=Malleus\nSegment1_LabelValue:=5\nSegment1_Layer:=0\nSegment1_Color:=0.2 0.9 1\n")
+                                           b"Segment1_Name:=Tympanic membrane\nSegment1_LabelValue:=5\nSegment1_Layer:=0\nSegment1_Color:=0.2 0.9 1\n")
     seg = work.write("labels.seg.nrrd", text, b"\n", label)
     work.goes_in("labels on other axes than the scan's", scan, "--labels", seg)
     code, out, err = work.run("info", work.path("out.tact"), "--json")
     found = {s["name"]: s for s in json.loads(out)["bone"].get("structures", json.loads(out).get("structures", []))} if code == 0 else {}
     work.claim("segments keep their names, and the nerve is critical", found.get("Facial nerve", {}).get("critical") is True and
-               found.get("Malleus", {}).get("critical") is False, (code, out[:600], err))
+               found.get("Tympanic membrane", {}).get("critical") is False, (code, out[:600], err))
 
 
 def main():

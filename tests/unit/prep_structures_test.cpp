@@ -118,13 +118,14 @@ TEST(StructureTable, lies_beside_its_scan) {
 }
 
 TEST(CriticalNames, abbreviations_count_as_whole_words) {
-    for (const char* const name : {"ICA", "left ica", "CN VII", "FN_right", "IAC", "facial nerve",
-                                   "sigmoid sinus and dura", "Carotide (carotid)", "internal auditory canal"})
-        EXPECT_TRUE(critical_name(name, {})) << name;
     for (const char* const name :
-         {"topical", "medical record", "fnord", "bone", "malleus", "external auditory canal", "viiith"})
+         {"ICA", "left ica", "CN VII", "FN_right", "IAC", "facial nerve", "sigmoid sinus and dura",
+          "Carotide (carotid)", "internal auditory canal", "malleus", "Incus", "stapes"})
+        EXPECT_TRUE(critical_name(name, {})) << name;
+    for (const char* const name : {"topical", "medical record", "fnord", "bone", "tympanic membrane",
+                                   "external auditory canal", "viiith"})
         EXPECT_FALSE(critical_name(name, {})) << name;
-    EXPECT_TRUE(critical_name("Malleus", {"MALL"}));
+    EXPECT_TRUE(critical_name("Tympanic membrane", {"TYMP"}));
 }
 
 // Slices of 12 x 10 pixels: bone, with a block of each colour.
@@ -165,7 +166,7 @@ TEST(Palette, the_colours_of_a_known_one_have_names_and_others_keep_theirs) {
     EXPECT_TRUE(named(ear, "facial nerve").critical);
     EXPECT_TRUE(named(ear, "sigmoid sinus and dura").critical);
     EXPECT_TRUE(named(ear, "internal carotid artery").critical);
-    EXPECT_FALSE(named(ear, "malleus").critical);
+    EXPECT_TRUE(named(ear, "malleus").critical);
     EXPECT_FALSE(named(ear, "#070809").critical);
     EXPECT_TRUE(std::any_of(ear.note.begin(), ear.note.end(), [](const std::string& n) {
         return n.find("named by their colours") != std::string::npos;
@@ -188,12 +189,12 @@ TEST(Palette, a_table_beside_the_scan_takes_precedence) {
         text.replace(at, from.size(), to);
     };
     edit("\"#070809\"\nname = \"#070809\"\ncritical = false",
-         "\"#070809\"\nname = \"my vein\"\ncritical = false");
-    edit("name = \"malleus\"\ncritical = false", "name = \"hammer\"\ncritical = true");
+         "\"#070809\"\nname = \"my place\"\ncritical = true");
+    edit("name = \"malleus\"\ncritical = true", "name = \"hammer\"\ncritical = false");
     std::ofstream(f.path / "ear/structures.toml") << text;
     const BoneInput edited = imported(f.path / "ear");
-    EXPECT_TRUE(named(edited, "hammer").critical);
-    EXPECT_FALSE(named(edited, "my vein").critical);  // the table says so, whatever the name
+    EXPECT_FALSE(named(edited, "hammer").critical);
+    EXPECT_TRUE(named(edited, "my place").critical);  // the table says so, whatever the name
     EXPECT_TRUE(named(edited, "facial nerve").critical);
     EXPECT_EQ(edited.bone.label, first.bone.label);
     EXPECT_EQ(first.table_voxels, edited.table_voxels);
