@@ -103,14 +103,18 @@ void expect_true_distances(const BoneField& field, const BoneVolumeView& now) {
     EXPECT_GT(far, 50U) << "large steps must be possible";
 }
 
-// A segmented volume: a ball and a plate of one voxel, of voxels that are bone or not.
+// A segmented volume of voxels that are bone or not: a ball, a plate of one voxel, and a cavity whose corners smoothing
+// rounds into the cell inside.
 struct Segmented {
-    BoneBlock block{
-        45, 3e-4,
-        [](const Vec3& p) {
-            return (p - Vec3(20.0, 22.0, 24.0)).norm() < 11.0 || std::abs(p.z() - 40.0) < 0.4 ? 1.0 : 0.0;
-        },
-        1};
+    BoneBlock block{45, 3e-4,
+                    [](const Vec3& p) {
+                        const bool cube =
+                                       p.maxCoeff()<11.5, cavity = p.minCoeff()> 2.5 && p.maxCoeff() < 8.5,
+                                   ball = (p - Vec3(20.0, 22.0, 24.0)).norm() < 11.0,
+                                   plate = std::abs(p.z() - 40.0) < 0.4;
+                        return ball || plate || (cube && !cavity) ? 1.0 : 0.0;
+                    },
+                    1};
     BoneVolumeView baked, now;
     std::vector<std::uint8_t> drilled = block.density;
     BoneLabelsView labels;
@@ -163,6 +167,24 @@ TEST(BoneField, a_segmented_volume_is_shown_smooth_and_a_scan_as_it_is) {
     // A plate of one voxel does not vanish.
     field.solids(static_cast<std::uint32_t>(s.block.bricks.brick(4, 4, 40)), shown);
     EXPECT_GE(shown[(0 * 8 + 4) * 8 + 4], BoneField::kSurface);
+}
+
+TEST(BoneField, a_brick_in_the_middle_of_solid_bone_is_smoothed_once_it_is_cut) {
+    Segmented s;
+    std::fill(s.block.density.begin(), s.block.density.end(), std::uint8_t{255});
+    std::fill(s.drilled.begin(), s.drilled.end(), std::uint8_t{255});
+    BoneField field(s.baked, s.labels, s.now);
+    const auto brick = static_cast<std::uint32_t>(s.block.bricks.brick(20, 20, 20));
+    std::array<std::uint8_t, BoneBricks::kVoxels> shown{};
+    field.solids(brick, shown);
+    EXPECT_EQ(*std::min_element(shown.begin(), shown.end()), 255);
+    for (std::size_t i = 0; i < BoneBricks::kVoxels; ++i)
+        if (i % 8 < 4) s.drilled[brick * BoneBricks::kVoxels + i] = 0;
+    field.changed(brick);
+    field.solids(brick, shown);
+    for (int x = 0; x < 8; ++x)
+        EXPECT_NEAR(shown[static_cast<std::size_t>(4 * 64 + 4 * 8 + x)], s.smoothed(16 + x, 20, 20), 2.0)
+            << x;
 }
 
 TEST(BoneField, distances_stay_true_in_a_segmented_volume_while_bone_goes_and_comes_back) {
