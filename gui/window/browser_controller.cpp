@@ -26,6 +26,17 @@ bool ready(std::future<T>& one) {
     return one.valid() && one.wait_for(std::chrono::seconds(0)) == std::future_status::ready;
 }
 
+// A table that a person wrote may hold remarks, and names for other scans.
+void keep_before(const std::filesystem::path& table) {
+    std::error_code failed;
+    if (!std::filesystem::exists(table, failed)) return;
+    const std::filesystem::path before = table.string() + ".before";
+    std::filesystem::copy_file(table, before, std::filesystem::copy_options::overwrite_existing, failed);
+    if (failed)
+        throw StartupError("keep the old " + table.string(), failed.message(),
+                           "make its folder writable, or move the file away");
+}
+
 void say(BrowserState& state, Grade grade, std::string words) {
     state.message = std::move(words);
     state.message_grade = grade;
@@ -167,6 +178,7 @@ void BrowserController::follow_form(BrowserState& state) {
     if (!std::exchange(form.answered, false) || !form.complete() || import_.running()) return;
     if (const std::string table = form.edited_table(); !table.empty()) {
         try {
+            keep_before(form.structure_table);
             write_whole_file(form.structure_table, table);
         } catch (const StartupError& e) {
             return say(state, Grade::bad, e.what());

@@ -108,8 +108,7 @@ void expect_true_distances(const BoneField& field, const BoneVolumeView& now) {
 struct Segmented {
     BoneBlock block{45, 3e-4,
                     [](const Vec3& p) {
-                        const bool cube =
-                                       p.maxCoeff()<11.5, cavity = p.minCoeff()> 2.5 && p.maxCoeff() < 8.5,
+                        const bool cube = p.maxCoeff()<11.5, cavity = p.minCoeff()> 2.5 && p.maxCoeff() < 8.5,
                                    ball = (p - Vec3(20.0, 22.0, 24.0)).norm() < 11.0,
                                    plate = std::abs(p.z() - 40.0) < 0.4;
                         return ball || plate || (cube && !cavity) ? 1.0 : 0.0;

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdlib>
 #include <fstream>
@@ -9,6 +10,9 @@
 
 #include "gui/window/browser_controller.hpp"
 #include "ipc/base/clock.hpp"
+#include "ipc/image/png.hpp"
+#include "ipc/scene/bone/bone_labels.hpp"
+#include "ipc/scene/bone/bone_volume.hpp"
 #include "ipc/scene/file/scene_meta.hpp"
 #include "ipc/scene/file/scene_switch.hpp"
 #include "tests/support/map_file.hpp"
@@ -193,6 +197,45 @@ TEST_F(Import, a_scan_shows_its_histogram_and_is_imported_with_the_values_that_w
     const auto asked = take_asked_scene(scene_switch);
     ASSERT_TRUE(asked) << state_.message;
     EXPECT_NE(read_note(SceneFile::open(*asked)).find("values above 80"), std::string::npos);
+}
+
+TEST_F(Import, names_of_structures_are_written_beside_the_images_and_the_table_before_is_kept) {
+    const auto ear = folder_ / "ear";
+    std::filesystem::create_directory(ear);
+    for (int k = 0; k < 12; ++k) {
+        std::vector<std::uint8_t> rgb;
+        for (int i = 0; i < 12 * 12; ++i) {
+            const std::array<std::uint8_t, 3> c = i % 12 < 8 ? std::array<std::uint8_t, 3>{255, 249, 219}
+                                                             : std::array<std::uint8_t, 3>{10, 20, 30};
+            rgb.insert(rgb.end(), c.begin(), c.end());
+        }
+        write_png(ear / ("plane" + std::to_string(k) + ".png"), 12, 12, rgb);
+    }
+    const std::string before = "# mine\n[[structure]]\ncolour = \"#0A141E\"\nname = \"window\"\n";
+    std::ofstream(ear / "structures.toml") << before;
+    const auto scene_switch = folder_ / "scene_switch";
+    std::filesystem::create_directory(scene_switch);
+    BrowserController dashboard(scene_switch);
+    dashboard.drop({ear}, state_);
+    until_done(dashboard);
+    ASSERT_TRUE(state_.form) << state_.message;
+    ImportForm& form = *state_.form;
+    ASSERT_EQ(form.structures.size(), 1U);
+    EXPECT_STREQ(form.structures[0].name.data(), "window");
+    std::snprintf(form.structures[0].name.data(), form.structures[0].name.size(), "round window");
+    form.numbers.at(0).set(0.5);
+    form.answered = true;
+    dashboard.follow(state_);
+    until_done(dashboard);
+    const auto asked = take_asked_scene(scene_switch);
+    ASSERT_TRUE(asked) << state_.message;
+    EXPECT_TRUE(asked->filename().string().starts_with("ear-")) << "named after its folder";
+    const SceneFile scene = SceneFile::open(*asked);
+    const BoneLabelsView labels = read_bone_labels(scene, read_bone_volume(scene).bricks);
+    ASSERT_EQ(labels.structure.size(), 1U);
+    EXPECT_EQ(labels.structure[0].name, "round window");
+    std::ifstream kept(ear / "structures.toml.before");
+    EXPECT_EQ(std::string(std::istreambuf_iterator<char>(kept), {}), before);
 }
 
 TEST_F(Import, an_examination_can_be_cancelled) {
