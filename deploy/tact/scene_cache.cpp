@@ -70,7 +70,7 @@ std::vector<std::filesystem::path> scan_files(const std::filesystem::path& scan)
 
 std::filesystem::path baked_scene(const BakeRequest& request) {
     const auto prep = find_program("tact-prep");
-    const auto scene = path_for(request, prep);
+    auto scene = path_for(request, prep);
     std::error_code ignored;
     if (std::filesystem::exists(scene, ignored)) {
         std::filesystem::last_write_time(scene, std::filesystem::file_time_type::clock::now(), ignored);

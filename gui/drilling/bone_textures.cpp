@@ -37,8 +37,9 @@ void fill_slab(const BoneBricks& bricks, std::uint32_t bz, std::vector<std::uint
             const std::size_t row = std::min<std::size_t>(kEdge, wide - std::size_t{bx} * kEdge);
             for (std::uint32_t z = 0; z < deep; ++z)
                 for (std::uint32_t y = 0; y < kEdge && by * kEdge + y < high; ++y)
-                    std::copy_n(voxels.data() + (z * kEdge + y) * kEdge, row,
-                                slab.data() + (z * high + by * kEdge + y) * wide + std::size_t{bx} * kEdge);
+                    std::copy_n(voxels.data() + (std::size_t{z} * kEdge + y) * kEdge, row,
+                                slab.data() + (z * high + std::size_t{by} * kEdge + y) * wide +
+                                    std::size_t{bx} * kEdge);
         }
     glTexSubImage3D(GL_TEXTURE_3D, 0, 0, 0, static_cast<GLint>(bz * kEdge), static_cast<GLsizei>(wide),
                     static_cast<GLsizei>(high), static_cast<GLsizei>(deep), GL_RED, GL_UNSIGNED_BYTE,
@@ -147,11 +148,12 @@ void BoneTextures::send(const BoneField& field, std::uint32_t brick) {
     constexpr std::uint32_t kCells = BoneBricks::kEdge / BoneField::kCell;
     std::array<std::uint8_t, std::size_t{kCells} * kCells * kCells> cells{};
     const auto& wide = field.cells();
-    for (std::uint32_t i = 0; i < cells.size(); ++i)
-        cells[i] = field.free_cells()[(std::size_t{at[2] * kCells + i / kCells / kCells} * wide[1] +
-                                       at[1] * kCells + i / kCells % kCells) *
-                                          wide[0] +
-                                      at[0] * kCells + i % kCells];
+    for (std::size_t i = 0; i < cells.size(); ++i) {
+        const std::size_t x = std::size_t{at[0]} * kCells + i % kCells,
+                          y = std::size_t{at[1]} * kCells + i / kCells % kCells,
+                          z = std::size_t{at[2]} * kCells + i / kCells / kCells;
+        cells[i] = field.free_cells()[(z * wide[1] + y) * wide[0] + x];
+    }
     glPixelStorei(GL_UNPACK_ROW_LENGTH, 0);
     glPixelStorei(GL_UNPACK_IMAGE_HEIGHT, 0);
     glBindTexture(GL_TEXTURE_3D, cells_.get());

@@ -141,7 +141,8 @@ void BoneView::mark_changes(Eyeful& eye, bool view_is_same) const {
 void BoneView::mark(Eyeful& eye, std::span<const std::uint32_t> bricks, double reach_voxels) const {
     const auto n = field_.bricks().bricks();
     for (const std::uint32_t b : bricks) {
-        const Vec3 low = Vec3(b % n[0], b / n[0] % n[1], b / n[0] / n[1]) * double{BoneBricks::kEdge};
+        const std::uint32_t x = b % n[0], y = b / n[0] % n[1], z = b / n[0] / n[1];
+        const Vec3 low = Vec3(x, y, z) * double{BoneBricks::kEdge};
         eye.tiles.stale(on_screen(eye.last, low.array() - reach_voxels,
                                   low.array() + (BoneBricks::kEdge + reach_voxels)));
     }

@@ -115,7 +115,8 @@ std::uint8_t DrillMetrics::brick(std::uint32_t brick, std::span<const std::uint8
         after.size() != BoneBricks::kVoxels)
         return 0;
     const auto n = bricks_.bricks();
-    const Vec3 corner(kEdge * (brick % n[0]), kEdge * (brick / n[0] % n[1]), kEdge * (brick / n[0] / n[1]));
+    const std::uint32_t bx = brick % n[0], by = brick / n[0] % n[1], bz = brick / n[0] / n[1];
+    const Vec3 corner = Vec3(bx, by, bz) * double{kEdge};
     // Most bricks are far from every structure.
     const double half_m = 0.5 * std::sqrt(3.0) * kEdge * bricks_.voxel_m * meta_.world_per_model;
     const Vec3 middle = corner + Vec3::Constant(0.5 * (kEdge - 1.0));
@@ -133,7 +134,8 @@ std::uint8_t DrillMetrics::brick(std::uint32_t brick, std::span<const std::uint8
         StructureMetrics& s = metrics_.structure[label < metrics_.structure.size() ? label : 0];
         s.removed_levels += levels;
         if (near) {
-            const Vec3 at = corner + Vec3(i % kEdge, i / kEdge % kEdge, i / kEdge / kEdge);
+            const std::uint32_t x = i % kEdge, y = i / kEdge % kEdge, z = i / kEdge / kEdge;
+            const Vec3 at = corner + Vec3(x, y, z);
             const double away_m = nearest_critical_m(bricks_.to_model(at));
             for (std::size_t k = 0; k < kDrillNearM.size(); ++k)
                 if (away_m < kDrillNearM[k]) metrics_.near_levels[k] += levels;

@@ -54,7 +54,7 @@ RawKind kind_of(const std::string& file) {
 // A file's name for a line of text: no control characters; a long name keeps its beginning and its ending.
 std::string shown_name(const std::string& file) {
     constexpr std::size_t kHead = 24, kTail = 12;
-    const std::string name = printable(std::filesystem::path(file).filename().string());
+    std::string name = printable(std::filesystem::path(file).filename().string());
     if (name.size() <= kHead + 3 + kTail) return name;
     std::size_t head = kHead, tail = name.size() - kTail;  // whole characters of UTF-8
     const auto inside = [&](std::size_t at) {
@@ -123,6 +123,7 @@ Dropped meaning_of(const std::vector<std::string>& files) {
         by_type.resize(system->raw.size());
         by_type[kind.type].push_back(file);
     }
+    if (system == nullptr) return no("No file.");
     out.import = {system->command};
     for (std::size_t i = 0; i < by_type.size(); ++i) {
         const RawFileType& type = system->raw[i];

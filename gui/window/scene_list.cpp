@@ -133,6 +133,7 @@ std::vector<SceneRow> drilled_rows(const std::filesystem::path& folder, std::uin
         return a.first != b.first ? a.first > b.first : a.second.name > b.second.name;
     });
     std::vector<SceneRow> rows;
+    rows.reserve(found.size());
     for (auto& [time, row] : found) rows.push_back(std::move(row));
     return rows;
 }
