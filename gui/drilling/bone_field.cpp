@@ -56,8 +56,8 @@ void BoneField::smoothed(std::uint32_t brick, std::span<std::uint8_t, BoneBricks
         return at >= 0 && at < static_cast<int>(now_.bricks.size[axis]);
     };
     const auto place = [](int x, int y, int z) {
-        const auto n = [](int i) { return static_cast<std::size_t>(i); };
-        return (n(z) * kWide + n(y)) * kWide + n(x);
+        const auto whole = [](int i) { return static_cast<std::size_t>(i); };
+        return (whole(z) * kWide + whole(y)) * kWide + whole(x);
     };
     for (int z = 0; z < kWide; ++z)
         for (int y = 0; y < kWide; ++y)
