@@ -25,19 +25,14 @@ TEST(BoneField, a_soft_labelled_voxel_is_solid_in_proportion_to_its_remaining_de
     EXPECT_EQ(solid_of(0, 0, 0), 0);
 }
 
-// Two balls of bone in a box of odd size.
-struct TwoBalls {
-    BoneBlock block{45, 3e-4,
-                    [](const Vec3& p) {
-                        const double a = 6.0 - (p - Vec3(12.0, 30.0, 9.0)).norm();
-                        const double b = 9.0 - (p - Vec3(33.0, 33.0, 33.0)).norm();
-                        return std::clamp(std::max(a, b) + 0.5, 0.0, 1.0);
-                    },
-                    1};
+// A box of odd size, and the same while it is drilled.
+struct DrilledBox {
+    BoneBlock block;
     BoneVolumeView baked, now;
     std::vector<std::uint8_t> drilled = block.density;
     BoneLabelsView labels;
-    TwoBalls() {
+    template <class Solid>
+    explicit DrilledBox(const Solid& solid) : block(45, 3e-4, solid, 1) {
         baked.bricks = now.bricks = block.bricks;
         baked.density = block.density;
         now.density = drilled;
@@ -45,6 +40,15 @@ struct TwoBalls {
     void drill(std::uint32_t brick) {
         std::fill_n(drilled.begin() + brick * BoneBricks::kVoxels, BoneBricks::kVoxels, std::uint8_t{0});
     }
+};
+
+struct TwoBalls : DrilledBox {
+    TwoBalls()
+        : DrilledBox([](const Vec3& p) {
+              const double a = 6.0 - (p - Vec3(12.0, 30.0, 9.0)).norm();
+              const double b = 9.0 - (p - Vec3(33.0, 33.0, 33.0)).norm();
+              return std::clamp(std::max(a, b) + 0.5, 0.0, 1.0);
+          }) {}
 };
 
 // True if no sample in a cell reaches the surface level, interpolated as on the graphics card.
@@ -105,23 +109,15 @@ void expect_true_distances(const BoneField& field, const BoneVolumeView& now) {
 
 // A segmented volume of voxels that are bone or not: a ball, a plate of one voxel, and a cavity whose corners smoothing
 // rounds into the cell inside.
-struct Segmented {
-    BoneBlock block{45, 3e-4,
-                    [](const Vec3& p) {
-                        const bool cube = p.maxCoeff()<11.5, cavity = p.minCoeff()> 2.5 && p.maxCoeff() < 8.5,
-                                   ball = (p - Vec3(20.0, 22.0, 24.0)).norm() < 11.0,
-                                   plate = std::abs(p.z() - 40.0) < 0.4;
-                        return ball || plate || (cube && !cavity) ? 1.0 : 0.0;
-                    },
-                    1};
-    BoneVolumeView baked, now;
-    std::vector<std::uint8_t> drilled = block.density;
-    BoneLabelsView labels;
-    Segmented() {
-        baked.bricks = now.bricks = block.bricks;
-        baked.density = block.density;
-        now.density = drilled;
-    }
+struct Segmented : DrilledBox {
+    Segmented()
+        : DrilledBox([](const Vec3& p) {
+              const bool ball = (p - Vec3(20.0, 22.0, 24.0)).norm() < 11.0;
+              const bool plate = std::abs(p.z() - 40.0) < 0.4;
+              const bool cube = p.maxCoeff() < 11.5;
+              const bool cavity = p.minCoeff() > 2.5 && p.maxCoeff() < 8.5;
+              return ball || plate || (cube && !cavity) ? 1.0 : 0.0;
+          }) {}
     // As shown: all 125 voxels around each, weighted at once.
     [[nodiscard]] double smoothed(int x, int y, int z) const {
         constexpr std::array<double, 5> kWeight{1.0, 4.0, 6.0, 4.0, 1.0};
@@ -204,7 +200,7 @@ TEST(BoneField, distances_stay_true_in_a_segmented_volume_while_bone_goes_and_co
                                               static_cast<std::uint32_t>(s.block.bricks.brick(28, 22, 24)),
                                               static_cast<std::uint32_t>(s.block.bricks.brick(20, 30, 30))};
     for (const std::uint32_t b : bricks) {
-        std::fill_n(s.drilled.begin() + b * BoneBricks::kVoxels, BoneBricks::kVoxels, std::uint8_t{0});
+        s.drill(b);
         field.changed(b);
         check();
     }
