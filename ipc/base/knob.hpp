@@ -46,6 +46,7 @@ enum class LevelReason : std::uint8_t {
 struct PathLoad {
     Duration cost{0};
     Duration cost_predicted{0};  // of a whole step at the level, ForceModel::predict(); 0: unknown
+    Duration cost_foreseen{0};   // of a contact that may come, ForceModel::predict(); 0: none
     double error = 0.0;
     std::uint32_t items = 0;  // vertices drawn, points summed, particles moved
     float recomputed_fraction =

@@ -109,7 +109,8 @@ public:
     // Number of points, blocks or vertices that a level evaluates; the governor publishes it.
     [[nodiscard]] virtual std::uint32_t items(float fidelity) const noexcept TACT_RT = 0;
     // Predicts cost (cost_predicted), error and items of a full step at a level, for the body in the hand.
-    // The cost may be off by a factor common to all levels: the governor measures that factor. Constant time.
+    // The cost may be off by a factor common to all levels: the governor measures that factor. A model that has met no
+    // contact yet states in addition what one will cost (cost_foreseen). Constant time.
     [[nodiscard]] virtual PathLoad predict(float /*fidelity*/) const noexcept TACT_RT { return {}; }
     virtual void reset(const ToolState& tool) noexcept TACT_RT = 0;  // the bodies stay where they are
     // Stiffness that the next steps may show: an upper bound near the last pose. Constant time.

@@ -34,6 +34,7 @@ bool LevelFit::set_rows(std::span<const Row> rows) noexcept {
             !std::isfinite(row.error))
             continue;
         before = row.level;
+        window_[count_] = {};
         rows_[count_++] = row;
     }
     tries_ = 0;
@@ -62,12 +63,20 @@ void LevelFit::calibrate(double model_s, double rest_s) noexcept {
     rows_[row].cost_s = std::max(rows_[row].cost_s, tried_s_[row]);
 }
 
-bool LevelFit::renew(std::size_t i, double cost_s, double error, double dt_s) noexcept {
-    if (i >= count_ || !std::isfinite(cost_s) || !std::isfinite(error)) return false;
+bool LevelFit::renew(std::size_t i, double cost_s, double error, double dt_s, double foreseen_s) noexcept {
+    if (i >= count_ || !std::isfinite(cost_s + foreseen_s) || !std::isfinite(error)) return false;
     Row& row = rows_[i];
-    const double kept = std::exp(-dt_s / kKept_s), before = row.cost_s;
-    row.cost_s = std::max({cost_s, tried_s_[i], kept * before});
-    row.error = std::max(error, kept * row.error);
+    Window& w = window_[i];
+    w.age_s += dt_s;
+    if (w.age_s >= kKept_s) {
+        const bool old = w.age_s >= 2.0 * kKept_s;
+        w = {.cost_before_s = old ? 0.0 : w.cost_s, .error_before = old ? 0.0 : w.error};
+    }
+    w.cost_s = std::max(w.cost_s, cost_s);
+    w.error = std::max(w.error, error);
+    const double before = row.cost_s;
+    row.cost_s = std::max({w.cost_s, w.cost_before_s, tried_s_[i], foreseen_s});
+    row.error = std::max(w.error, w.error_before);
     const bool leapt = row.cost_s > kLeapt * before;
     leapt_ = leapt_ || (leapt && i == row_);
     return leapt;

@@ -4,8 +4,9 @@
 //
 // Rows        candidate levels with the cost and error that the model predicts. Dry cycles measure the cost of each
 //             row (calibrate), so the first armed cycle already has its level. A model may predict more in contact:
-//             rows are renewed in turn and keep their largest cost and error, fading within kKept_s. If the present row's
-//             cost leaps, all are renewed and the level falls at once if it does not fit
+//             rows are renewed in turn and keep their largest cost and error of the last kKept_s to 2 kKept_s, unfaded,
+//             so strokes that come again do not move the level. If the present row's cost leaps, all are renewed and the
+//             level falls at once if it does not fit
 // Cost        the cost of a whole step: a step that was cut by its deadline counts as cost / work_done. Three
 //             statistics correct the prediction while the loop runs:
 //               speed      median of measured / predicted cost of the steps whose predicted cost is at least kTelling
@@ -51,7 +52,7 @@ public:
     static constexpr double kSpeedLeast = 0.7;
     static constexpr std::uint32_t kTries = 3;  // dry steps per row
     static constexpr double kOver_s = 0.1;
-    static constexpr double kKept_s = 10.0;
+    static constexpr double kKept_s = 2.0;
     static constexpr double kTelling = 0.3;
     static constexpr double kLeapt = 1.1;
     static constexpr double kWorthGain = 0.15;
@@ -88,8 +89,10 @@ public:
     // Dry cycles: the level to measure next; false when every row has been measured.
     [[nodiscard]] bool calibrating(float& level) const noexcept TACT_RT;
     void calibrate(double model_s, double rest_s) noexcept TACT_RT;
-    // The model's present prediction for a row, dt_s after the previous one. True: its cost leapt.
-    bool renew(std::size_t row, double cost_s, double error, double dt_s) noexcept TACT_RT;
+    // The model's present prediction for a row, dt_s after the previous one; foreseen_s: cost of a contact that may come,
+    // not kept. True: the row's cost leapt.
+    bool renew(std::size_t row, double cost_s, double error, double dt_s,
+               double foreseen_s = 0.0) noexcept TACT_RT;
     // The row to renew in this cycle: each in turn.
     [[nodiscard]] std::size_t due() const noexcept TACT_RT { return count_ > 0 ? cycle_ % count_ : 0; }
     // Selects the best row that fits, whatever the present row.
@@ -119,6 +122,11 @@ private:
 
     std::array<Row, kRowsMax> rows_{};
     std::array<double, kRowsMax> tried_s_{};  // smallest cost measured per row; 0: none
+    // Largest predictions of the present window of kKept_s.
+    struct Window {
+        double cost_s = 0.0, error = 0.0, cost_before_s = 0.0, error_before = 0.0, age_s = 0.0;
+    };
+    std::array<Window, kRowsMax> window_{};
     std::size_t count_ = 0, row_ = 0;
     std::uint32_t tries_ = 0;
     CostSpread spread_;

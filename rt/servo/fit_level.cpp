@@ -40,7 +40,7 @@ void renew_rows(CycleState& c) noexcept {
     const std::size_t rows = fit.rows().size();
     const auto renew = [&](std::size_t row, double dt_s) {
         const PathLoad load = c.hand[0].model->predict(fit.rows()[row].level);
-        return fit.renew(row, to_s(load.cost_predicted), load.error, dt_s);
+        return fit.renew(row, to_s(load.cost_predicted), load.error, dt_s, to_s(load.cost_foreseen));
     };
     if (rows == 0) return;
     if (renew(fit.row(), 0.0)) {
@@ -66,7 +66,9 @@ void make_level_rows(CycleState& c) noexcept {
         if (!top && level < std::max(knob.floor, static_cast<float>(c.governor.settings().force_level_min)))
             continue;
         const PathLoad load = model.predict(level);
-        rows[count++] = {.level = level, .cost_s = to_s(load.cost_predicted), .error = load.error};
+        rows[count++] = {.level = level,
+                         .cost_s = to_s(std::max(load.cost_predicted, load.cost_foreseen)),
+                         .error = load.error};
     }
     c.govern.fit.set_rows({rows.data(), count});
     c.govern.level_max = 1.0F;

@@ -1,7 +1,8 @@
 // Checks that the governor meets its goals: for `tact bench governor`.
 //
-// Runs      tact run --no-gui, as a user starts it: for each row one adaptive run, and one run per fixed level for
-//           comparison. The scenes are baked first, in a temporary folder.
+// Runs      tact run --no-gui, as a user starts it: for each row one run per fixed level, and an adaptive run before,
+//           between and after those that are valid; the median of the adaptive runs counts, and a fault in any of them.
+//           The scenes are baked first, in a temporary folder.
 // Scenes    docking: structures of about 30 000, 160 000 and 500 000 atoms, shifted copies of one structure (from the
 //           demo or a file); surface: a 6-DoF tool of 1000 points on two million triangles; drilling: a burr of 20 mm
 //           in voxels of 0.1 mm
@@ -10,7 +11,7 @@
 //           valid: lower ones have larger errors.
 // Faults    timing faults latch, as on a real arm. Late wake-ups of the host are not faults: they do not depend on the
 //           level.
-// Takes     about twenty minutes; prints progress to standard error. Throws StartupError.
+// Takes     about forty minutes; prints progress to standard error. Throws StartupError.
 #pragma once
 
 #include <cstddef>
@@ -40,6 +41,8 @@ struct GovernorRun {
 };
 
 [[nodiscard]] bool valid_level(const GovernorRun& fixed);
+// Of each metric; at least one run. A fault in any run is one.
+[[nodiscard]] GovernorRun median_of(const std::vector<GovernorRun>& runs);
 // Compares an adaptive run with the runs at fixed levels. Pure arithmetic.
 [[nodiscard]] nlohmann::json governor_row(const GovernorRun& adaptive, const std::vector<GovernorRun>& fixed);
 

@@ -36,6 +36,19 @@ TEST(BenchGovernor, each_violated_limit_fails_the_run) {
     EXPECT_FALSE(passes(with([](auto& r) { r.settled_s = 0.11; })));
 }
 
+TEST(BenchGovernor, of_repeated_runs_the_median_of_each_metric_counts_and_any_fault) {
+    std::vector<GovernorRun> runs(3, kGood);
+    runs[0].miss_share = 0.5;
+    runs[1].settled_s = 4.0;
+    runs[2].error_n = 9.0;
+    EXPECT_TRUE(passes(median_of(runs)));
+    runs[2].settled_s = 4.0;
+    EXPECT_FALSE(passes(median_of(runs)));
+    runs[2] = kGood;
+    runs[2].fault = true;
+    EXPECT_FALSE(passes(median_of(runs)));
+}
+
 TEST(BenchGovernor, without_a_fitting_fixed_level_nothing_is_compared) {
     const auto row = governor_row(kGood, {kSweep.back()});
     EXPECT_TRUE(row["best_fixed_level"].is_null());

@@ -186,7 +186,7 @@ TEST(DrillLevels, in_free_space_a_level_is_predicted_to_cost_what_a_pocket_costs
         Drilled d(radius_m, radius_m > 0.01 ? 160 : 72);
         double z_m = radius_m + 1e-3;
         d.begin({0.0, 0.0, z_m});
-        const double free_us = to_us(d.model->predict(0.25F).cost_predicted);
+        const double free_us = to_us(d.model->predict(0.25F).cost_foreseen);
         double pocket_us = 0.0;
         for (int i = 0; i < kSteps; ++i) {
             const double t_s = 1e-3 * i;
@@ -196,6 +196,12 @@ TEST(DrillLevels, in_free_space_a_level_is_predicted_to_cost_what_a_pocket_costs
         }
         EXPECT_GT(free_us, 0.6 * pocket_us) << radius_m;
         EXPECT_LT(free_us, 1.7 * pocket_us) << radius_m;
+        // The contact has shown what it costs; after a while in free space that is forgotten.
+        EXPECT_EQ(d.model->predict(0.25F).cost_foreseen.count(), 0);
+        for (int i = 0; i < 9000; ++i) (void)d.step({0.0, 0.0, 3.0 * radius_m}, 0.0F);
+        EXPECT_EQ(d.model->predict(0.25F).cost_foreseen.count(), 0);
+        for (int i = 0; i < 1500; ++i) (void)d.step({0.0, 0.0, 3.0 * radius_m}, 0.0F);
+        EXPECT_EQ(to_us(d.model->predict(0.25F).cost_foreseen), free_us);
     }
 }
 

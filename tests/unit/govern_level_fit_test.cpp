@@ -275,9 +275,18 @@ TEST(LevelFit, a_leap_of_the_predicted_cost_lowers_the_level_in_the_same_cycle) 
 TEST(LevelFit, the_largest_predicted_cost_and_error_of_the_last_seconds_count) {
     LevelFit fit = with(doubling(3, 10.0));
     EXPECT_TRUE(fit.renew(1, 100 * kUs, 5.0, 1e-3));
-    EXPECT_FALSE(fit.renew(1, 1 * kUs, 0.1, LevelFit::kKept_s / 10.0));
-    EXPECT_NEAR(fit.rows()[1].cost_s, 100 * kUs * std::exp(-0.1), 1e-12);
-    EXPECT_NEAR(fit.rows()[1].error, 5.0 * std::exp(-0.1), 1e-9);
+    // Unfaded for kKept_s at least, and for twice as long at most, however seldom a row is renewed.
+    double age_s = 0.0, kept_s = 0.0;
+    for (; age_s < 2.5 * LevelFit::kKept_s; age_s += 0.03) {
+        EXPECT_FALSE(fit.renew(1, 1 * kUs, 0.1, 0.03));
+        if (fit.rows()[1].cost_s < 100 * kUs || fit.rows()[1].error < 5.0) continue;
+        kept_s = age_s;
+    }
+    EXPECT_GT(kept_s, LevelFit::kKept_s - 0.05);
+    EXPECT_LT(kept_s, 2.0 * LevelFit::kKept_s + 0.05);
+    EXPECT_NEAR(fit.rows()[1].cost_s, 1 * kUs, 1e-12);
+    EXPECT_NEAR(fit.rows()[1].error, 0.1, 1e-12);
+    EXPECT_TRUE(fit.renew(1, 100 * kUs, 5.0, 1e-3));
     EXPECT_FALSE(fit.renew(1, 1 * kUs, 0.1, 10.0 * LevelFit::kKept_s));
     EXPECT_NEAR(fit.rows()[1].cost_s, 1 * kUs, 1e-12);
     EXPECT_FALSE(fit.renew(1, NAN, 0.0, 1e-3));
@@ -289,6 +298,17 @@ TEST(LevelFit, the_largest_predicted_cost_and_error_of_the_last_seconds_count) {
         static_cast<void>(fit.learn({}));
     }
     EXPECT_EQ(due, std::vector<bool>(3, true));
+}
+
+// A contact that may come bounds the level until it has come and has shown its cost.
+TEST(LevelFit, a_foreseen_cost_counts_while_it_is_foreseen_and_is_not_kept) {
+    LevelFit fit = with(doubling(3, 10.0));
+    EXPECT_TRUE(fit.renew(1, 1 * kUs, 0.1, 1e-3, 100 * kUs));
+    EXPECT_NEAR(fit.rows()[1].cost_s, 100 * kUs, 1e-12);
+    EXPECT_FALSE(fit.renew(1, 2 * kUs, 0.1, 1e-3));
+    EXPECT_NEAR(fit.rows()[1].cost_s, 2 * kUs, 1e-12);
+    EXPECT_FALSE(fit.renew(1, 1 * kUs, 0.1, 1e-3, NAN));
+    EXPECT_NEAR(fit.rows()[1].cost_s, 2 * kUs, 1e-12);
 }
 
 TEST(LevelFit, a_small_gain_of_error_is_not_worth_a_change_of_level) {

@@ -26,6 +26,7 @@ constexpr double kTypicalForceN = 3.0;                   // of a surgeon's hand
 // more.
 constexpr double kPocketArea = 5.5;
 constexpr double kUsualStep = 0.02;
+constexpr double kContactKnownS = 0.25, kContactForgottenS = 10.0;
 
 bool hand_is_there(const Pose& pose) noexcept {
     const double turn = pose.q.squaredNorm();
@@ -151,11 +152,7 @@ DrillWork DrillModel::expected(float fidelity, double step_s) const noexcept {
     return work;
 }
 
-PathLoad DrillModel::predict(float fidelity) const noexcept {
-    PathLoad load;
-    const DrillWork work = expected(fidelity, usual_step_s_);
-    load.items = work.items();
-    // In free space and at the first contact, the cost in the pocket that the burr will cut.
+DrillWork DrillModel::typical_work(float fidelity) const noexcept {
     const BlockDetail detail = detail_of(fidelity);
     const auto asked = [&](const BlockDetail& d) { return d.asked(typical_.depth) * typical_.radius; };
     DrillWork typical = flat_work(typical_, asked(detail));
@@ -170,11 +167,21 @@ PathLoad DrillModel::predict(float fidelity) const noexcept {
     typical.cut *= pocket * share;
     typical.changed *= pocket * share;
     typical.walked *= pocket * turns_.passes_of(groups);
-    load.cost_predicted = std::max(drill_cost(work), drill_cost(typical));
+    return typical;
+}
+
+PathLoad DrillModel::predict(float fidelity) const noexcept {
+    PathLoad load;
+    const DrillWork work = expected(fidelity, usual_step_s_);
+    load.items = work.items();
+    load.cost_predicted = drill_cost(work);
+    // The pocket that the burr will cut. A contact then shows what it costs in truth.
+    if (contact_s_ < kContactKnownS) load.cost_foreseen = drill_cost(typical_work(fidelity));
     // A group waits for all steps between its cuts.
+    const std::uint32_t groups = turns_.groups_at(fidelity, usual_step_s_);
     const double steps = static_cast<double>(turns_.groups()) / groups;
     const double pending = 0.5 * (steps - 1.0) * rate_per_s() * usual_step_s_;
-    load.error = error_n(last_, detail, pending);
+    load.error = error_n(last_, detail_of(fidelity), pending);
     return load;
 }
 
@@ -184,6 +191,14 @@ double DrillModel::error_n(const BallForces& sum, const BlockDetail& detail, dou
     const double scale = std::min(std::numbers::sqrt2 * sum.scale, 1.0);
     return std::min(scale * error, 2.0 * settings_.force_n_max) +
            std::min(sum.scale * sum.pending_n * pending, 2.0 * settings_.force_n_max);
+}
+
+void DrillModel::follow_contact(bool touches) noexcept {
+    free_s_ = touches ? 0.0 : free_s_ + drive_.step_s;
+    if (touches)
+        contact_s_ += drive_.step_s;
+    else if (free_s_ > kContactForgottenS)
+        contact_s_ = 0.0;
 }
 
 void DrillModel::reset(const ToolState& tool) noexcept {
@@ -278,6 +293,7 @@ StepResult DrillModel::step(const ToolState& tool, const Budget& budget) noexcep
         error_before_n_ = error;
         result.wrench_world = fade_.show(felt);
         result.load.error = error + fade_.leaving_n(head_radius_m_);
+        follow_contact(sum.elastic_n > 0.0);
         if (sum.elastic_n > 0.0 && !sum.late)
             measure_stiffness(tool.T_world_tool, stiffness_detail(detail));
         else if (!(sum.elastic_n > 0.0))

@@ -188,6 +188,8 @@ private:
     [[nodiscard]] double error_n(const BallForces& sum, const BlockDetail& detail,
                                  double pending) const noexcept TACT_RT;
     [[nodiscard]] DrillWork expected(float fidelity, double step_s) const noexcept TACT_RT;
+    [[nodiscard]] DrillWork typical_work(float fidelity) const noexcept TACT_RT;
+    void follow_contact(bool touches) noexcept TACT_RT;
     void forget_depths() noexcept TACT_RT;
     [[nodiscard]] Vec3 shaken_n(const ToolState& tool, double elastic_n) noexcept TACT_RT;
 
@@ -219,12 +221,13 @@ private:
     ErosionTurns turns_{1.0};
     BallForces last_;  // of the last step
     DrillStiffness measured_;
-    double lever_m_ = 0.0;    // farthest part of the tool from its origin
-    BallLook typical_;        // of the head in flat bone
-    bool cuts_ = false;       // the clutch is open
-    bool asked_ = false;      // reset() was called
-    bool led_ = false;        // now_voxels_ are of a tool that was led here
-    bool exchanged_ = false;  // a stroke, in the last step
+    double lever_m_ = 0.0;                   // farthest part of the tool from its origin
+    BallLook typical_;                       // of the head in flat bone
+    double contact_s_ = 0.0, free_s_ = 0.0;  // of all contacts, since the last one
+    bool cuts_ = false;                      // the clutch is open
+    bool asked_ = false;                     // reset() was called
+    bool led_ = false;                       // now_voxels_ are of a tool that was led here
+    bool exchanged_ = false;                 // a stroke, in the last step
     // h / R of the step before; below 0: unknown.
     std::array<double, DrillTool::kMax> depths_{};
     std::array<Vec3, DrillTool::kMax> ways_out_{};
