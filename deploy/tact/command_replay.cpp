@@ -8,6 +8,8 @@
 #include "deploy/tact/commands.hpp"
 #include "deploy/tact/exec.hpp"
 #include "deploy/tact/files.hpp"
+#include "deploy/tact/observer.hpp"
+#include "deploy/tact/replay_continue.hpp"
 #include "deploy/tact/signals.hpp"
 #include "deploy/tact/x_server.hpp"
 
@@ -27,7 +29,7 @@ std::vector<std::string> words_of(const ReplayOptions& o) {
     if (o.json) words.emplace_back("--json");
     if (o.show)
         words.insert(words.end(), {"--show", "--session", o.session, "--from", std::to_string(o.from_s),
-                                   "--speed", std::to_string(o.speed)});
+                                   "--speed", std::to_string(o.speed), "--can-run"});
     return words;
 }
 
@@ -57,9 +59,31 @@ int show(const ReplayOptions& o) {
     drawing.grace = std::chrono::seconds(10);
     Child replay("tact-replay", find_program("tact-replay"), replaying);
     Child window("tact-gui", find_program("tact-gui"), drawing);
+    Observer observer(o.session);
+    std::optional<ReplayMoment> moment;
+    std::uint64_t runs = 0;
     while (!replay.poll() || !window.poll()) {
         if (signals.wait(20) != 0 || window.poll()) replay.stop();
         if (replay.poll()) window.stop();
+        observer.poll();
+        const auto shown = observer.seen() ? newest(observer.region().replay) : std::nullopt;
+        if (!shown || shown->runs == runs || moment) continue;
+        runs = shown->runs;
+        try {
+            moment = keep_moment(observer.region(), *shown, o.session);
+            replay.stop();
+        } catch (const StartupError& e) {
+            std::fprintf(stderr, "tact: %s\n", e.what());
+        }
+    }
+    if (moment) {
+        std::vector<std::string> live = run_words(*moment);
+        if (o.headless) live.emplace_back("--headless");
+        std::string line = "tact";
+        for (const std::string& word : live) line += " " + word;
+        std::fprintf(stderr, "live from %.3f s of the recording: %s\n", moment->at_s, line.c_str());
+        screen.reset();
+        exec_program("tact", live);
     }
     const Ending& drawn = *window.poll();
     if (!drawn.clean() && !(drawn.asked && !drawn.forced)) {

@@ -17,6 +17,7 @@
 #include "gui/dashboard/plot_series.hpp"
 #include "gui/dashboard/scene_toggles.hpp"
 #include "gui/dashboard/theme.hpp"
+#include "gui/dashboard/timeline.hpp"
 #include "gui/dashboard/traces.hpp"
 #include "ipc/topics/command.hpp"
 #include "ipc/topics/device.hpp"
@@ -69,6 +70,9 @@ struct History {
 struct DashboardState {
     bool attached = false;
     bool watching = false;  // an instructor's window: it changes nothing
+    ReplayState replay;
+    // What the user asks for reaches a running controller.
+    [[nodiscard]] bool commands() const { return attached && !watching && !replay.shown; }
     std::string link_text;
     std::string session;
     bool have_health = false, have_levels = false;
@@ -108,6 +112,7 @@ struct DashboardState {
     int strip = 0;            // 0: plots, 1: traces
     int lateness_choice = 0;  // a minute, the whole run, over time
     int tab = 0;              // of the scene card
+    int events_choice = 0;    // all, warnings and faults, faults
     // Emptied by the application.
     std::vector<Request> requests;
 };

@@ -12,7 +12,7 @@ namespace {
 
 void buttons(const Theme& theme, DashboardState& state) {
     const auto run_state = static_cast<RunState>(state.health.state);
-    const bool known = state.attached && state.have_health;
+    const bool known = state.attached && state.have_health && !state.replay.shown;
     const float width = (ImGui::GetContentRegionAvail().x - 2.0F * ImGui::GetStyle().ItemSpacing.x) / 3.0F;
     const auto button = [&](const char* name, bool enabled, CommandKind kind, ImU32 c) {
         ImGui::BeginDisabled(!enabled);
@@ -86,6 +86,24 @@ void recording(const Theme& theme, const DashboardState& state) {
     ImGui::NewLine();
 }
 
+// A recording is shown: said first and largest, and what was the case then is said as past.
+void replay_hero(const Theme& theme, const DashboardState& state) {
+    const ReplayTopic& r = state.replay.now;
+    badge(theme, "REPLAY", colour::kAccent, theme.large);
+    ImGui::SameLine();
+    ImGui::BeginGroup();
+    text_small(theme, colour::kText, replay_text(r));
+    text_small(theme, colour::kDim, "A recording: no device, no force.");
+    ImGui::EndGroup();
+    row(theme, "File", cut_text(theme.text, r.name, ImGui::GetContentRegionAvail().x - theme.px(104.0F)));
+    if (!state.have_health) return;
+    const auto run_state = static_cast<RunState>(state.health.state);
+    const std::string why = run_reason_text(static_cast<RunReason>(state.health.reason));
+    row(theme, "Then", run_state_text(run_state), why);
+    row(theme, "Force rate", rate_text(state.health.force_rate_hz),
+        "goal " + rate_text(state.health.goal_hz));
+}
+
 // Top of the card: the state with its reason, and the force rate against the goal.
 void hero(const Theme& theme, const DashboardState& state) {
     const HealthTopic& h = state.health;
@@ -153,7 +171,7 @@ void delay(const Theme& theme, const HealthTopic& h) {
 void law_and_goal(const Theme& theme, DashboardState& state) {
     if (!state.have_levels) return;
     std::string law(state.levels.law, std::find(state.levels.law, state.levels.law + kLawNameMax, '\0'));
-    ImGui::BeginDisabled(!state.attached);
+    ImGui::BeginDisabled(!state.commands());
     text_coloured(colour::kDim, "Law");
     ImGui::SameLine(theme.px(100.0F));
     ImGui::SetNextItemWidth(theme.px(84.0F));
@@ -179,7 +197,7 @@ void law_and_goal(const Theme& theme, DashboardState& state) {
 }  // namespace
 
 void draw_health(const Theme& theme, DashboardState& state, const PixelRect& card) {
-    begin_card(theme, "Controller", card,
+    begin_card(theme, state.replay.shown ? "Replay" : "Controller", card,
                true);  // scrolls: two hands with long messages are higher than the card
     const HealthTopic& h = state.health;
     const bool known = state.have_health;
@@ -196,14 +214,18 @@ void draw_health(const Theme& theme, DashboardState& state, const PixelRect& car
         ImGui::PushTextWrapPos(0.0F);
         text_coloured(colour::kWatch, state.link_text);
         ImGui::PopTextWrapPos();
-    } else if (!known) {
+    } else if (!known && !state.replay.shown) {
         badge(theme, "ATTACHED", colour::kWatch, theme.large);
         text_coloured(colour::kWatch, "attached; no health data yet");
     }
-    if (known && state.attached) hero(theme, state);
+    if (state.replay.shown)
+        replay_hero(theme, state);
+    else if (known && state.attached)
+        hero(theme, state);
     // Below the top part, so that long device messages do not push the buttons out of the card.
     buttons(theme, state);
-    if (!state.command_text.empty()) text_small(theme, grade_colour(state.command_grade), state.command_text);
+    if (!state.command_text.empty() && !state.replay.shown)
+        text_small(theme, grade_colour(state.command_grade), state.command_text);
     if (known && state.attached) {
         if (h.period_ns > 0) {
             timing(theme, state);

@@ -15,7 +15,7 @@ void draw_plots(const Theme& theme, DashboardState& state, const PixelRect& card
 // In place of the plots: every servo cycle.
 void draw_traces(const Theme& theme, DashboardState& state);
 void draw_trace_lanes(const Theme& theme, DashboardState& state, ImVec2 size);
-void draw_events(const Theme& theme, const DashboardState& state, const PixelRect& card);
+void draw_events(const Theme& theme, DashboardState& state, const PixelRect& card);
 // Frame times as one line; empty while unknown.
 [[nodiscard]] std::string frame_line(const FrameMetrics& metrics);
 // Frame times as a table over the 3D view.

@@ -7,7 +7,7 @@ namespace tact {
 namespace {
 
 void list(const Theme& theme, DashboardState& state, FittingState& fitting) {
-    const bool live = state.attached;
+    const bool live = state.commands();
     const float right = ImGui::GetContentRegionAvail().x;
     for (const BodyState& b : fitting.bodies) {
         ImGui::PushID(static_cast<int>(b.id));
@@ -43,7 +43,7 @@ void actions(const DashboardState& state, FittingState& f, std::vector<Request>&
     int column = 0;
     const auto button = [&](const char* name, bool enabled, const char* help) {
         if (column++ % 4 != 0) ImGui::SameLine();
-        ImGui::BeginDisabled(!enabled || !state.attached);
+        ImGui::BeginDisabled(!enabled || !state.commands());
         const bool pressed = ImGui::Button(name, {width, 0.0F});
         ImGui::EndDisabled();
         if (ImGui::IsItemHovered(ImGuiHoveredFlags_AllowWhenDisabled)) ImGui::SetTooltip("%s", help);
@@ -67,7 +67,7 @@ void actions(const DashboardState& state, FittingState& f, std::vector<Request>&
         requests.push_back({CommandKind::remove_body, 0.0, {}, id});
     if (button("Save", !f.saving, "save PDB or mmCIF, matrix and CSV of every body in a new folder"))
         request(FitAction::save);
-    ImGui::BeginDisabled(!state.attached);
+    ImGui::BeginDisabled(!state.commands());
     if (ImGui::Button("Snapshot", {width, 0.0F}))
         request(FitAction::snapshot, format("snapshot %zu", f.snapshots.size() + 1));
     ImGui::SameLine();
@@ -81,7 +81,7 @@ void actions(const DashboardState& state, FittingState& f, std::vector<Request>&
 }
 
 void options(const Theme& theme, DashboardState& state, const FittingState& f) {
-    ImGui::BeginDisabled(!state.attached || f.building);
+    ImGui::BeginDisabled(!state.commands() || f.building);
     const auto box = [&](const char* name, std::uint32_t bit, CommandKind kind, const char* help) {
         bool on = (f.options & bit) != 0;
         if (ImGui::Checkbox(name, &on)) state.requests.push_back({kind, on ? 1.0 : 0.0, {}});

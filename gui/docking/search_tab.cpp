@@ -29,7 +29,7 @@ bool button(const char* name, bool enabled, const char* help) {
 void start_row(const Theme& theme, const DashboardState& state, FittingState& f) {
     const BodyState* const held = held_body(f);
     SearchState& s = f.search;
-    const bool ready = state.attached && held != nullptr && !s.running;
+    const bool ready = state.commands() && held != nullptr && !s.running;
     const std::uint32_t id = held != nullptr ? held->id : 0;
     if (button("Search map", ready && s.objective != kMeanDensity,
                held == nullptr ? "take the body to look for into the hand first"
@@ -68,7 +68,7 @@ void start_row(const Theme& theme, const DashboardState& state, FittingState& f)
             "degrees, or find, to try C2 to C12 and D2 to D7");
     if (!s.found_symmetry.empty() && !s.found.empty() && s.found_body == id) {
         ImGui::SameLine();
-        if (button("Place copies", state.attached,
+        if (button("Place copies", state.commands(),
                    "put the held body and copies of it at all these places; they move together then"))
             f.requests.push_back({FitAction::place_copies, id, {}});
     }
@@ -108,7 +108,7 @@ void found_list(const Theme& theme, const DashboardState& state, FittingState& f
         ImGui::PushID(static_cast<int>(i));
         ImGui::TableNextRow();
         ImGui::TableNextColumn();
-        ImGui::BeginDisabled(!state.attached || !exists);
+        ImGui::BeginDisabled(!state.commands() || !exists);
         if (ImGui::Selectable(format("%zu", i + 1).c_str(), false,
                               ImGuiSelectableFlags_SpanAllColumns | ImGuiSelectableFlags_AllowItemOverlap))
             f.requests.push_back({FitAction::take_place, s.found_body, {}, i});

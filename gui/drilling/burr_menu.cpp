@@ -65,7 +65,7 @@ void drive(const Theme& theme, const char* name, const char* unit, double value,
 
 void burr_menu(const Theme& theme, const DrillingState& d, DashboardState& state) {
     if (!ImGui::BeginPopup(kBurrMenu)) return;
-    if (!state.attached || !d.known) ImGui::CloseCurrentPopup();
+    if (!state.commands() || !d.known) ImGui::CloseCurrentPopup();
     text_small(theme, colour::kDim,
                d.changing_burr ? "changing the burr: no force meanwhile" : "Burr, diameter in mm", false);
     ImGui::BeginDisabled(d.changing_burr);

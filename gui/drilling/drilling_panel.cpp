@@ -53,7 +53,7 @@ void metrics(const Theme& theme, const DrillingState& d) {
 // Of the bone that was taken.
 void undo(const Theme& theme, const DrillingState& d, DashboardState& state) {
     const auto button = [&](const char* name, std::uint32_t count, CommandKind kind, const char* help) {
-        ImGui::BeginDisabled(count == 0 || d.exchanging || !state.attached || state.watching);
+        ImGui::BeginDisabled(count == 0 || d.exchanging || !state.commands());
         if (ImGui::Button(name)) state.requests.push_back({kind, 0.0, {}});
         ImGui::EndDisabled();
         if (ImGui::IsItemHovered(ImGuiHoveredFlags_AllowWhenDisabled)) ImGui::SetTooltip("%s", help);
@@ -65,7 +65,7 @@ void undo(const Theme& theme, const DrillingState& d, DashboardState& state) {
     button("Redo", d.redoable, CommandKind::redo_stroke,
            "take the bone of the last undone cut again (Ctrl+Y)");
     ImGui::SameLine();
-    ImGui::BeginDisabled(!state.attached || state.watching);
+    ImGui::BeginDisabled(!state.commands());
     if (ImGui::Button("Burr ...")) ImGui::OpenPopup(kBurrMenu);
     ImGui::EndDisabled();
     if (ImGui::IsItemHovered(ImGuiHoveredFlags_AllowWhenDisabled))

@@ -10,6 +10,11 @@ namespace tact {
 bool CommandSender::send(const Command& wanted, std::int64_t now_ns) {
     CommandTopic command{};
     if (wanted.text.size() >= sizeof command.text) return false;
+    if (*closed_ != '\0') {
+        stage_ = Stage::refused;
+        text_ = std::string(command_kind_text(wanted.kind)) + ": " + closed_;
+        return true;
+    }
     command.sequence = ++sequence_;
     command.taken_at_ns = now_ns;
     command.value = wanted.value;

@@ -29,6 +29,8 @@ public:
 
     // Returns false and sends nothing if the text is longer than the topic allows.
     bool send(const Command& wanted, std::int64_t now_ns);
+    // Not empty: nothing is sent, and the text says why.
+    void close(const char* why) { closed_ = why; }
     // Takes the newest result that the controller published.
     void update(const HealthTopic& health, std::int64_t now_ns);
     // Drops the pending command: a new controller never received it.
@@ -44,6 +46,7 @@ private:
     std::int64_t sent_at_ns_ = 0;
     CommandKind kind_ = CommandKind::none;
     Stage stage_ = Stage::none;
+    const char* closed_ = "";
     std::string text_;
 };
 

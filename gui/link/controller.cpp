@@ -1,5 +1,7 @@
 #include "gui/link/controller.hpp"
 
+#include <algorithm>
+#include <cmath>
 #include <cstring>
 #include <utility>
 
@@ -25,10 +27,10 @@ Controller::News Controller::poll() {
         if (news.bone_fd.valid()) bone_ = MappedBoneRegion::map(std::move(news.bone_fd), bone_refusal_);
         seen_tool_ = seen_second_ = seen_bodies_ = seen_shapes_ = seen_touch_ = seen_drill_ = seen_head_ =
             seen_tracker_ = seen_devices_ = seen_health_ = seen_lateness_ = seen_levels_ = seen_recorders_ =
-                seen_mark_ = 0;
+                seen_mark_ = seen_replay_ = seen_replay_marks_ = 0;
         have_tool = have_second = have_bodies = have_shapes = have_touch = have_drill = have_head =
             have_tracker = have_devices = have_health = have_lateness = have_levels = have_recorders =
-                have_mark = false;
+                have_mark = have_replay = have_replay_marks = false;
         cursor_ = trace_cursor_ = RingCursor{};
         told.arrived = !region_.empty();
         if (region_.empty()) refusal_ = "the controller's region cannot be used: " + refusal_;
@@ -65,6 +67,8 @@ Controller::Fresh Controller::read() {
     fresh.tracker = take(region_->tracker, seen_tracker_, tracker, have_tracker);
     fresh.devices = take(region_->devices, seen_devices_, devices, have_devices);
     fresh.lateness = take(region_->lateness, seen_lateness_, lateness, have_lateness);
+    fresh.replay = take(region_->replay, seen_replay_, replay, have_replay);
+    static_cast<void>(take(region_->replay_marks, seen_replay_marks_, replay_marks, have_replay_marks));
     fresh.mark = take(region_->mark, seen_mark_, mark, have_mark);
     fresh.recorders = take(region_->recorders, seen_recorders_, recorders, have_recorders);
     fresh.health = take(region_->health, seen_health_, health, have_health);
@@ -86,6 +90,18 @@ bool Controller::next_cycle(RingCursor& place, TraceTopic& cycle) const {
 
 const PathLevel* Controller::level(const char* path) const {
     return attached() && have_levels ? find_path(levels, path) : nullptr;
+}
+
+double Controller::time_rate() const {
+    if (!replays()) return 1.0;
+    return replay.act == static_cast<std::uint8_t>(ReplayAct::playing) ? replay.speed : 0.0;
+}
+
+std::int64_t Controller::time_ns(std::int64_t now_ns) const {
+    if (!replays()) return now_ns;
+    constexpr double kMostNs = 5e7;  // a replay says where it is a hundred times a second
+    const double age_ns = std::clamp(static_cast<double>(now_ns - replay.taken_at_ns), 0.0, kMostNs);
+    return replay.shown_ns + std::llround(time_rate() * age_ns);
 }
 
 std::string Controller::scene_path() const {

@@ -35,7 +35,7 @@ public:
     struct Fresh {
         bool tool = false, second = false, bodies = false, shapes = false, touch = false, drill = false,
              head = false, tracker = false, devices = false, health = false, lateness = false, levels = false,
-             recorders = false, mark = false;
+             recorders = false, mark = false, replay = false;
     };
     Fresh read();
     [[nodiscard]] bool next_event(EventTopic& event);
@@ -58,6 +58,13 @@ public:
     // The current level of one path; null if it is unknown.
     [[nodiscard]] const PathLevel* level(const char* path) const;
 
+    // A recording is shown, by tact-replay.
+    [[nodiscard]] bool replays() const { return attached() && have_replay; }
+    // The clock of the topics: this process's, or that of the instant that a replay shows.
+    [[nodiscard]] std::int64_t time_ns(std::int64_t now_ns) const;
+    // How fast that clock runs: 1, or the speed of a replay, or 0 where it waits.
+    [[nodiscard]] double time_rate() const;
+
     // Path of the controller's scene; empty while unknown.
     [[nodiscard]] std::string scene_path() const;
     [[nodiscard]] std::uint64_t scene_checksum() const {
@@ -67,7 +74,7 @@ public:
     bool have_tool = false, have_second = false, have_bodies = false, have_shapes = false, have_touch = false,
          have_drill = false, have_head = false, have_tracker = false, have_devices = false,
          have_health = false, have_lateness = false, have_levels = false, have_recorders = false,
-         have_mark = false;
+         have_mark = false, have_replay = false, have_replay_marks = false;
     ToolTopic tool{}, second{};  // the first hand, and the second one if present
     BodiesTopic bodies{};
     ShapesTopic shapes{};
@@ -80,6 +87,8 @@ public:
     LatenessTopic lateness{};
     RecordersTopic recorders{};
     MarkTopic mark{};
+    ReplayTopic replay{};
+    ReplayMarks replay_marks{};
     LevelsTopic levels{};
 
 private:
@@ -93,7 +102,8 @@ private:
     RingCursor cursor_, trace_cursor_;
     std::uint64_t seen_tool_ = 0, seen_second_ = 0, seen_bodies_ = 0, seen_shapes_ = 0, seen_touch_ = 0,
                   seen_drill_ = 0, seen_head_ = 0, seen_tracker_ = 0, seen_devices_ = 0, seen_health_ = 0,
-                  seen_lateness_ = 0, seen_levels_ = 0, seen_recorders_ = 0, seen_mark_ = 0;
+                  seen_lateness_ = 0, seen_levels_ = 0, seen_recorders_ = 0, seen_mark_ = 0, seen_replay_ = 0,
+                  seen_replay_marks_ = 0;
     bool watches_;
     std::uint64_t refused_ = 0;
 };

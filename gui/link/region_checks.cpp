@@ -144,6 +144,22 @@ bool sensible(const LevelsTopic& l) noexcept {
 
 bool sensible(const MarkTopic& m) noexcept { return near(m.pos_model_m); }
 
+// Places beyond the end are possible for a moment: the last step is shown before the recording's length is known.
+bool sensible(const ReplayTopic& r) noexcept {
+    constexpr double kMostS = 1e9;
+    const auto time = [](double s) { return s >= 0.0 && s <= kMostS; };
+    return time(r.at_s) && time(r.duration_s) && r.speed >= TimelineTopic::kSpeedLeast &&
+           r.speed <= TimelineTopic::kSpeedMost && r.seek_share >= 0.0 && r.seek_share <= 1.0 &&
+           r.act <= static_cast<std::uint8_t>(ReplayAct::ended) && r.exact <= 1 && r.whole <= 1 &&
+           r.plays <= 1 && r.can_run <= 1 && r.taken_at_ns >= 0 && r.shown_ns >= 0 && ended(r.name);
+}
+
+bool sensible(const ReplayMarks& m) noexcept {
+    return m.count <= ReplayMarks::kMost && std::all_of(m.mark, m.mark + m.count, [](const ReplayMark& mark) {
+               return std::isfinite(mark.at_s) && mark.grade <= 2;
+           });
+}
+
 bool sensible(const RecordersTopic& r) noexcept { return r.recorders <= 64 && r.flights <= 64; }
 
 const PathLevel* find_path(const LevelsTopic& levels, const char* path) noexcept {

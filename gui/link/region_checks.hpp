@@ -11,6 +11,7 @@
 #include "ipc/topics/levels.hpp"
 #include "ipc/topics/mark.hpp"
 #include "ipc/topics/recorders.hpp"
+#include "ipc/topics/replay.hpp"
 #include "ipc/topics/shapes.hpp"
 #include "ipc/topics/tool.hpp"
 #include "ipc/topics/touch.hpp"
@@ -30,6 +31,8 @@ namespace tact {
 [[nodiscard]] bool sensible(const LevelsTopic& levels) noexcept;
 [[nodiscard]] bool sensible(const RecordersTopic& recorders) noexcept;
 [[nodiscard]] bool sensible(const MarkTopic& mark) noexcept;
+[[nodiscard]] bool sensible(const ReplayTopic& replay) noexcept;
+[[nodiscard]] bool sensible(const ReplayMarks& marks) noexcept;
 
 // The level of a path, or null.
 [[nodiscard]] const PathLevel* find_path(const LevelsTopic& levels, const char* path) noexcept;

@@ -22,6 +22,9 @@ constexpr auto kKeyRows = [] {
         {named_key(KeyCode::escape), 0, browser, KeyAction::close_browser, "Esc", "close the list of scenes"},
         {named_key(KeyCode::space), 0, controller, KeyAction::disarm, "Space", "disarm: no force"},
         {{KeyCode::enter, '\0', true, false}, 0, controller, KeyAction::arm, "Ctrl+Enter", "arm"},
+        {named_key(KeyCode::space), 0, replay, KeyAction::play, "Space", "replay: play or pause"},
+        {typed_key(','), 0, replay, KeyAction::step_back, ",", "replay: one step back"},
+        {typed_key('.'), 0, replay, KeyAction::step_on, ".", "replay: one step on"},
         {named_key(KeyCode::home), 0, always, KeyAction::home, "Home", "home view"},
         {typed_key('f'), 0, bone, KeyAction::approach_burr, "F", "close view of the burr"},
         {typed_key('['), 0, bone, KeyAction::smaller_burr, "[", "smaller burr"},
@@ -94,6 +97,8 @@ bool applies(KeyWhen when, const KeySituation& now) noexcept {
             return now.stereo;
         case controller:
             return now.controller;
+        case replay:
+            return now.replay;
         case calibrating:
             return now.calibrating;
         case watching:
@@ -123,6 +128,9 @@ bool collide(const KeyRow& a, const KeyRow& b) noexcept {
     if (precedence(a.when) != precedence(b.when)) return false;  // one of them takes precedence
     const bool of_scenes = (a.when == bodies && b.when == bone) || (a.when == bone && b.when == bodies);
     if (of_scenes) return false;  // no scene is both
+    const bool of_controllers =
+        (a.when == controller && b.when == replay) || (a.when == replay && b.when == controller);
+    if (of_controllers) return false;  // a replay is no controller
     const auto of_picture = [](KeyWhen when) { return when == bodies || when == bone || when == stereo; };
     if ((a.when == calibrating && of_picture(b.when)) || (b.when == calibrating && of_picture(a.when)))
         return false;  // calibration replaces the scene display

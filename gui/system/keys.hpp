@@ -47,6 +47,9 @@ enum class KeyAction : std::uint8_t {
     disarm,
     screenshot,
     mark,
+    play,
+    step_back,
+    step_on,
     help,
     calibrate,
     measure,
@@ -68,6 +71,7 @@ enum class KeyWhen : std::uint8_t {
     bone,
     stereo,
     controller,
+    replay,
     calibrating,
     watching
 };
@@ -78,7 +82,8 @@ struct KeySituation {
     bool bodies = false;       // the scene has a map and bodies to place
     bool bone = false;         // a drilling scene
     bool stereo = false;       // the display is stereoscopic
-    bool controller = false;   // attached
+    bool controller = false;   // attached, and no replay
+    bool replay = false;       // the window shows a recording
     bool watching = false;     // an instructor's window
     bool calibrating = false;  // bodies, bone and stereo then do not apply
 };

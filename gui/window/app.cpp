@@ -94,7 +94,8 @@ void GuiApp::frame(Instant now, bool take_picture) {
     panels_due_ = panel_image_.due(now, input || take_picture || screenshot_requested_ || layout_changes_);
     if (panels_due_) window_.begin_panels(theme_);
     window_.bind();
-    const std::int64_t now_ns = to_ns(now);
+    frame_at_ = now;
+    const std::int64_t now_ns = controller_.time_ns(to_ns(now));
     state_.now_ns = now_ns;
     state_.history.now_s = 1e-9 * static_cast<double>(now_ns - first_ns_);
     follow_controller(now_ns);
@@ -114,7 +115,7 @@ void GuiApp::frame(Instant now, bool take_picture) {
     }
     if (content_) {
         const PassClock::Scope scope(&passes_, Pass::motion);
-        system().move(clock_.frame_s(),
+        system().move(controller_.time_rate() * clock_.frame_s(),
                       content_->centre_model_m + kAngstromM * camera_.eye_a().cast<double>(), context());
     }
     clock_.end_part(FramePart::particles);
@@ -142,14 +143,17 @@ void GuiApp::frame(Instant now, bool take_picture) {
 void GuiApp::follow_controller(std::int64_t now_ns) {
     const Controller::News news = controller_.poll();
     if (news.left) {
-        spdlog::warn("the controller of session {} ended; waiting for the next", options_.session);
+        // A replay that goes back is another one.
+        if (!state_.replay.shown)
+            spdlog::warn("the controller of session {} ended; waiting for the next", options_.session);
         commands_.forget();
         for (const auto& system : systems_) system->detach();
     }
     if (news.arrived) {
         for (const auto& system : systems_) system->attach(context());
-        spdlog::info("attached to the controller of session {}", options_.session);
+        if (!state_.replay.shown) spdlog::info("attached to the controller of session {}", options_.session);
         second_hand_.forget();
+        timeline_.forget();
         commands_.forget();
         forget_rates(state_);
         traces_place_ = {};
@@ -159,6 +163,7 @@ void GuiApp::follow_controller(std::int64_t now_ns) {
             start_loading(path);
     }
     const Controller::Fresh fresh = controller_.read();
+    if (news.arrived && controller_.replays()) begin_replay();
     system().read(fresh, context());
     if (fresh.second) second_hand_.follow(controller_.second);
     if (fresh.mark) {
@@ -171,6 +176,29 @@ void GuiApp::follow_controller(std::int64_t now_ns) {
     trace_export_.follow(state_.traces);
     if (controller_.have_health && !controller_.watches()) commands_.update(controller_.health, now_ns);
     show_controller(controller_, commands_, state_);
+    follow_replay();
+}
+
+// All times are those of the run that was recorded, and its events come again.
+void GuiApp::begin_replay() {
+    forget_run(state_);
+    const ReplayTopic& replay = controller_.replay;
+    state_.now_ns = controller_.time_ns(to_ns(frame_at_));
+    state_.history.first_ns = replay.shown_ns - std::llround(1e9 * replay.at_s);
+    state_.history.now_s = state_.history.at_s(state_.now_ns);
+    window_.set_title(std::string("Tact: replay of ") + replay.name);
+}
+
+void GuiApp::follow_replay() {
+    ReplayState& replay = state_.replay;
+    replay.shown = controller_.replays();
+    commands_.close(replay.shown ? "nothing is sent in a replay" : "");
+    if (!replay.shown) return replay.requests.clear();
+    replay.now = controller_.replay;
+    replay.marks = controller_.replay_marks;
+    for (const TimelineRequest& request : replay.requests)
+        timeline_.send(request, replay.now, to_ns(frame_at_));
+    replay.requests.clear();
 }
 
 void GuiApp::draw_panels() {

@@ -13,7 +13,7 @@ constexpr std::int64_t kMarkShownNs = 20'000'000'000;
 void GuiApp::draw_scene(std::int64_t now_ns) {
     const Window::Size size = window_.size();
     const Layout layout = layout_for(theme_, static_cast<float>(size.width), static_cast<float>(size.height),
-                                     middle_card(state_, system().panels()), state_.strip == 1);
+                                     middle_card(state_, system().panels()), strip_of(state_));
     if (panels_due_) layout_ = layout;
     layout_changes_ = !(layout == layout_);
     const PixelRect& rect = layout_.view;
@@ -66,7 +66,7 @@ void GuiApp::draw_scene(std::int64_t now_ns) {
     if (stage_)
         draw_stage(view, now_ns);
     else
-        draw_window_view(view, Instant{std::chrono::nanoseconds(now_ns)});
+        draw_window_view(view, frame_at_);
     system().drawn(context());
 }
 

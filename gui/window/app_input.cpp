@@ -9,7 +9,7 @@ void GuiApp::handle_input() {
     const ImGuiIO& io = ImGui::GetIO();
     if (!io.WantCaptureMouse && !calibration_.open()) {
         const float height = layout_for(theme_, io.DisplaySize.x, io.DisplaySize.y,
-                                        middle_card(state_, system().panels()), state_.strip == 1)
+                                        middle_card(state_, system().panels()), strip_of(state_))
                                  .view.height;
         if (controller_.watches() && io.KeyCtrl && ImGui::IsMouseClicked(ImGuiMouseButton_Left))
             mark_under_pointer();
@@ -28,7 +28,8 @@ void GuiApp::handle_input() {
     now.bodies = of_system == KeyWhen::bodies;
     now.bone = of_system == KeyWhen::bone;
     now.stereo = stage_ != nullptr && !now.calibrating;
-    now.controller = controller_.attached();
+    now.replay = controller_.replays();
+    now.controller = controller_.attached() && !now.replay;
     now.watching = controller_.watches();
     for (const KeyStroke& stroke : window_.take_keys()) {
         if (io.WantTextInput) continue;
@@ -57,6 +58,12 @@ void GuiApp::perform(KeyAction what, std::size_t place) {
             return;
         case KeyAction::disarm:  // in any state: disarming is always safe, and the controller answers
             return command(CommandKind::disarm);
+        case KeyAction::play:
+            return state_.replay.requests.push_back({TimelineAction::play, 0.0});
+        case KeyAction::step_back:
+            return state_.replay.requests.push_back({TimelineAction::step, -1.0});
+        case KeyAction::step_on:
+            return state_.replay.requests.push_back({TimelineAction::step, 1.0});
         case KeyAction::screenshot:
             screenshot_requested_ = true;
             return;

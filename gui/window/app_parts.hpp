@@ -35,6 +35,7 @@
 #include "gui/window/second_hand.hpp"
 #include "gui/window/still_view.hpp"
 #include "gui/window/systems.hpp"
+#include "gui/window/timeline_sender.hpp"
 #include "gui/window/window.hpp"
 namespace tact {
 
@@ -52,6 +53,8 @@ private:
     };
     void frame(Instant now, bool take_picture);
     void follow_controller(std::int64_t now_ns);
+    void begin_replay();
+    void follow_replay();
     void start_loading(const std::string& path);
     void follow_scene();
     void use_scene(std::unique_ptr<SceneStart> start);
@@ -93,12 +96,14 @@ private:
     OwnedRegion<GuiRegion> region_;
     Controller controller_;
     CommandSender commands_;
+    TimelineSender timeline_{region_->timeline};
     Window window_;
     Theme theme_;
     FrameClock clock_;
     PanelState state_;
     const std::int64_t first_ns_ = to_ns(Monotonic::now());
     double fps_max_ = 60.0;
+    Instant frame_at_{};          // this frame
     // OpenGL objects are destroyed before the window: members are destroyed in reverse order.
     PassClock passes_{PassClock::possible(window_.software())};
     Instant frames_published_{};

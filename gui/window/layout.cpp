@@ -12,12 +12,18 @@ MiddleCard middle_card(const PanelState& state, const SystemPanels& system) {
     return {system.card_size(), false};
 }
 
+Strip strip_of(const PanelState& state) { return {state.strip == 1, state.replay.shown}; }
+
 Layout layout_for(const Theme& theme, float width_px, float height_px, const MiddleCard& middle,
-                  bool traces) {
+                  Strip strip) {
     const float gap = std::round(theme.px(6.0F));
     const float left = std::round(std::min(theme.px(318.0F), 0.5F * width_px));
-    const float below = traces ? std::round(std::clamp(0.5F * height_px, theme.px(196.0F), theme.px(420.0F)))
-                               : std::round(std::min(theme.px(196.0F), 0.45F * height_px));
+    const float plots = strip.traces
+                            ? std::round(std::clamp(0.5F * height_px, theme.px(196.0F), theme.px(420.0F)))
+                            : std::round(std::min(theme.px(196.0F), 0.45F * height_px));
+    const float timeline =
+        strip.timeline ? std::round(std::min(theme.px(kTimelineHeight), 0.15F * height_px)) : 0.0F;
+    const float below = plots + timeline;
     const auto at_least_one = [](float v) { return std::max(v, 1.0F); };
     Layout l;
     l.view = {left, 0.0F, at_least_one(width_px - left), at_least_one(height_px - below)};
@@ -44,7 +50,8 @@ Layout layout_for(const Theme& theme, float width_px, float height_px, const Mid
     }
 
     const float events = std::round(std::clamp(0.24F * l.view.width, theme.px(190.0F), theme.px(420.0F)));
-    const float top = l.view.height, height = at_least_one(below - gap);
+    const float top = l.view.height + timeline, height = at_least_one(plots - gap);
+    l.timeline = {left, l.view.height, at_least_one(l.view.width - gap), std::max(timeline - gap, 0.0F)};
     l.plots = {left, top, at_least_one(l.view.width - events - 2.0F * gap), height};
     l.events = {left + l.plots.width + gap, top, events, height};
     return l;
@@ -53,12 +60,13 @@ Layout layout_for(const Theme& theme, float width_px, float height_px, const Mid
 void draw_dashboard(const Theme& theme, PanelState& state, SystemPanels& system, float width_px,
                     float height_px) {
     const MiddleCard middle = middle_card(state, system);
-    const Layout layout = layout_for(theme, width_px, height_px, middle, state.strip == 1);
+    const Layout layout = layout_for(theme, width_px, height_px, middle, strip_of(state));
     ImGui::PushStyleVar(ImGuiStyleVar_WindowMinSize, ImVec2(1.0F, 1.0F));
     if (middle.calibration) draw_calibration(theme, state.calibration, layout.middle);
     if (!middle.calibration) draw_health(theme, state, layout.health);
     if (middle.size.height > 0.0F) system.draw_card(theme, layout.middle, state);
     if (!middle.calibration) draw_scene(theme, state, system, layout.scene);
+    if (state.replay.shown) draw_timeline(theme, state.replay, layout.timeline);
     draw_plots(theme, state, layout.plots);
     draw_events(theme, state, layout.events);
     if (state.browser.open)

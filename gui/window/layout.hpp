@@ -17,8 +17,11 @@ namespace tact {
 // areas through its font texture, which takes several milliseconds in software rendering.
 struct Layout {
     PixelRect view, health, middle, scene, plots, events;
+    PixelRect timeline{};  // of a replay
 
-    [[nodiscard]] std::array<PixelRect, 5> cards() const { return {health, middle, scene, plots, events}; }
+    [[nodiscard]] std::array<PixelRect, 6> cards() const {
+        return {health, middle, scene, timeline, plots, events};
+    }
     friend bool operator==(const Layout&, const Layout&) = default;
 };
 // The card between those of the controller and the scene: from the scene's system; without one, the scene card gets
@@ -28,9 +31,13 @@ struct MiddleCard {
     bool calibration = false;
 };
 [[nodiscard]] MiddleCard middle_card(const PanelState& state, const SystemPanels& system);
-// traces: gives the strip below the height that they need.
+// What the strip below the view holds: traces need more height than plots, and a replay has a timeline.
+struct Strip {
+    bool traces = false, timeline = false;
+};
+[[nodiscard]] Strip strip_of(const PanelState& state);
 [[nodiscard]] Layout layout_for(const Theme& theme, float width_px, float height_px, const MiddleCard& middle,
-                                bool traces = false);
+                                Strip strip = {});
 
 // Draws everything except the 3D view and the cards' backgrounds.
 void draw_dashboard(const Theme& theme, PanelState& state, SystemPanels& system, float width_px,

@@ -89,10 +89,11 @@ void stop_banner(const OverlayPen& pen, const PanelState& state, const PixelRect
     if (notice.why.empty()) return;
     ImFont* const large = pen.theme.large;
     ImFont* const text = pen.theme.text;
+    const std::string fix = state.replay.shown ? "In the recorded run." : notice.fix;
     const float pad = pen.theme.px(16.0F), most = 0.7F * v.width;
-    const std::string title = "No force: " + notice.why;
+    const std::string title = (state.replay.shown ? "Then no force: " : "No force: ") + notice.why;
     const ImVec2 head = large->CalcTextSizeA(large->FontSize, 1e9F, most, title.c_str()),
-                 body = text->CalcTextSizeA(text->FontSize, 1e9F, most, notice.fix.c_str());
+                 body = text->CalcTextSizeA(text->FontSize, 1e9F, most, fix.c_str());
     const float w = std::max(head.x, body.x) + 2.0F * pad, h = head.y + body.y + 2.5F * pad;
     const ImVec2 at{v.x + 0.5F * (v.width - w), v.y + 0.16F * v.height};
     pen.draw->AddRectFilled(at, {at.x + w, at.y + h}, IM_COL32(96, 22, 18, 240), pen.theme.px(8.0F));
@@ -100,7 +101,19 @@ void stop_banner(const OverlayPen& pen, const PanelState& state, const PixelRect
     pen.draw->AddText(large, large->FontSize, {at.x + pad, at.y + pad}, IM_COL32(255, 235, 232, 255),
                       title.c_str(), nullptr, most);
     pen.draw->AddText(text, text->FontSize, {at.x + pad, at.y + 1.5F * pad + head.y}, colour::kText,
-                      notice.fix.c_str(), nullptr, most);
+                      fix.c_str(), nullptr, most);
+}
+
+// Whoever looks at the view alone sees it too.
+void replay_sign(const OverlayPen& pen, const PanelState& state, const PixelRect& v) {
+    if (!state.replay.shown) return;
+    ImFont* const font = pen.theme.bold;
+    const std::string text = "REPLAY";
+    const float w = pen.width(font, text) + pen.theme.px(20.0F), h = font->FontSize + pen.theme.px(6.0F);
+    const ImVec2 at{v.x + 0.5F * (v.width - w), v.y + pen.theme.px(10.0F)};
+    pen.draw->AddRectFilled(at, {at.x + w, at.y + h}, colour::kAccent, 0.5F * h);
+    pen.draw->AddText(font, font->FontSize, {at.x + pen.theme.px(10.0F), at.y + pen.theme.px(3.0F)},
+                      colour::kGround, text.c_str());
 }
 
 void message(const OverlayPen& pen, const PanelState& state, const PixelRect& v) {
@@ -159,6 +172,7 @@ void draw_overlay(const Theme& theme, PanelState& state, const SystemPanels& sys
         message(pen, state, view);
     }
     stop_banner(pen, state, view);
+    replay_sign(pen, state, view);
     if (state.situation.sheet) keys(pen, state.situation, view);
     pen.draw->PopClipRect();
 }

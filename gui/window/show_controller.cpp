@@ -19,20 +19,25 @@ void take_events(Controller& controller, DashboardState& state) {
                 state.history.at_s(event.taken_at_ns), static_cast<std::size_t>(event.a), event.b,
                 event.detail < 255 ? static_cast<LevelReason>(event.detail) : static_cast<LevelReason>(255));
         EventLine line = describe(event, controller.have_levels ? &controller.levels : nullptr);
-        // Repeated events, such as a limit reached again and again, must not push out the others.
-        const bool repeats = !state.events.empty() && state.events.front().code == line.code;
-        if (repeats && (line.grade == Grade::watch ||
-                        line.code == static_cast<std::uint16_t>(EventCode::level_changed))) {
-            line.count = state.events.front().count + 1;
-            state.events.front() = std::move(line);
-            continue;
-        }
-        state.events.push_front(std::move(line));
+        add_event(std::move(line), state.events);
         if (state.events.size() > kEventsKept) state.events.pop_back();
     }
 }
 
 }  // namespace
+
+void add_event(EventLine line, std::deque<EventLine>& events) {
+    const auto code = static_cast<EventCode>(line.code);
+    const bool one_row = code == EventCode::overrun || code == EventCode::level_changed;
+    auto earlier =
+        std::find_if(events.begin(), events.end(), [&](const EventLine& e) { return e.code == line.code; });
+    const bool repeats = one_row || (line.grade == Grade::watch && earlier == events.begin());
+    if (repeats && earlier != events.end()) {
+        line.count = earlier->count + 1;
+        events.erase(earlier);
+    }
+    events.push_front(std::move(line));
+}
 
 void show_controller(Controller& controller, const CommandSender& commands, DashboardState& state) {
     take_events(controller, state);
@@ -89,6 +94,16 @@ void forget_rates(DashboardState& state) {
     state.tracker_rate.clear();
     for (CounterRate& rate : state.device_rate) rate.clear();
     state.history.knobs.clear();
+}
+
+void forget_run(DashboardState& state) {
+    forget_rates(state);
+    state.events.clear();
+    History& h = state.history;
+    for (PlotSeries* series : {&h.rate_hz, &h.lateness_p50_s, &h.lateness_p99_s, &h.lateness_max_s,
+                               &h.cycle_cost_s, &h.frame_s, &h.busy_s})
+        series->clear();
+    for (PlotSeries& series : h.level) series.clear();
 }
 
 void add_load(const LoadTopic& load, const LevelsTopic* levels, History& to) {

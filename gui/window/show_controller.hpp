@@ -10,6 +10,9 @@
 namespace tact {
 
 void show_controller(Controller& controller, const CommandSender& commands, DashboardState& state);
+// Overruns and changes of the level have one row each, which counts; of other warnings those in a row have one, so that a
+// limit that is reached again and again does not push out the rest.
+void add_event(EventLine line, std::deque<EventLine>& events);
 // Adds a sample to the plots.
 void add_health(const HealthTopic& health, History& to);
 // Updates rates over records: lateness, samples per second. Another controller restarts them.
@@ -17,6 +20,7 @@ void add_rates(const Controller& controller, const Controller::Fresh& fresh, Das
 // Adds every servo cycle since the last frame.
 void add_cycles(const Controller& controller, RingCursor& place, DashboardState& to);
 void forget_rates(DashboardState& state);
+void forget_run(DashboardState& state);  // with its events and plots
 void add_load(const LoadTopic& load, const LevelsTopic* levels, History& to);
 
 }  // namespace tact

@@ -55,6 +55,10 @@ void RecordingReader::read_about(const std::filesystem::path& path) {
 
     cycles_ = RowStream<CycleTopic>(Hdf5Table::open(f, kCyclesGroup, cycle_columns(), sizeof(CycleTopic)));
     about_.cycles = cycles_.rows();
+    if (CycleTopic last{}; cycles_.last(last)) {
+        about_.begin_ns = cycles_.peek()->now_ns;
+        about_.end_ns = last.now_ns;
+    }
     for (std::uint32_t i = 0; i < about_.start.hands; ++i) {
         hand_[i] = RowStream<HandRow>(Hdf5Table::open(f, kHandGroups[i], hand_columns(), sizeof(HandRow)));
         if (hand_[i].rows() != about_.cycles)

@@ -38,6 +38,12 @@ public:
         return &block_[0];
     }
     void next() { ++at_; }
+    // False: there are no rows.
+    bool last(Row& row) const {
+        if (table_.rows() == 0) return false;
+        table_.read(table_.rows() - 1, 1, &row);
+        return true;
+    }
 
 private:
     Hdf5Table table_;
@@ -65,6 +71,7 @@ public:
         std::string controller;  // the program that computed the forces; "" in files from before 2026-11-24
         bool known = false;      // all of those are present
         std::uint64_t scene_checksum = 0, first_step = 0, cycles = 0, dropped = 0;
+        std::int64_t begin_ns = 0, end_ns = 0;  // times of the first and the last cycle
         RepairReport repair;
     };
     [[nodiscard]] const About& about() const { return about_; }

@@ -162,11 +162,15 @@ BoneKept keep_bone(const BoneKeeperSettings& settings, const std::function<void(
             watched.bone_refusal().empty() ? "the controller's scene has no bone" : watched.bone_refusal(),
             "start a drilling run, e.g. tact demo drill");
     BoneKeeper keeper(settings, watched, say);
-    while (watched.look(), !watched.ended() && !settings.stop()) {
+    const Instant begin = Monotonic::now();
+    const auto over = [&] {
+        return settings.stop() ||
+               (settings.seconds > 0.0 && to_s(Monotonic::now() - begin) >= settings.seconds);
+    };
+    while (watched.look(), !watched.ended() && !over()) {
         keeper.look();
         const Instant next = Monotonic::now() + kLookEvery;
-        while (Monotonic::now() < next && !settings.stop() && (watched.look(), !watched.ended()))
-            sleep_a_turn();
+        while (Monotonic::now() < next && !over() && (watched.look(), !watched.ended())) sleep_a_turn();
     }
     return keeper.end();
 }

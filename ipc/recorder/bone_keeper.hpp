@@ -5,7 +5,7 @@
 // Strokes   bricks are written with the stroke that changed them. A keeper that gets no time for more than the pause
 //           between two strokes takes both for one.
 // File      made with the first brick. A full disk is reported, and writing goes on when there is space.
-// Ends      when the controller ends, or when stop() returns true
+// Ends      when the controller ends, after `seconds`, or when stop() returns true
 // Thread    one; sleeps between rounds
 // Errors    StartupError
 #pragma once
@@ -24,7 +24,8 @@ struct BoneKeeperSettings {
     std::filesystem::path
         resumed;  // file that the controller started with; empty: none. Its content comes first.
     std::string session = "default";
-    double wait_s = 0.0;  // for a controller; 0: no limit
+    double wait_s = 0.0;   // for a controller; 0: no limit
+    double seconds = 0.0;  // then it ends; 0: with the controller
     std::function<bool()> stop = [] { return false; };
 };
 

@@ -16,28 +16,39 @@ constexpr Duration kBatch = std::chrono::milliseconds(250);
 constexpr std::uint64_t kFreeBytesLeast = std::uint64_t{64} << 20U;
 constexpr const char* kPrefix = "flight-";
 
-std::string name_of_now() {
+constexpr const char* kSuffix[] = {"", "-overrun", "-mark", "-fault"};  // by FlightCause
+
+std::string name_of_now(FlightCause cause) {
     timespec ts{};
     clock_gettime(CLOCK_REALTIME, &ts);
     tm utc{};
     gmtime_r(&ts.tv_sec, &utc);
-    char text[64];
-    std::snprintf(text, sizeof text, "%s%04d%02d%02dT%02d%02d%02d.%03ldZ.h5", kPrefix, utc.tm_year + 1900,
-                  utc.tm_mon + 1, utc.tm_mday, utc.tm_hour, utc.tm_min, utc.tm_sec, ts.tv_nsec / 1'000'000);
+    char text[80];
+    std::snprintf(text, sizeof text, "%s%04d%02d%02dT%02d%02d%02d.%03ldZ%s.h5", kPrefix, utc.tm_year + 1900,
+                  utc.tm_mon + 1, utc.tm_mday, utc.tm_hour, utc.tm_min, utc.tm_sec, ts.tv_nsec / 1'000'000,
+                  kSuffix[static_cast<std::size_t>(cause)]);
     return text;
 }
 
-// Names contain the time and have the same length, so they sort by time.
+// None: another file. Recordings from before 2026-11-28 name no cause.
+std::optional<FlightCause> cause_of_name(const std::string& name) {
+    constexpr std::size_t kStem = 27;  // flight-YYYYMMDDTHHMMSS.mmmZ
+    constexpr std::string_view kEnding = ".h5";
+    if (name.size() < kStem + kEnding.size() || name.rfind(kPrefix, 0) != 0 || name[kStem - 1] != 'Z' ||
+        name.substr(name.size() - kEnding.size()) != kEnding)
+        return std::nullopt;
+    const std::string suffix = name.substr(kStem, name.size() - kStem - kEnding.size());
+    for (std::size_t i = 0; i < std::size(kSuffix); ++i)
+        if (suffix == kSuffix[i]) return static_cast<FlightCause>(i);
+    return std::nullopt;
+}
+
 void remove_old(const std::filesystem::path& folder, std::size_t files_max) {
-    std::vector<std::filesystem::path> mine;
-    for (const auto& entry : std::filesystem::directory_iterator(folder)) {
-        const std::string name = entry.path().filename().string();
-        if (name.size() == name_of_now().size() && name.rfind(kPrefix, 0) == 0 &&
-            entry.path().extension() == ".h5")
-            mine.push_back(entry.path());
-    }
-    std::sort(mine.begin(), mine.end());
-    for (std::size_t i = 0; i + files_max < mine.size(); ++i) std::filesystem::remove(mine[i]);
+    std::vector<std::string> names;
+    for (const auto& entry : std::filesystem::directory_iterator(folder))
+        names.push_back(entry.path().filename().string());
+    for (const std::string& name : surplus_flights(std::move(names), files_max))
+        std::filesystem::remove(folder / name);
 }
 
 class Flight {
@@ -71,10 +82,10 @@ public:
                    (settings_.seconds > 0.0 && to_s(Monotonic::now() - begin) >= settings_.seconds);
             const Instant now = Monotonic::now();
             drain.take(batch, to_ns(now));
-            if (settings_.save()) want("requested", now);
+            if (settings_.save()) want({FlightCause::request, "requested"}, now);
             if (last || now - turned >= kBatch) {
                 turned = now;
-                if (const std::string cause = cause_in(batch); !cause.empty()) want(cause, now);
+                want(reason_in(batch), now);
                 tape_.add(std::move(batch));
                 batch = {};
                 if (request_ && (last || now >= request_->at)) save(now);
@@ -87,33 +98,35 @@ public:
 
 private:
     struct Request {
-        std::string cause;
+        FlightReason reason;
         Instant at;
     };
 
-    // A person's request is always accepted.
-    void want(const std::string& cause, Instant now) {
-        if (request_) return;
-        const bool person = cause == "requested" || cause == command_kind_text(CommandKind::mark);
-        if (!person && saved_at_ && now - *saved_at_ < settings_.length) return;
-        request_ = {cause, now + settings_.after};
+    // A more important reason takes over a file that is still to be written.
+    void want(const FlightReason& reason, Instant now) {
+        if (reason.cause == FlightCause::none || (request_ && request_->reason.cause >= reason.cause)) return;
+        if (reason.cause == FlightCause::overrun && saved_at_ &&
+            now - *saved_at_ < std::max(settings_.length, kOverrunEvery))
+            return;
+        request_ = {reason, now + settings_.after};
     }
 
     void save(Instant now) {
         const Request request = *request_;
         request_.reset();
         saved_at_ = now;
-        const std::filesystem::path path = settings_.folder / name_of_now();
+        const std::filesystem::path path = settings_.folder / name_of_now(request.reason.cause);
         try {
             if (disk_nearly_full(settings_.folder, kFreeBytesLeast + tape_.bytes()))
                 throw StartupError("writing '" + path.string() + "'", "the disk is nearly full",
                                    "free disk space");
-            write(path, request.cause);
+            write(path, request.reason.text);
             remove_old(settings_.folder, settings_.files_max);
             ++outcome_.files;
             char seconds[32];
             std::snprintf(seconds, sizeof seconds, "%.1f s", tape_.length_s());
-            say_("saved the last " + std::string(seconds) + " to " + path.string() + ": " + request.cause);
+            say_("saved the last " + std::string(seconds) + " to " + path.string() + ": " +
+                 request.reason.text);
         } catch (const std::exception& e) {
             ++outcome_.failed;
             say_(e.what());
@@ -178,16 +191,32 @@ double FlightTape::length_s() const {
     return first == nullptr ? 0.0 : 1e-9 * static_cast<double>(last->now_ns - first->now_ns);
 }
 
-std::string cause_in(const Batch& batch) {
-    std::string overrun;
+FlightReason reason_in(const Batch& batch) {
+    FlightReason found;
+    const auto take = [&](FlightCause cause, const std::string& text) {
+        if (cause > found.cause) found = {cause, text};
+    };
     for (const EventTopic& e : batch.events) {
         const auto code = static_cast<EventCode>(e.code);
-        if (code == EventCode::fault_latched) return event_text(e);
-        if (code == EventCode::command_done && e.a == static_cast<double>(CommandKind::mark))
-            return command_kind_text(CommandKind::mark);
-        if (code == EventCode::overrun && overrun.empty()) overrun = event_text(e);
+        if (code == EventCode::fault_latched)
+            take(FlightCause::fault, event_text(e));
+        else if (code == EventCode::command_done && e.a == static_cast<double>(CommandKind::mark))
+            take(FlightCause::request, command_kind_text(CommandKind::mark));
+        else if (code == EventCode::overrun)
+            take(FlightCause::overrun, event_text(e));
     }
-    return overrun;
+    return found;
+}
+
+// Names contain the time, so they sort by time.
+std::vector<std::string> surplus_flights(std::vector<std::string> names, std::size_t files_max) {
+    std::vector<std::pair<FlightCause, std::string>> mine;
+    for (std::string& name : names)
+        if (const auto cause = cause_of_name(name)) mine.emplace_back(*cause, std::move(name));
+    std::sort(mine.begin(), mine.end());
+    std::vector<std::string> surplus;
+    for (std::size_t i = 0; i + files_max < mine.size(); ++i) surplus.push_back(mine[i].second);
+    return surplus;
 }
 
 FlightOutcome fly(const FlightSettings& settings, const std::function<void(const std::string&)>& say) {

@@ -3,9 +3,10 @@
 //
 // Memory   `length` of batches, or `bytes_max` when a fast loop needs more; never more
 // Written  at a fault, an overrun, a command "mark" (the window's key) or save(); `after` later, so that the
-//          consequences are in the file too. A cause within `length` of the previous one is mostly in that
-//          file, and creates no new one.
-// Kept     the newest `files_max` files in the folder; older ones are removed
+//          consequences are in the file too
+// Rate     a fault or a person's request always creates a file; overruns create one in kOverrunEvery at most
+// Kept     `files_max` files in the folder. Of more, those of overruns are removed first, then those that a person
+//          requested, then those of faults; of each the oldest
 // Thread   one
 // Errors   StartupError if the folder is unusable; a file that cannot be written is reported, and recording
 //          continues
@@ -17,6 +18,7 @@
 #include <functional>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "ipc/base/clock.hpp"
 #include "ipc/recorder/drain.hpp"
@@ -40,8 +42,18 @@ private:
     std::deque<Batch> batches_;
 };
 
-// The reason to save a batch; empty: none.
-[[nodiscard]] std::string cause_in(const Batch& batch);
+// Why a batch is saved, in the order of importance.
+enum class FlightCause : std::uint8_t { none, overrun, request, fault };
+struct FlightReason {
+    FlightCause cause = FlightCause::none;
+    std::string text;
+};
+// The most important one in a batch.
+[[nodiscard]] FlightReason reason_in(const Batch& batch);
+inline constexpr Duration kOverrunEvery = std::chrono::minutes(10);
+
+// Which of the names in a folder to remove, so that files_max recordings are left. Other names are not touched.
+[[nodiscard]] std::vector<std::string> surplus_flights(std::vector<std::string> names, std::size_t files_max);
 
 struct FlightSettings {
     std::filesystem::path folder;

@@ -131,6 +131,7 @@ int keep_flights(Requests& w) {
 int keep_drilled_bone(Requests& w) {
     w.bone.session = w.settings.session;
     w.bone.wait_s = w.settings.wait_s;
+    w.bone.seconds = w.settings.seconds;
     w.bone.stop = [] { return stop_asked != 0; };
     const BoneKept kept = keep_bone(w.bone, [&](const std::string& text) {
         if (!w.quiet) std::fprintf(stderr, "tact-record: %s\n", text.c_str());

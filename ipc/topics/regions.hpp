@@ -20,6 +20,7 @@
 #include "ipc/topics/mark.hpp"
 #include "ipc/topics/record.hpp"
 #include "ipc/topics/recorders.hpp"
+#include "ipc/topics/replay.hpp"
 #include "ipc/topics/shapes.hpp"
 #include "ipc/topics/tool.hpp"
 #include "ipc/topics/touch.hpp"
@@ -45,6 +46,8 @@ struct RtRegion {
     Latest<DisplayTopic> picture;
     Latest<RecordersTopic> recorders;
     Latest<MarkTopic> mark;
+    Latest<ReplayTopic> replay;  // of tact-replay alone
+    Latest<ReplayMarks> replay_marks;
     Ring<EventTopic, 1024> events;
     Ring<TraceTopic, 16384> trace;
     // For recordings. At 1 kHz they hold half a minute.
@@ -57,18 +60,20 @@ struct RtRegion {
     char scene_path[512];  // of the loaded scene, ends with 0; written before ready
     std::uint64_t scene_checksum;
     std::uint64_t reserved[7];  // zero
-    using Topics = TopicList<ToolTopic, BodiesTopic, ShapesTopic, TouchTopic, DrillTopic, HeadTopic,
-                             TrackerTopic, DevicesTopic, HealthTopic, LatenessTopic, LevelsTopic,
-                             DisplayTopic, RecordersTopic, MarkTopic, EventTopic, TraceTopic, StartTopic,
-                             CycleTopic, HandTopic, MailboxTopic, ReportTopic, RunText>;
+    using Topics =
+        TopicList<ToolTopic, BodiesTopic, ShapesTopic, TouchTopic, DrillTopic, HeadTopic, TrackerTopic,
+                  DevicesTopic, HealthTopic, LatenessTopic, LevelsTopic, DisplayTopic, RecordersTopic,
+                  MarkTopic, ReplayTopic, ReplayMarks, EventTopic, TraceTopic, StartTopic, CycleTopic,
+                  HandTopic, MailboxTopic, ReportTopic, RunText>;
 };
 
 struct GuiRegion {
     static constexpr char kName[] = "tact.gui";
     Latest<LoadTopic> load;
     Latest<FramesTopic> frames;
+    Latest<TimelineTopic> timeline;  // for tact-replay
     CommandQueue commands;
-    using Topics = TopicList<LoadTopic, FramesTopic, CommandTopic>;
+    using Topics = TopicList<LoadTopic, FramesTopic, TimelineTopic, CommandTopic>;
 };
 
 }  // namespace tact

@@ -4,15 +4,14 @@
 //       1  error
 //       2  wrong usage
 //       3  not bit-exact, or the recording lacks data that an exact replay needs (reported)
-#include <poll.h>
 #include <signal.h>
 #include <unistd.h>
 
 #include <CLI/CLI.hpp>
 #include <cstdio>
 #include <exception>
+#include <memory>
 #include <nlohmann/json.hpp>
-#include <optional>
 #include <string>
 
 #include <spdlog/sinks/stdout_color_sinks.h>
@@ -20,9 +19,8 @@
 
 #include "ipc/base/error.hpp"
 #include "ipc/manual/manual.hpp"
-#include "ipc/shm/link.hpp"
 #include "ipc/version/version.hpp"
-#include "rt/replay/replay.hpp"
+#include "rt/replay/replay_player.hpp"
 
 namespace {
 
@@ -34,60 +32,11 @@ extern "C" void on_stop(int) { stop_asked = 1; }
 struct Requests {
     ReplaySettings settings;
     std::string session = "default";
-    bool show = false, json = false;
-    double from_s = 0.0, speed = 1.0, wait_s = 30.0;
+    bool show = false, json = false, can_run = false;
+    double from_s = 0.0, speed = 1.0;
 };
 
-// Shows the replay in a window: serves the region over the link as a controller does.
-class Stage {
-public:
-    Stage(const Requests& w, Replay& replay)
-        : link_(w.session, replay.region().fd(), replay.shared_fd()), speed_(w.speed), from_s_(w.from_s) {
-        const Instant begin = Monotonic::now();
-        while (!attached_ && stop_asked == 0 && to_s(Monotonic::now() - begin) < w.wait_s) attend(20);
-        if (!attached_ && stop_asked == 0)
-            throw StartupError("showing a replay in session '" + w.session + "'", "no window attached",
-                               "start one with tact replay --show, or tact-gui --session " + w.session);
-        if (const RecordedStep* const first = replay.upcoming()) {
-            begin_ns_ = first->cycle.now_ns;
-            begun_ = Monotonic::now();
-            replay.shift_by(begun_ - instant_from_ns(begin_ns_));
-        }
-    }
-    // False: the window has closed.
-    bool wait_for(const CycleTopic& next) {
-        const double at_s = static_cast<double>(next.now_ns - begin_ns_) * 1e-9 - from_s_;
-        if (at_s < 0.0) {
-            begun_ = Monotonic::now();
-            return attached_;
-        }
-        if (Monotonic::now() - served_ > std::chrono::milliseconds(10)) attend(0);
-        const Instant due = begun_ + Duration(static_cast<std::int64_t>(1e9 * at_s / speed_));
-        while (attached_ && stop_asked == 0 && due - Monotonic::now() > std::chrono::milliseconds(1))
-            attend(1);
-        return attached_;
-    }
-
-    // Keeps the last frame in the window until it is closed.
-    void hold() {
-        while (attached_ && stop_asked == 0) attend(50);
-    }
-
-private:
-    void attend(int timeout_ms) {
-        const LinkServer::News news = link_.poll(timeout_ms);
-        if (news.gui_arrived) attached_ = true;
-        if (news.gui_left) attached_ = false;
-        served_ = Monotonic::now();
-    }
-    LinkServer link_;
-    double speed_, from_s_;
-    bool attached_ = false;
-    std::int64_t begin_ns_ = 0;
-    Instant begun_{}, served_{};
-};
-
-void print_json(const Requests& w, const Replay& replay) {
+void print_json(const Requests& w, const Replay& replay, const ReplayPlayer* player) {
     const ReplayResult& r = replay.result();
     nlohmann::json j{{"file", w.settings.recording.string()},
                      {"steps", r.steps},
@@ -103,6 +52,9 @@ void print_json(const Requests& w, const Replay& replay) {
         j["first_difference"] = {{"step", r.first->step},         {"cycle", r.first->cycle},
                                  {"hand", r.first->hand},         {"what", r.first->what},
                                  {"recorded", r.first->recorded}, {"replayed", r.first->replayed}};
+    j["shown"] = nullptr;
+    if (player != nullptr)
+        j["shown"] = {{"at_s", player->at_s()}, {"playing", player->playing()}, {"seeks", player->seeks()}};
     std::printf("%s\n", j.dump().c_str());
 }
 
@@ -130,33 +82,46 @@ void print_words(const Replay& replay) {
         d.replayed[2]);
 }
 
+// player: of a replay that was shown; null: none was.
+void print(const Requests& w, const Replay& replay, const ReplayPlayer* player) {
+    if (w.json)
+        print_json(w, replay, player);
+    else
+        print_words(replay);
+}
+
 int run(const Requests& w) {
-    Replay replay(w.settings);
-    const RecordingReader::About& about = replay.recording().about();
+    auto replay = std::make_unique<Replay>(w.settings);
+    const RecordingReader::About& about = replay->recording().about();
     if (about.repair.needed) spdlog::warn("{}", repair_text(w.settings.recording, about.repair));
     if (about.dropped > 0) spdlog::warn("the recorder lost {} records", about.dropped);
-    if (!replay.obstacle().empty()) spdlog::warn("this replay cannot be exact: {}", replay.obstacle());
-    std::optional<Stage> stage;
-    if (w.show) stage.emplace(w, replay);
+    if (!replay->obstacle().empty()) spdlog::warn("this replay cannot be exact: {}", replay->obstacle());
+    if (w.show) {
+        ReplayPlayer player({.replay = w.settings,
+                             .session = w.session,
+                             .speed = w.speed,
+                             .from_s = w.from_s,
+                             .can_run = w.can_run},
+                            std::move(replay));
+        player.run([] { return stop_asked != 0; });
+        const bool same = !player.differed();
+        print(w, player.replay(), &player);
+        return same && player.replay().obstacle().empty() ? 0 : 3;
+    }
     const bool terminal = isatty(STDERR_FILENO) == 1;
     Instant said = Monotonic::now();
-    while (const RecordedStep* const next = replay.upcoming()) {
-        if (stop_asked != 0 || (stage && !stage->wait_for(next->cycle))) break;
-        replay.do_step();
+    while (replay->upcoming() != nullptr && stop_asked == 0) {
+        replay->do_step();
         if (terminal && Monotonic::now() - said > std::chrono::milliseconds(500)) {
             said = Monotonic::now();
             std::fprintf(stderr, "\r%llu of %llu steps ",
-                         static_cast<unsigned long long>(replay.result().steps),
+                         static_cast<unsigned long long>(replay->result().steps),
                          static_cast<unsigned long long>(about.cycles));
         }
     }
     if (terminal) std::fprintf(stderr, "\r");
-    if (stage) stage->hold();
-    if (w.json)
-        print_json(w, replay);
-    else
-        print_words(replay);
-    return replay.result().different == 0 && replay.obstacle().empty() ? 0 : 3;
+    print(w, *replay, nullptr);
+    return replay->result().different == 0 && replay->obstacle().empty() ? 0 : 3;
 }
 
 }  // namespace
@@ -183,6 +148,9 @@ int main(int argc, char** argv) {
         ->needs(show);
     app.add_option("--speed", w.speed, "Speed of the display relative to the recording")
         ->check(CLI::Range(0.01, 100.0))
+        ->needs(show);
+    app.add_flag("--can-run", w.can_run,
+                 "The window offers a live run from the moment shown; tact replay then starts it")
         ->needs(show);
     app.add_flag("--json", w.json, "Print the result as JSON");
     app.footer(

@@ -144,19 +144,53 @@ TEST(FlightTape, only_a_fault_an_overrun_and_a_mark_are_causes) {
     const auto cause_of = [&] {
         Batch batch;
         drain.take(batch, 0);
-        return record::cause_in(batch);
+        return record::reason_in(batch).cause;
     };
     loop.active();
     loop.order(CommandKind::set_goal_hz, 900.0);
     loop.cycles(300);
-    EXPECT_EQ(cause_of(), "");
+    EXPECT_EQ(cause_of(), record::FlightCause::none);
     loop.order(CommandKind::mark);
     loop.cycles(2);
-    EXPECT_EQ(cause_of(), "mark");
+    EXPECT_EQ(cause_of(), record::FlightCause::request);
     loop.device_.inject(SimFault::unplugged);
     loop.cycles(50);
     EXPECT_EQ(loop.state(), RunState::fault);
-    EXPECT_NE(cause_of(), "");
+    EXPECT_EQ(cause_of(), record::FlightCause::fault);
+}
+
+TEST(FlightTape, the_gravest_reason_of_a_batch_counts) {
+    Batch batch;
+    const auto add = [&](EventCode code, double a) {
+        EventTopic e{};
+        e.code = static_cast<std::uint16_t>(code);
+        e.a = a;
+        batch.events.push_back(e);
+        return record::reason_in(batch);
+    };
+    EXPECT_EQ(add(EventCode::overrun, 1200.0).cause, record::FlightCause::overrun);
+    EXPECT_EQ(add(EventCode::command_done, static_cast<double>(CommandKind::mark)).cause,
+              record::FlightCause::request);
+    const record::FlightReason fault = add(EventCode::fault_latched, 1.0);
+    EXPECT_EQ(fault.cause, record::FlightCause::fault);
+    EXPECT_EQ(add(EventCode::overrun, 9.0).text, fault.text);
+}
+
+TEST(FlightFiles, of_overruns_go_before_those_of_marks_and_those_before_those_of_faults) {
+    const auto at = [](int second, const char* suffix) {
+        char text[64];
+        std::snprintf(text, sizeof text, "flight-20261128T0830%02d.000Z%s.h5", second, suffix);
+        return std::string(text);
+    };
+    const std::vector<std::string> names{at(1, "-fault"),   at(2, "-mark"),
+                                         at(3, "-overrun"), at(4, "-overrun"),
+                                         at(5, "-fault"),   at(6, "-overrun"),
+                                         at(0, ""),         "flight-plan.h5",
+                                         "notes.txt",       "flight-20261128T083007.000Z-other.h5"};
+    EXPECT_TRUE(record::surplus_flights(names, 7).empty());
+    EXPECT_EQ(record::surplus_flights(names, 5), (std::vector{at(0, ""), at(3, "-overrun")}));
+    EXPECT_EQ(record::surplus_flights(names, 2), (std::vector{at(0, ""), at(3, "-overrun"), at(4, "-overrun"),
+                                                              at(6, "-overrun"), at(2, "-mark")}));
 }
 
 }  // namespace

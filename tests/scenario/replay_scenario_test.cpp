@@ -4,7 +4,7 @@
 
 #include "ipc/record/recording_reader.hpp"
 #include "ipc/recorder/recorder.hpp"
-#include "rt/replay/replay.hpp"
+#include "rt/replay/replay_player.hpp"
 #include "tests/scenario/rig.hpp"
 
 namespace tact::scenario {
@@ -135,6 +135,129 @@ TEST(ReplayScenario, a_changed_sample_is_found_at_its_step) {
     EXPECT_EQ(r.first->step, changed);
     EXPECT_EQ(r.first->what, "force of the model");
     EXPECT_GT(r.different, 0U);
+}
+
+// A window without a picture, which moves a replay.
+class PlayerWindow {
+public:
+    explicit PlayerWindow(std::string session) : session_(std::move(session)), link_(session_, own_.fd()) {
+        own_.mark_ready();
+    }
+    ReplayTopic look() {
+        LinkClient::News news = link_.poll();
+        std::string refusal;
+        if (news.left) ++left_, region_ = {};
+        if (news.arrived) region_ = MappedRegion<RtRegion>::map(std::move(news.rt_fd), refusal);
+        if (!region_.empty()) static_cast<void>(region_->replay.read(newest_));
+        return newest_;
+    }
+    // True once it is so, within a while.
+    template <class Condition>
+    bool waits_for(Condition condition) {
+        const Instant begin = Monotonic::now();
+        while (Monotonic::now() - begin < std::chrono::seconds(60)) {
+            if (const ReplayTopic t = look(); attached() && condition(t)) return true;
+            std::this_thread::sleep_for(std::chrono::milliseconds(2));
+        }
+        return false;
+    }
+    void request(std::uint64_t seeks, double seek_s, std::uint64_t step, bool playing) {
+        TimelineTopic t{};
+        t.speed = 1.0;
+        t.seeks = seeks;
+        t.seek_s = seek_s;
+        t.seek_step = step;
+        t.playing = playing ? 1 : 0;
+        own_->timeline.publish(t);
+    }
+    [[nodiscard]] bool attached() const { return !region_.empty(); }
+    [[nodiscard]] const RtRegion& region() const { return *region_; }
+    [[nodiscard]] int left() const { return left_; }
+
+private:
+    std::string session_;
+    OwnedRegion<GuiRegion> own_;
+    LinkClient link_;
+    MappedRegion<RtRegion> region_;
+    ReplayTopic newest_{};
+    int left_ = 0;
+};
+
+TEST(ReplayScenario, a_window_pauses_steps_and_seeks_back_and_forth) {
+    const Rig rig;
+    Recording recording(rig);
+    {
+        Controller rt(rig, {"--arm"});
+        Watch watch(rig);
+        ASSERT_TRUE(watch.attach()) << rt.said();
+        ASSERT_TRUE(watch.cycles_pass(2500));
+        rt.child().stop();
+        ASSERT_TRUE(rt.child().wait(std::chrono::minutes(1)));
+    }
+    const record::RecorderOutcome& outcome = recording.join();
+    ASSERT_EQ(outcome.progress.dropped, 0U);
+    // What a window must show at a step: the tool's place after so many steps of a replay of its own.
+    const auto tool_after = [&](std::uint64_t steps) {
+        Replay replay({.recording = recording.file(), .scene = {}});
+        while (replay.result().steps < steps) replay.do_step();
+        ToolTopic tool{};
+        EXPECT_TRUE(replay.region()->tool[0].read(tool));
+        return tool;
+    };
+    std::atomic<bool> stop{false};
+    const std::string session = rig.session() + "r";
+    std::thread player_thread([&] {
+        const ReplaySettings settings{.recording = recording.file(), .scene = {}};
+        ReplayPlayer player({.replay = settings, .session = session}, std::make_unique<Replay>(settings));
+        player.run([&] { return stop.load(); });
+        EXPECT_FALSE(player.differed());
+    });
+    PlayerWindow window(session);
+    const auto act = [](const ReplayTopic& t) { return static_cast<ReplayAct>(t.act); };
+    EXPECT_TRUE(
+        window.waits_for([&](const ReplayTopic& t) { return act(t) == ReplayAct::playing && t.at_s > 0.3; }));
+    window.request(0, 0.0, 0, false);
+    ASSERT_TRUE(window.waits_for([&](const ReplayTopic& t) { return act(t) == ReplayAct::paused; }));
+    EXPECT_NEAR(window.look().duration_s, 1e-3 * static_cast<double>(outcome.progress.cycles), 1.5);
+    EXPECT_EQ(window.look().steps, outcome.progress.cycles);
+    const std::uint64_t here = window.look().step;
+    std::this_thread::sleep_for(std::chrono::milliseconds(100));
+    EXPECT_EQ(window.look().step, here);  // it waits
+    std::uint64_t seeks = 0;
+    const auto shows = [&](std::uint64_t step) {
+        window.request(++seeks, 0.0, step, false);
+        ASSERT_TRUE(window.waits_for([&](const ReplayTopic& t) { return t.seeks == seeks; })) << step;
+        const ReplayTopic t = window.look();
+        EXPECT_EQ(t.step, step);
+        EXPECT_EQ(act(t), ReplayAct::paused);
+        EXPECT_EQ(t.exact, 1);
+        ToolTopic is{};
+        ASSERT_TRUE(window.region().tool[0].read(is));
+        const ToolTopic was = tool_after(step);
+        EXPECT_EQ(std::memcmp(is.pos_world_m, was.pos_world_m, sizeof is.pos_world_m), 0) << step;
+        EXPECT_EQ(is.cycle, was.cycle);
+    };
+    shows(here + 1);
+    EXPECT_EQ(window.left(), 0);  // forward is the same replay
+    shows(here);
+    EXPECT_EQ(window.left(), 1);
+    shows(here / 2);
+    shows(here + 700);
+    // A time: the last step that is not after it.
+    window.request(++seeks, 1.0, 0, false);
+    ASSERT_TRUE(window.waits_for([&](const ReplayTopic& t) { return t.seeks == seeks; }));
+    EXPECT_LE(window.look().at_s, 1.0);
+    EXPECT_GT(window.look().at_s, 0.99);
+    // To the end, and on from there nothing plays.
+    window.request(++seeks, 1e6, 0, true);
+    ASSERT_TRUE(window.waits_for([&](const ReplayTopic& t) { return act(t) == ReplayAct::ended; }));
+    EXPECT_EQ(window.look().step, outcome.progress.cycles);
+    // Impossible requests change nothing.
+    window.request(++seeks, std::nan(""), 0, true);
+    std::this_thread::sleep_for(std::chrono::milliseconds(100));
+    EXPECT_EQ(act(window.look()), ReplayAct::ended);
+    stop = true;
+    player_thread.join();
 }
 
 }  // namespace

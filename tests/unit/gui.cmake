@@ -4,7 +4,8 @@ if(TACT_GUI)
     tact_tests(gui_dashboard_tests SOURCES
             unit/gui_plot_series_test.cpp unit/gui_dashboard_test.cpp
             unit/gui_traces_test.cpp unit/gui_traces_panel_test.cpp unit/gui_trace_export_test.cpp
-        USES gui_dashboard gui_window gui_docking topics base)
+            unit/gui_timeline_test.cpp unit/gui_events_test.cpp
+        USES gui_dashboard gui_window gui_docking gui_link topics base)
     tact_test(unit/gui_field_card_test.cpp USES gui_window gui_field gui_docking gui_dashboard topics base)
     tact_test(unit/gui_hours_test.cpp USES gui_window gui_docking gui_dashboard topics shm base TIMEOUT 300)
     tact_tests(gui_drilling_tests SOURCES

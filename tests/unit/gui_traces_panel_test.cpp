@@ -35,7 +35,7 @@ protected:
     }
     ImVec2 on_lanes(float share) {
         const Layout l = layout_for(dashboard_.theme, 1280.0F, 720.0F,
-                                    middle_card(dashboard_.state, dashboard_.panels), true);
+                                    middle_card(dashboard_.state, dashboard_.panels), {.traces = true});
         return {l.plots.x + dashboard_.theme.px(60.0F) + share * (l.plots.width - dashboard_.theme.px(80.0F)),
                 l.plots.y + 0.7F * l.plots.height};
     }
@@ -46,13 +46,13 @@ protected:
 
 TEST_F(TracesPanel, replace_the_plots_with_a_higher_strip) {
     const float before =
-        layout_for(dashboard_.theme, 1280.0F, 720.0F, middle_card(dashboard_.state, dashboard_.panels), false)
+        layout_for(dashboard_.theme, 1280.0F, 720.0F, middle_card(dashboard_.state, dashboard_.panels), {})
             .plots.height;
     open();
-    EXPECT_GT(
-        layout_for(dashboard_.theme, 1280.0F, 720.0F, middle_card(dashboard_.state, dashboard_.panels), true)
-            .plots.height,
-        1.4F * before);
+    EXPECT_GT(layout_for(dashboard_.theme, 1280.0F, 720.0F, middle_card(dashboard_.state, dashboard_.panels),
+                         {.traces = true})
+                  .plots.height,
+              1.4F * before);
     dashboard_.click(kCard, "Load and detail");
     EXPECT_EQ(dashboard_.state.strip, 0);
 }
@@ -104,8 +104,8 @@ TEST_F(TracesPanel, dragging_moves_the_cursor_under_the_mouse_or_else_the_traces
     dashboard_.click(kCard, "Cursors");
     EXPECT_TRUE(scope().cursors);
     const double begun_s = scope().span_s();
-    const Layout l =
-        layout_for(dashboard_.theme, 1280.0F, 720.0F, middle_card(dashboard_.state, dashboard_.panels), true);
+    const Layout l = layout_for(dashboard_.theme, 1280.0F, 720.0F,
+                                middle_card(dashboard_.state, dashboard_.panels), {.traces = true});
     // The lanes begin to the right of their numbers, which are 44 wide, inside the card's padding.
     const float x0 = l.plots.x + 10.0F + 44.0F, x1 = l.plots.x + l.plots.width - 10.0F - 1.0F;
     const float y = l.plots.y + 0.7F * l.plots.height;

@@ -10,6 +10,7 @@ tact_tests(govern_tests SOURCES
         unit/govern_governor_test.cpp unit/govern_display_test.cpp unit/govern_level_fit_test.cpp
         unit/govern_rate_hold_test.cpp unit/govern_replay_test.cpp
     USES base govern SYSTEM rapidcheck)
+tact_test(unit/replay_marks_test.cpp USES base topics replay)
 tact_test(unit/hal_sim_test.cpp USES base hal)
 tact_tests(arm_tests SOURCES
         unit/base_pacer_test.cpp unit/base_motor_heat_test.cpp unit/hal_arm_kinematics_test.cpp

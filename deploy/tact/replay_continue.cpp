@@ -1,0 +1,81 @@
+#include "deploy/tact/replay_continue.hpp"
+
+#include <cstdio>
+#include <nlohmann/json.hpp>
+
+#include "deploy/tact/child.hpp"
+#include "deploy/tact/files.hpp"
+#include "deploy/tact/observer.hpp"
+#include "deploy/tact/systems.hpp"
+#include "ipc/base/error.hpp"
+#include "ipc/base/state_folder.hpp"
+#include "ipc/scene/file/scene_meta.hpp"
+
+namespace tact::launch {
+namespace {
+
+namespace fs = std::filesystem;
+constexpr auto kKeeperLimit = std::chrono::seconds(60);
+
+// A name without a file of either kind.
+fs::path free_stem(const fs::path& folder, const ReplayTopic& replay) {
+    char at[32];
+    std::snprintf(at, sizeof at, "-%.3fs", replay.at_s);
+    const std::string name =
+        fs::path(field_text(replay.name, sizeof replay.name)).stem().filename().string() + at;
+    for (int i = 1;; ++i) {
+        const fs::path stem = folder / (i == 1 ? name : name + "-" + std::to_string(i));
+        if (!fs::exists(stem.string() + ".json") && !fs::exists(stem.string() + ".bone")) return stem;
+    }
+}
+
+// The keeper copies what changed since the run began, and ends.
+fs::path keep_bone(const fs::path& file, const std::string& session) {
+    ChildSettings s;
+    s.arguments = {"--bone", file.string(), "--session", session,  "--seconds",
+                   "0.3",    "--wait",      "10",        "--quiet"};
+    Child keeper("tact-record", find_program("tact-record"), s);
+    const auto& ending = keeper.wait(kKeeperLimit);
+    if (!ending || !ending->clean())
+        throw StartupError("keeping the bone of the replay in " + file.string(), "tact-record failed",
+                           "see its message above");
+    return fs::exists(file) ? file : fs::path();
+}
+
+}  // namespace
+
+ReplayMoment keep_moment(const RtRegion& region, const ReplayTopic& replay, const std::string& session) {
+    const fs::path folder = state_folder();
+    if (folder.empty())
+        throw StartupError("continuing from a replay", "neither XDG_STATE_HOME nor HOME is set",
+                           "set one of them to a writable folder");
+    std::error_code error;
+    fs::create_directories(folder / "from-replay", error);
+    if (error)
+        throw StartupError("creating the folder " + (folder / "from-replay").string(), error.message(),
+                           "make its parent folder writable");
+    const fs::path stem = free_stem(folder / "from-replay", replay);
+    ReplayMoment moment{.at_s = replay.at_s,
+                        .scene = field_text(region.scene_path, sizeof region.scene_path),
+                        .poses = {},
+                        .bone = {}};
+    const SceneFile scene = SceneFile::open(moment.scene);
+    nlohmann::json report = nlohmann::json::object();
+    system_of(scene).open_run(scene)->report(region, report);
+    if (report.contains("bodies") && !report["bodies"].empty()) {
+        moment.poses = stem.string() + ".json";
+        write_whole(moment.poses, nlohmann::json{{"bodies", report["bodies"]}}.dump(2) + "\n");
+    }
+    if (read_meta(scene).kind == SceneKind::drilling)
+        moment.bone = keep_bone(stem.string() + ".bone", session);
+    return moment;
+}
+
+std::vector<std::string> run_words(const ReplayMoment& moment) {
+    std::vector<std::string> words{"run", moment.scene.string()};
+    if (!moment.poses.empty()) words.insert(words.end(), {"--poses", moment.poses.string()});
+    if (!moment.bone.empty()) words.insert(words.end(), {"--resume", moment.bone.string()});
+    return words;
+}
+
+}  // namespace tact::launch
