@@ -1,6 +1,7 @@
 #include "deploy/tact/replay_continue.hpp"
 
 #include <cstdio>
+#include <memory>
 #include <nlohmann/json.hpp>
 
 #include "deploy/tact/child.hpp"
@@ -9,7 +10,6 @@
 #include "deploy/tact/systems.hpp"
 #include "ipc/base/error.hpp"
 #include "ipc/base/state_folder.hpp"
-#include "ipc/scene/file/scene_meta.hpp"
 
 namespace tact::launch {
 namespace {
@@ -29,11 +29,15 @@ fs::path free_stem(const fs::path& folder, const ReplayTopic& replay) {
     }
 }
 
-// The keeper copies what changed since the run began, and ends.
-fs::path keep_bone(const fs::path& file, const std::string& session) {
+// The keeper of the system, if it has one, copies what changed since the run began, and ends. Empty: nothing changed.
+fs::path keep_changes(SystemRun& run, const fs::path& file, const std::string& session) {
+    RunOptions options;
+    options.session = session;
+    options.keep = file;
     ChildSettings s;
-    s.arguments = {"--bone", file.string(), "--session", session,  "--seconds",
-                   "0.3",    "--wait",      "10",        "--quiet"};
+    s.arguments = run.keeper_arguments(options);
+    if (s.arguments.empty()) return {};
+    s.arguments.insert(s.arguments.end(), {"--seconds", "0.3", "--wait", "10", "--quiet"});
     Child keeper("tact-record", find_program("tact-record"), s);
     const auto& ending = keeper.wait(kKeeperLimit);
     if (!ending || !ending->clean())
@@ -61,18 +65,18 @@ ReplayMoment keep_moment(const RtRegion& region, const ReplayTopic& replay, cons
                         .bone = {}};
     const SceneFile scene = SceneFile::open(moment.scene);
     nlohmann::json report = nlohmann::json::object();
-    system_of(scene).open_run(scene)->report(region, report);
+    const std::unique_ptr<SystemRun> run = system_of(scene).open_run(scene);
+    run->report(region, report);
     if (report.contains("bodies") && !report["bodies"].empty()) {
         moment.poses = stem.string() + ".json";
         write_whole(moment.poses, nlohmann::json{{"bodies", report["bodies"]}}.dump(2) + "\n");
     }
-    if (read_meta(scene).kind == SceneKind::drilling)
-        moment.bone = keep_bone(stem.string() + ".bone", session);
+    moment.bone = keep_changes(*run, stem.string() + ".bone", session);
     return moment;
 }
 
 std::vector<std::string> run_words(const ReplayMoment& moment) {
-    std::vector<std::string> words{"run", moment.scene.string()};
+    std::vector<std::string> words{"run", moment.scene.string(), "--disarmed"};
     if (!moment.poses.empty()) words.insert(words.end(), {"--poses", moment.poses.string()});
     if (!moment.bone.empty()) words.insert(words.end(), {"--resume", moment.bone.string()});
     return words;

@@ -9,7 +9,7 @@ namespace tact::launch {
 std::vector<std::string> controller_arguments(const std::filesystem::path& scene, const RunOptions& options,
                                               bool first) {
     std::vector<std::string> all{scene.string(), "--session", options.session};
-    if (first) all.emplace_back(options.gui ? "--arm-with-gui" : "--arm");
+    if (first && !options.disarmed) all.emplace_back(options.gui ? "--arm-with-gui" : "--arm");
     all.insert(all.end(), options.controller.begin(), options.controller.end());
     return all;
 }

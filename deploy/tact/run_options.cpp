@@ -173,6 +173,8 @@ void add_run_options(CLI::App& app, RunOptions& options) {
     app.add_option("--session", options.session, "Session name shared by the processes of the run")
         ->type_name("NAME")
         ->capture_default_str();
+    app.add_flag("--disarmed", options.disarmed,
+                 "Do not arm at the start: arm in the window, or with Ctrl+Enter there");
     app.add_flag("--quiet", options.quiet, "Do not print the table of rates");
 
     auto* const controller =

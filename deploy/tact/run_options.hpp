@@ -27,6 +27,7 @@ struct RunOptions {
     bool size_given = false;         // given on the command line
     std::filesystem::path programs;  // folder of tact-rt and tact-gui; empty: that of tact
     bool quiet = false;              // no table of rates
+    bool disarmed = false;           // a person arms the first scene too
     // Time from SIGTERM to SIGKILL; the window may be writing the screenshot.
     Duration grace = std::chrono::seconds(10);
     std::vector<std::string> controller;  // options of tact-rt, in order

@@ -103,7 +103,7 @@ private:
     PanelState state_;
     const std::int64_t first_ns_ = to_ns(Monotonic::now());
     double fps_max_ = 60.0;
-    Instant frame_at_{};          // this frame
+    Instant frame_at_{};  // this frame
     // OpenGL objects are destroyed before the window: members are destroyed in reverse order.
     PassClock passes_{PassClock::possible(window_.software())};
     Instant frames_published_{};

@@ -31,10 +31,10 @@ struct alignas(64) ReplayTopic {
     std::uint8_t exact;     // 1: every force so far is that of the recording, to the bit
     std::uint8_t whole;     // 1: the recording begins with the run
     std::uint8_t plays;     // 1: it plays, or will once the place is found
-    std::uint8_t can_run;  // 1: a live run can continue from here, started by `tact replay`
+    std::uint8_t can_run;   // 1: a live run can continue from here, started by `tact replay`
     std::uint8_t reserved[3];
-    std::uint64_t runs;  // TimelineTopic::runs of the last such request; it waits there
-    char name[64];  // of the recording's file, without its folder; ends with 0
+    std::uint64_t runs;        // TimelineTopic::runs of the last such request; it waits there
+    char name[64];             // of the recording's file, without its folder; ends with 0
     std::uint8_t padding[40];  // zero
 };
 static_assert(std::is_trivially_copyable_v<ReplayTopic> && sizeof(ReplayTopic) == 192);

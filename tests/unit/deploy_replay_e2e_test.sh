@@ -25,3 +25,24 @@ grep -q "every force is bit-exact" "$scratch/said" || fail "the displayed replay
 [ -s "$scratch/shown.png" ] || fail "the screenshot is missing"
 cat "$scratch/said"
 [ -z "${TACT_KEEP_PICTURE:-}" ] || cp "$scratch/shown.png" "$TACT_KEEP_PICTURE"
+
+# A person pauses the replay, and goes on live from that moment.
+command -v xdotool >/dev/null || { echo "xdotool is missing: not tried by hand"; exit 0; }
+export XDG_STATE_HOME=$scratch/state LIBGL_ALWAYS_SOFTWARE=1
+mkfifo "$scratch/display"
+Xvfb -displayfd 3 -screen 0 1280x800x24 3>"$scratch/display" 2>/dev/null &
+x=$!
+read -r number <"$scratch/display" || fail "Xvfb did not start"
+export DISPLAY=:$number
+"$bin/tact" replay "$scratch/run.h5" --show --session byhand --size 1280x800 >"$scratch/said" 2>&1 &
+replay=$!
+trap 'kill -INT $replay 2>/dev/null; wait $replay; kill $x; rm -rf "$scratch"' EXIT
+for _ in $(seq 300); do xdotool search --name "replay of run.h5" >/dev/null 2>&1 && break; sleep 0.1; done
+sleep 3
+xdotool mousemove 800 300 key space
+sleep 1
+xdotool mousemove 1230 558 click 1  # "Run from here"
+for _ in $(seq 300); do "$bin/tact" status 2>/dev/null | grep -q ready && break; sleep 0.1; done
+"$bin/tact" status 2>/dev/null | grep -q ready || fail "no live run, or it is armed: $("$bin/tact" status 2>&1)"
+grep -q "live from [0-9.]* s of the recording: tact run .* --disarmed --poses " "$scratch/said" || fail "the live run was not named"
+grep -o "live from .*" "$scratch/said"
