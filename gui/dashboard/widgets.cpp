@@ -97,8 +97,17 @@ void row(const Theme& theme, const char* what, const std::string& value, std::sp
 void choose(const Theme& theme, std::span<const char* const> words, int& chosen) {
     ImGui::PushStyleColor(ImGuiCol_HeaderHovered, colour::kPanelEdge);
     ImGui::PushStyleColor(ImGuiCol_HeaderActive, colour::kPanelEdge);
+    const float left = ImGui::GetCursorPosX(), right = left + ImGui::GetContentRegionAvail().x;
+    float x = left;
     for (std::size_t i = 0; i < words.size(); ++i) {
-        if (i > 0) ImGui::SameLine(0.0F, theme.px(10.0F));
+        // A word that would be cut begins a line.
+        x += ImGui::CalcTextSize(words[i]).x + theme.px(10.0F);
+        if (i > 0 && x - theme.px(10.0F) <= right) {
+            ImGui::SameLine(0.0F, theme.px(10.0F));
+        } else if (i > 0) {
+            ImGui::SetCursorPosX(left);
+            x = left + ImGui::CalcTextSize(words[i]).x + theme.px(10.0F);
+        }
         const bool on = chosen == static_cast<int>(i);
         ImGui::PushStyleColor(ImGuiCol_Text, on ? colour::kAccent : colour::kDim);
         if (ImGui::Selectable(words[i], false, 0, ImGui::CalcTextSize(words[i])))

@@ -68,7 +68,7 @@ void toggles(const Theme& theme, SceneToggles& t, bool residues_current) {
     ImGui::Checkbox("Frame times", &t.frame_times);
     ImGui::SameLine(third);
     ImGui::Checkbox("Smooth", &t.smooth_edges);
-    static constexpr std::array<const char*, 4> kMolecule{"trace", "tube", "sticks", "spheres"};
+    static constexpr std::array<const char*, 5> kMolecule{"trace", "tube", "sticks", "spheres", "cartoon"};
     static constexpr std::array<const char*, 4> kColouring{"chain", "element", "body", "fit"};
     static constexpr std::array<const char*, 3> kSurface{"glass", "solid", "wire"};
     const auto choice = [&](const char* what, std::span<const char* const> words, int& chosen) {

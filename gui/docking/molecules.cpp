@@ -17,7 +17,10 @@ constexpr Rgb8 kGhost{150, 156, 168};
 }  // namespace
 
 Molecules::Molecules(std::shared_ptr<const SceneContent> content, Programs& programs)
-    : content_(std::move(content)), programs_(programs), structures_(docking_of(*content_).bodies.size()) {
+    : content_(std::move(content)),
+      programs_(programs),
+      structures_(docking_of(*content_).bodies.size()),
+      folds_(structures_.size()) {
     for (const Structure& s : docking_of(*content_).bodies)
         grey_.push_back(std::make_shared<const std::vector<Rgb8>>(s.size(), kUnknownFit));
 }
@@ -36,6 +39,7 @@ MoleculeLook Molecules::look(std::uint32_t id) const {
 
 void Molecules::OfStructure::clear() {
     for (TriangleBuffers& t : tube) t.clear();
+    for (TriangleBuffers& t : cartoon) t.clear();
     for (ImpostorShapes& t : trace) t.clear();
     sticks.clear();
     spheres.clear();
@@ -57,7 +61,8 @@ Molecules::Source Molecules::source_of(const DrawnBody& body, Colouring colourin
     const std::vector<Bond>& bonds = docking.bonds[body.structure];
     const NormalModes& modes = docking.modes_of(body.structure);
     const bool bends = !body.amplitude_m.empty() && modes.count() >= body.amplitude_m.size();
-    if (!bends && colouring != Colouring::fit) return {structures_[body.structure], straight, bonds, {}};
+    if (!bends && colouring != Colouring::fit)
+        return {structures_[body.structure], straight, bonds, {}, body.structure};
     Own& own = own_[body.id];
     own.drawn = true;
     const auto paint = colouring == Colouring::fit ? fit_paint(body) : nullptr;
@@ -76,7 +81,8 @@ Molecules::Source Molecules::source_of(const DrawnBody& body, Colouring colourin
         own.paint = paint;
         own.made.clear();
     }
-    return {own.made, bends ? own.atoms : straight, bonds, paint ? AtomPaint(*paint) : AtomPaint{}};
+    return {own.made, bends ? own.atoms : straight, bonds, paint ? AtomPaint(*paint) : AtomPaint{},
+            body.structure};
 }
 
 ImpostorShapes& Molecules::shapes(const Source& source, MoleculeStyle style) {
@@ -101,16 +107,21 @@ ImpostorShapes& Molecules::trace(const Source& source, std::size_t atoms_per_poi
     return wanted;
 }
 
-TriangleBuffers& Molecules::tube(const Source& source, std::size_t step) {
+TriangleBuffers& Molecules::tube(const Source& source, MoleculeStyle style, std::size_t step) {
     OfStructure& s = source.made;
-    TriangleBuffers& wanted = s.tube[step];
+    const bool cartoon = style == MoleculeStyle::cartoon;
+    TriangleBuffers& wanted = cartoon ? s.cartoon[step] : s.tube[step];
     if (wanted.indices() > 0) return wanted;
-    const std::size_t most = step == 0 ? kTubeVertices / structures_.size() : s.tube_vertices;
-    const TubeMesh mesh = build_tubes(
-        source.atoms,
-        static_cast<std::size_t>(static_cast<double>(kTubeLevels[step]) * static_cast<double>(most)),
-        source.paint);
-    if (step == 0) s.tube_vertices = mesh.vertex.size();
+    std::size_t& at_full = cartoon ? s.cartoon_vertices : s.tube_vertices;
+    const std::size_t most =
+        step == 0 ? (cartoon ? kCartoonVertices : kTubeVertices) / structures_.size() : at_full;
+    const auto share =
+        static_cast<std::size_t>(static_cast<double>(kTubeLevels[step]) * static_cast<double>(most));
+    auto& folds = folds_[source.structure];
+    if (cartoon && folds.empty()) folds = folds_of(docking_of(*content_).bodies[source.structure]);
+    const TubeMesh mesh = cartoon ? build_ribbons(source.atoms, folds, share, source.paint)
+                                  : build_tubes(source.atoms, share, source.paint);
+    if (step == 0) at_full = mesh.vertex.size();
     wanted.fill(mesh, GL_STATIC_DRAW);
     return wanted;
 }
@@ -128,8 +139,8 @@ void Molecules::draw(std::span<const DrawnBody> bodies, const Eigen::Matrix4f& e
         const ImpostorView view{eye_from_scene * scene_from_body(body.T_model_body, content_->centre_model_m),
                                 projection, haze, l.colouring, body.ghost ? kGhost : chain_colour(body.id)};
         const Source source = source_of(body, l.colouring);
-        if (l.style == MoleculeStyle::tube) {
-            draw_tube(source, view);
+        if (l.style == MoleculeStyle::tube || l.style == MoleculeStyle::cartoon) {
+            draw_tube(source, l.style, view);
             continue;
         }
         // Decided by the number of atoms, before any shapes are made.
@@ -137,7 +148,7 @@ void Molecules::draw(std::span<const DrawnBody> bodies, const Eigen::Matrix4f& e
         const std::size_t shapes_drawn = l.style == MoleculeStyle::trace ? 0 : atoms;
         if (shapes_drawn > room) {
             ++left_out_;
-            draw_tube(source, view);
+            draw_tube(source, MoleculeStyle::tube, view);
             continue;
         }
         room -= shapes_drawn;
@@ -178,11 +189,11 @@ void Molecules::draw_shapes(const Source& source, MoleculeStyle style, ImpostorV
     count(kTrianglesOfShape * drawn, kTrianglesOfShape * all.count());
 }
 
-void Molecules::draw_tube(const Source& source, const ImpostorView& view) {
+void Molecules::draw_tube(const Source& source, MoleculeStyle style, const ImpostorView& view) {
     std::size_t step = 0;
     while (step + 1 < kTubeLevels.size() && kTubeLevels[step] > 1.001F * level_) ++step;
-    const TriangleBuffers& full = tube(source, 0);  // first: the others are parts of it
-    TriangleBuffers& tubes = tube(source, step);
+    const TriangleBuffers& full = tube(source, style, 0);  // first: the others are parts of it
+    TriangleBuffers& tubes = tube(source, style, step);
     count(static_cast<std::size_t>(tubes.indices()) / 3, static_cast<std::size_t>(full.indices()) / 3);
     Paint paint;
     if (view.colouring == Colouring::body)

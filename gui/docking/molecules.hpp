@@ -4,10 +4,10 @@
 //          body adds only its pose.
 // Own      a body that is bent along its modes, or coloured by its fit, has graphics data of its own, made again when its shape has
 //          changed by kSameShapeA or its colours have.
-// Cost     trace and tube are cheap anywhere. Sticks and spheres are impostors, one per bond or atom: cheap on a
+// Cost     trace, tube and cartoon are cheap anywhere. Sticks and spheres are impostors, one per bond or atom: cheap on a
 //          graphics card, expensive in software. A frame draws at most shapes_max of them (set_shapes_max);
 //          further bodies are drawn as tubes, and left_out() counts them.
-// Level    of gui.molecules: tubes and traces follow means of more atoms, with fewer sides; sticks lose the ends of side chains first;
+// Level    of gui.molecules: tubes and traces follow means of more atoms, with fewer sides; cartoons have fewer steps, and become tubes; sticks lose the ends of side chains first;
 //          of the spheres a random part is drawn, enlarged to fill the same volume.
 // Thread   frame thread, context current.
 #pragma once
@@ -23,6 +23,7 @@
 #include "gui/docking/impostors.hpp"
 #include "gui/render/looks.hpp"
 #include "gui/render/programs.hpp"
+#include "gui/render/ribbon.hpp"
 #include "gui/render/scene_content.hpp"
 #include "gui/render/triangle_buffers.hpp"
 
@@ -40,7 +41,7 @@ struct DrawnBody {
 
 class Molecules {
 public:
-    static constexpr std::size_t kTubeVertices = 20000;  // total of all structures
+    static constexpr std::size_t kTubeVertices = 20000, kCartoonVertices = 60000;  // total of all structures
     static constexpr std::size_t kNoLimit = std::numeric_limits<std::size_t>::max();
 
     Molecules(std::shared_ptr<const SceneContent> content, Programs& programs);
@@ -69,11 +70,11 @@ private:
     static constexpr std::size_t kTraceSteps = 4;
     static constexpr double kSameShapeA = 0.03;
     struct OfStructure {
-        std::array<TriangleBuffers, kTubeLevels.size()> tube;
+        std::array<TriangleBuffers, kTubeLevels.size()> tube, cartoon;
         std::array<ImpostorShapes, kTraceSteps> trace;  // by the atoms per point
         ImpostorShapes sticks, spheres;
-        std::size_t sticks_always = 0;  // drawn at any level
-        std::size_t tube_vertices = 0;  // of the tube at level 1
+        std::size_t sticks_always = 0;                        // drawn at any level
+        std::size_t tube_vertices = 0, cartoon_vertices = 0;  // at level 1
 
         void clear();
     };
@@ -90,13 +91,14 @@ private:
         const Structure& atoms;
         std::span<const Bond> bonds;
         AtomPaint paint;
+        std::uint32_t structure;  // index in the scene
     };
     Source source_of(const DrawnBody& body, Colouring colouring);
     std::shared_ptr<const std::vector<Rgb8>> fit_paint(const DrawnBody& body) const;
     ImpostorShapes& shapes(const Source& source, MoleculeStyle style);
     ImpostorShapes& trace(const Source& source, std::size_t atoms_per_point);
-    TriangleBuffers& tube(const Source& source, std::size_t step);
-    void draw_tube(const Source& source, const ImpostorView& view);
+    TriangleBuffers& tube(const Source& source, MoleculeStyle style, std::size_t step);
+    void draw_tube(const Source& source, MoleculeStyle style, const ImpostorView& view);
     void draw_shapes(const Source& source, MoleculeStyle style, ImpostorView view);
     void count(std::size_t drawn, std::size_t most);
 
@@ -104,7 +106,8 @@ private:
     Programs& programs_;
     std::unique_ptr<ImpostorPrograms> impostors_;  // compiled at first use
     std::vector<OfStructure> structures_;
-    std::map<std::uint32_t, Own> own_;  // by id of the body
+    std::vector<std::vector<std::vector<Fold>>> folds_;  // of each structure, once a cartoon was drawn
+    std::map<std::uint32_t, Own> own_;                   // by id of the body
     std::map<std::uint32_t, std::shared_ptr<const std::vector<Rgb8>>> fit_paint_;
     std::vector<std::shared_ptr<const std::vector<Rgb8>>> grey_;  // per structure
     MoleculeLook look_;

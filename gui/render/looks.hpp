@@ -8,6 +8,7 @@ enum class MoleculeStyle : int {
     tube,     // a smooth tube along them
     sticks,   // bonds
     spheres,  // atoms at their van der Waals radii
+    cartoon,  // helices as ribbons, strands as arrows, the rest as tubes
 };
 
 enum class Colouring : int {
@@ -18,7 +19,7 @@ enum class Colouring : int {
 };
 
 struct MoleculeLook {
-    MoleculeStyle style = MoleculeStyle::tube;
+    MoleculeStyle style = MoleculeStyle::cartoon;
     Colouring colouring = Colouring::chain;
 };
 

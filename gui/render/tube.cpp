@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "gui/render/tube_parts.hpp"
 #include "ipc/base/units.hpp"
 
 namespace tact {
@@ -26,6 +27,37 @@ struct Strand {
     std::vector<Rgb8> colour;  // of each point
 };
 
+void add_strand(TubeMesh& mesh, const Strand& strand, int steps, int sides, float radius_a) {
+    std::vector<Vector3f> curve;
+    for (std::size_t i = 0; i + 1 < strand.point_a.size(); ++i)
+        for (int s = 0; s < steps; ++s)
+            curve.push_back(
+                catmull_rom(strand.point_a, i, static_cast<float>(s) / static_cast<float>(steps)));
+    curve.push_back(strand.point_a.back());
+
+    // Parallel transport keeps the rings from twisting.
+    Vector3f u = Vector3f::Zero();
+    std::uint32_t previous = 0;
+    for (std::size_t i = 0; i < curve.size(); ++i) {
+        Vector3f along = curve[std::min(i + 1, curve.size() - 1)] - curve[i > 0 ? i - 1 : 0];
+        along = along.norm() > 1e-6F ? along.normalized() : Vector3f::UnitZ();
+        u -= along * along.dot(u);
+        if (u.norm() < 1e-3F) u = along.unitOrthogonal();
+        u.normalize();
+        const auto ring = static_cast<std::uint32_t>(mesh.vertex.size());
+        const auto steps_per_point = static_cast<std::size_t>(steps);
+        const Rgb8& colour = strand.colour[(i + steps_per_point / 2) / steps_per_point];
+        add_ring(mesh, curve[i], radius_a * u, radius_a * along.cross(u), sides, colour);
+        if (i > 0) join_rings(mesh, previous, ring, sides);
+        if (i == 0) close_end(mesh, curve[i] - 0.6F * radius_a * along, -along, ring, sides, false, colour);
+        if (i + 1 == curve.size())
+            close_end(mesh, curve[i] + 0.6F * radius_a * along, along, ring, sides, true, colour);
+        previous = ring;
+    }
+}
+
+}  // namespace
+
 Vector3f point_a(const Structure& s, std::size_t i) {
     return Vector3f(s.x_m[i], s.y_m[i], s.z_m[i]) / static_cast<float>(kAngstromM);
 }
@@ -39,13 +71,14 @@ Vector3f catmull_rom(const std::vector<Vector3f>& p, std::size_t i, float t) {
                    (3.0F * b - a - 3.0F * c + d) * (t * t * t));
 }
 
-void add_ring(TubeMesh& mesh, const Vector3f& centre, const Vector3f& u, const Vector3f& v, float radius_a,
-              int sides, const Rgb8& colour) {
+void add_ring(TubeMesh& mesh, const Vector3f& centre, const Vector3f& u, const Vector3f& v, int sides,
+              const Rgb8& colour) {
+    const Vector3f along_u = u / u.squaredNorm(), along_v = v / v.squaredNorm();
     for (int k = 0; k < sides; ++k) {
         const float angle =
             2.0F * std::numbers::pi_v<float> * static_cast<float>(k) / static_cast<float>(sides);
-        const Vector3f n = std::cos(angle) * u + std::sin(angle) * v;
-        const Vector3f p = centre + radius_a * n;
+        const Vector3f p = centre + std::cos(angle) * u + std::sin(angle) * v;
+        const Vector3f n = (std::cos(angle) * along_u + std::sin(angle) * along_v).normalized();
         mesh.vertex.push_back(
             {{p.x(), p.y(), p.z()}, {n.x(), n.y(), n.z()}, {colour[0], colour[1], colour[2], 255}});
     }
@@ -74,37 +107,6 @@ void close_end(TubeMesh& mesh, const Vector3f& tip, const Vector3f& normal, std:
             mesh.index.insert(mesh.index.end(), {j, i, centre});
     }
 }
-
-void add_strand(TubeMesh& mesh, const Strand& strand, int steps, int sides, float radius_a) {
-    std::vector<Vector3f> curve;
-    for (std::size_t i = 0; i + 1 < strand.point_a.size(); ++i)
-        for (int s = 0; s < steps; ++s)
-            curve.push_back(
-                catmull_rom(strand.point_a, i, static_cast<float>(s) / static_cast<float>(steps)));
-    curve.push_back(strand.point_a.back());
-
-    // Parallel transport keeps the rings from twisting.
-    Vector3f u = Vector3f::Zero();
-    std::uint32_t previous = 0;
-    for (std::size_t i = 0; i < curve.size(); ++i) {
-        Vector3f along = curve[std::min(i + 1, curve.size() - 1)] - curve[i > 0 ? i - 1 : 0];
-        along = along.norm() > 1e-6F ? along.normalized() : Vector3f::UnitZ();
-        u -= along * along.dot(u);
-        if (u.norm() < 1e-3F) u = along.unitOrthogonal();
-        u.normalize();
-        const auto ring = static_cast<std::uint32_t>(mesh.vertex.size());
-        const auto steps_per_point = static_cast<std::size_t>(steps);
-        const Rgb8& colour = strand.colour[(i + steps_per_point / 2) / steps_per_point];
-        add_ring(mesh, curve[i], u, along.cross(u), radius_a, sides, colour);
-        if (i > 0) join_rings(mesh, previous, ring, sides);
-        if (i == 0) close_end(mesh, curve[i] - 0.6F * radius_a * along, -along, ring, sides, false, colour);
-        if (i + 1 == curve.size())
-            close_end(mesh, curve[i] + 0.6F * radius_a * along, along, ring, sides, true, colour);
-        previous = ring;
-    }
-}
-
-}  // namespace
 
 std::vector<std::vector<std::uint32_t>> strands_of(const Structure& s) {
     std::vector<std::vector<std::uint32_t>> strands;

@@ -77,12 +77,14 @@ bool parse_gui_options(int argc, const char* const* argv, GuiOptions& options, i
     app.add_option("--fps-max", options.fps_max,
                    "Maximum frame rate (1/s); 0: unlimited; default: the display's rate, or 60")
         ->check(CLI::Range(0.0, 1e5));
-    app.add_option("--molecule", options.look.style, "Style of bodies: trace, tube, sticks or spheres")
+    app.add_option("--molecule", options.look.style,
+                   "Style of bodies: cartoon, trace, tube, sticks or spheres")
         ->transform(CLI::CheckedTransformer(
             std::map<std::string, MoleculeStyle>{{"trace", MoleculeStyle::trace},
                                                  {"tube", MoleculeStyle::tube},
                                                  {"sticks", MoleculeStyle::sticks},
-                                                 {"spheres", MoleculeStyle::spheres}}));
+                                                 {"spheres", MoleculeStyle::spheres},
+                                                 {"cartoon", MoleculeStyle::cartoon}}));
     app.add_option("--colour", options.look.colouring,
                    "Colour of bodies: by chain, element, body, or the fit of their residues to the map")
         ->transform(CLI::CheckedTransformer(std::map<std::string, Colouring>{{"chain", Colouring::chain},

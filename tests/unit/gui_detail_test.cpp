@@ -234,8 +234,8 @@ protected:
 
 TEST_F(GuiLevels, gui_molecules_changes_triangles_and_picture_in_every_style) {
     options_.surface = false;
-    for (const MoleculeStyle style :
-         {MoleculeStyle::trace, MoleculeStyle::tube, MoleculeStyle::sticks, MoleculeStyle::spheres}) {
+    for (const MoleculeStyle style : {MoleculeStyle::trace, MoleculeStyle::tube, MoleculeStyle::sticks,
+                                      MoleculeStyle::spheres, MoleculeStyle::cartoon}) {
         Molecules& molecules = layer_->molecules();
         molecules.set_look({style, Colouring::chain});
         molecules.set_level(1.0F);

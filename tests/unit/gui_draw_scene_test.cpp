@@ -73,15 +73,15 @@ protected:
 
 TEST_F(GuiDrawScene, each_style_draws_a_different_image) {
     std::set<std::string> pictures;
-    for (const auto style :
-         {MoleculeStyle::trace, MoleculeStyle::tube, MoleculeStyle::sticks, MoleculeStyle::spheres})
+    for (const auto style : {MoleculeStyle::trace, MoleculeStyle::tube, MoleculeStyle::sticks,
+                             MoleculeStyle::spheres, MoleculeStyle::cartoon})
         for (const auto colouring : {Colouring::chain, Colouring::body}) {
             layer_->molecules().set_look({style, colouring});
             const Image image = picture(std::array{home_});
             EXPECT_GT(drawn(image), 100U);
             pictures.insert({image.rgb.begin(), image.rgb.end()});
         }
-    EXPECT_EQ(pictures.size(), 8U);
+    EXPECT_EQ(pictures.size(), 10U);
 }
 
 TEST_F(GuiDrawScene, a_bent_body_is_drawn_as_its_bent_atoms_and_follows_each_change) {
@@ -97,8 +97,8 @@ TEST_F(GuiDrawScene, a_bent_body_is_drawn_as_its_bent_atoms_and_follows_each_cha
         bow.z.push_back(0.0F);
     }
     docking.modes = {bow};
-    for (const auto style :
-         {MoleculeStyle::trace, MoleculeStyle::tube, MoleculeStyle::sticks, MoleculeStyle::spheres}) {
+    for (const auto style : {MoleculeStyle::trace, MoleculeStyle::tube, MoleculeStyle::sticks,
+                             MoleculeStyle::spheres, MoleculeStyle::cartoon}) {
         const auto begin_layer = [&] {  // the view stays, with the haze of the straight scene
             layer_.emplace(content_, *programs_);
             view_->set_layer(&*layer_);
@@ -192,8 +192,8 @@ TEST_F(GuiDrawScene, a_body_coloured_by_its_fit_has_the_given_colours_and_is_gre
         }
         return count;
     };
-    for (const auto style :
-         {MoleculeStyle::trace, MoleculeStyle::tube, MoleculeStyle::sticks, MoleculeStyle::spheres}) {
+    for (const auto style : {MoleculeStyle::trace, MoleculeStyle::tube, MoleculeStyle::sticks,
+                             MoleculeStyle::spheres, MoleculeStyle::cartoon}) {
         layer_.emplace(content_, *programs_);
         view_->set_layer(&*layer_);
         layer_->frame.codebook = layer_->frame.graph = false;
