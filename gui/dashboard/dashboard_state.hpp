@@ -82,6 +82,8 @@ struct DashboardState {
     DevicesTopic devices{};
     TrackerTopic tracker{};
     std::uint32_t recorders = 0, flights = 0;           // recorders of this run
+    bool own_recording = false;                         // one of them was started here
+    bool record_wanted = false;                         // the user starts it, or ends it
     std::array<CounterRate, kDeviceHands> device_rate;  // samples per second
     CounterRate tracker_rate;
     LatenessWindow lateness;

@@ -71,19 +71,33 @@ void words(const Theme& theme, const HealthTopic& h, const StatusText& state) {
     if (!message) text_small(theme, grade_colour(state.grade), state.text);
 }
 
-// Indicates a recorded run at the right of the card's title.
-void recording(const Theme& theme, const DashboardState& state) {
+// At the right of the card's title: whether the run is recorded, and the button that does.
+void recording(const Theme& theme, DashboardState& state) {
     const bool whole = state.recorders > 0;
-    const std::string text = whole ? "recording" : "flight recorder on";
-    const float width = theme.small->CalcTextSizeA(theme.small->FontSize, 1e9F, 0.0F, text.c_str()).x;
+    const char* const button = state.own_recording ? "Stop recording" : "Record";
+    const std::string text = state.own_recording ? ""
+                             : whole             ? "recording"
+                             : state.flights > 0 ? "flight recorder on"
+                                                 : "";
+    ImGui::PushFont(theme.small);
+    const float padding = theme.px(8.0F), gap = theme.px(8.0F), r = theme.px(4.0F);
+    const float width = ImGui::CalcTextSize(button).x + padding, words = ImGui::CalcTextSize(text.c_str()).x;
     const ImVec2 at = ImGui::GetCursorScreenPos();
-    const float x = at.x + ImGui::GetContentRegionAvail().x - width, r = theme.px(4.0F);
+    const float x = at.x + ImGui::GetContentRegionAvail().x - width;
     ImDrawList* const draw = ImGui::GetWindowDrawList();
-    if (whole)
-        draw->AddCircleFilled({x - 2.0F * r, at.y + 0.6F * theme.small->FontSize}, r, colour::kBad, 12);
-    draw->AddText(theme.small, theme.small->FontSize, {x, at.y}, whole ? colour::kText : colour::kDim,
-                  text.c_str());
-    ImGui::NewLine();
+    const float left = text.empty() ? x - gap : x - gap - words;
+    draw->AddText({left, at.y}, whole ? colour::kText : colour::kDim, text.c_str());
+    if (whole || state.own_recording)
+        draw->AddCircleFilled({left - 2.0F * r, at.y + 0.6F * theme.small->FontSize}, r, colour::kBad, 12);
+    ImGui::SetCursorScreenPos({x, at.y});
+    ImGui::PushStyleVar(ImGuiStyleVar_FramePadding, {0.5F * padding, 0.0F});
+    if (ImGui::Button(button)) state.record_wanted = true;
+    ImGui::PopStyleVar();
+    if (ImGui::IsItemHovered())
+        ImGui::SetTooltip("%s", state.own_recording
+                                    ? "ends the recording (Ctrl+R)"
+                                    : "records every cycle from now on into your Tact folder (Ctrl+R)");
+    ImGui::PopFont();
 }
 
 // A recording is shown: said first and largest, and what was the case then is said as past.
@@ -205,7 +219,7 @@ void draw_health(const Theme& theme, DashboardState& state, const PixelRect& car
         ImGui::SameLine();
         badge(theme, "watching", colour::kAccent);
     }
-    if (state.attached && state.recorders + state.flights > 0) {
+    if (state.attached && !state.replay.shown) {
         ImGui::SameLine();
         recording(theme, state);
     }

@@ -5,12 +5,12 @@
 #include <unistd.h>
 
 #include <cerrno>
-#include <chrono>
 #include <cstdio>
 #include <filesystem>
 #include <memory>
 #include <system_error>
 
+#include "gui/base/output_folder.hpp"
 #include "ipc/base/error.hpp"
 
 namespace tact {
@@ -62,9 +62,14 @@ void TraceExport::follow(TracesState& traces) {
         traces.message_grade = Grade::watch;
         return;
     }
-    start(traces);
     traces.message = "writing";
     traces.message_grade = Grade::unknown;
+    try {
+        start(traces);
+    } catch (const StartupError& e) {
+        traces.message = e.what();
+        traces.message_grade = Grade::bad;
+    }
 }
 
 void TraceExport::start(const TracesState& traces) {
@@ -76,11 +81,7 @@ void TraceExport::start(const TracesState& traces) {
     std::vector<TraceChannel> channels;
     for (std::size_t i = 0; i < kTraceChannels; ++i)
         if (traces.channels.test(i)) channels.push_back(static_cast<TraceChannel>(i));
-    const auto moment = std::chrono::duration_cast<std::chrono::milliseconds>(
-        std::chrono::system_clock::now().time_since_epoch());
-    std::error_code error;
-    const std::filesystem::path folder = std::filesystem::current_path(error);
-    const std::string path = (folder / ("tact-traces-" + std::to_string(moment.count()) + ".csv")).string();
+    const std::string path = new_output("traces", ".csv").string();
     thread_ = std::thread([this, path, cycles = std::move(cycles), channels = std::move(channels)] {
         // Low priority; ignored if not permitted.
         const sched_param none{};

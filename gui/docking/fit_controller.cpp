@@ -1,5 +1,6 @@
 #include "gui/docking/fit_controller.hpp"
 
+#include "gui/base/output_folder.hpp"
 #include "gui/docking/docking_content.hpp"
 #include "gui/docking/poses_json.hpp"
 
@@ -7,7 +8,6 @@
 
 #include <algorithm>
 #include <array>
-#include <ctime>
 #include <filesystem>
 #include <fstream>
 #include <thread>
@@ -23,15 +23,6 @@ constexpr std::array<ImU32, 7> kBodyColours{IM_COL32(230, 159, 0, 255),  IM_COL3
                                             IM_COL32(0, 158, 115, 255),  IM_COL32(240, 228, 66, 255),
                                             IM_COL32(0, 114, 178, 255),  IM_COL32(213, 94, 0, 255),
                                             IM_COL32(204, 121, 167, 255)};
-
-std::string folder_name() {
-    const std::time_t now = std::time(nullptr);
-    std::tm parts{};
-    ::localtime_r(&now, &parts);
-    char text[64];
-    std::strftime(text, sizeof text, "tact-fit-%Y%m%d-%H%M%S", &parts);
-    return text;
-}
 
 Command placement(std::uint32_t id, const Pose& T_model_body) {
     return {CommandKind::place_body, 0.0, {}, id, T_model_body};
@@ -177,8 +168,8 @@ void FitController::copy(const ShownBody& body, const BodyList& list, std::vecto
 
 void FitController::save(const BodyList& list) {
     if (!content_ || saving_.running()) return;
-    saving_to_ = folder_name();
     try {
+        saving_to_ = new_output("fit", "").string();
         if (!std::filesystem::create_directory(saving_to_))
             throw StartupError("saving in " + saving_to_, "the folder exists already",
                                "save again in a second");

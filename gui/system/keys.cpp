@@ -63,6 +63,8 @@ constexpr auto kKeyRows = [] {
          "leave the calibration"},
         {typed_key('o'), 0, always, KeyAction::open_browser, "O", "open another scene"},
         {typed_key('p'), 0, always, KeyAction::screenshot, "P", "save a screenshot"},
+        {control_key('r'), 0, controller, KeyAction::record, "Ctrl+R",
+         "record the run, or end the recording"},
         {typed_key('m'), 0, controller, KeyAction::mark, "M", "mark this moment for the flight recorder"},
         {typed_key('?'), 0, always, KeyAction::help, "?", "this table"},
     });

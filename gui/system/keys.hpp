@@ -47,6 +47,7 @@ enum class KeyAction : std::uint8_t {
     disarm,
     screenshot,
     mark,
+    record,
     play,
     step_back,
     step_on,

@@ -78,6 +78,7 @@ int GuiApp::run() {
         frame(now, last && pictures_.wanted_at_end());
         if (!last) clock_.pace(fps_max_);
     }
+    recorder_.finish();
     keep_window_state();
     for (const auto& system : systems_) system->finish(context());
     write_frame_report(options_.frames, frame_metrics(clock_, passes_));
@@ -177,6 +178,7 @@ void GuiApp::follow_controller(std::int64_t now_ns) {
     if (controller_.have_health && !controller_.watches()) commands_.update(controller_.health, now_ns);
     show_controller(controller_, commands_, state_);
     follow_replay();
+    follow_recorder();
 }
 
 // All times are those of the run that was recorded, and its events come again.

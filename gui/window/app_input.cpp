@@ -58,6 +58,9 @@ void GuiApp::perform(KeyAction what, std::size_t place) {
             return;
         case KeyAction::disarm:  // in any state: disarming is always safe, and the controller answers
             return command(CommandKind::disarm);
+        case KeyAction::record:
+            state_.record_wanted = true;
+            return;
         case KeyAction::play:
             return state_.replay.requests.push_back({TimelineAction::play, 0.0});
         case KeyAction::step_back:

@@ -30,6 +30,7 @@
 #include "gui/window/layout.hpp"
 #include "gui/window/options.hpp"
 #include "gui/window/panel_image.hpp"
+#include "gui/window/run_recorder.hpp"
 #include "gui/window/scene_loader.hpp"
 #include "gui/window/screenshots.hpp"
 #include "gui/window/second_hand.hpp"
@@ -55,6 +56,8 @@ private:
     void follow_controller(std::int64_t now_ns);
     void begin_replay();
     void follow_replay();
+    void follow_recorder();
+    void tell(const StatusText& what);
     void start_loading(const std::string& path);
     void follow_scene();
     void use_scene(std::unique_ptr<SceneStart> start);
@@ -137,6 +140,7 @@ private:
     std::int64_t marked_at_ns_ = std::numeric_limits<std::int64_t>::min() / 2;  // by an instructor
     RingCursor traces_place_;                                                   // in the trace ring
     TraceExport trace_export_;
+    RunRecorder recorder_{options_.session};
     ViewOptions view_options_;
     Camera camera_;
     SceneLoader loader_;

@@ -1,5 +1,7 @@
-// An instructor's window: marks a place under the pointer; any window tells of a mark.
+// What the window itself has to tell: an instructor's marks, and the recording that it started.
 #include <imgui.h>
+
+#include <utility>
 
 #include "gui/window/app_parts.hpp"
 #include "ipc/base/units.hpp"
@@ -10,9 +12,17 @@ constexpr std::uint16_t kOwnEvent = 0xFFFF;  // not an EventCode of the controll
 constexpr std::size_t kLinesKept = 100;
 }  // namespace
 
-void GuiApp::report_mark() {
-    state_.events.push_front({state_.now_ns, kOwnEvent, 1, "the instructor marks a place", Grade::watch});
+void GuiApp::tell(const StatusText& what) {
+    state_.events.push_front({state_.now_ns, kOwnEvent, 1, what.text, what.grade});
     if (state_.events.size() > kLinesKept) state_.events.pop_back();
+}
+
+void GuiApp::report_mark() { tell({Grade::watch, "the instructor marks a place"}); }
+
+void GuiApp::follow_recorder() {
+    if (std::exchange(state_.record_wanted, false)) tell(recorder_.toggle());
+    if (const auto ended = recorder_.poll()) tell(*ended);
+    state_.own_recording = recorder_.running();
 }
 
 void GuiApp::mark_under_pointer() {

@@ -1,9 +1,8 @@
 #include "gui/window/screenshots.hpp"
 
-#include <chrono>
-
 #include <spdlog/spdlog.h>
 
+#include "gui/base/output_folder.hpp"
 #include "ipc/base/error.hpp"
 #include "ipc/image/png.hpp"
 
@@ -47,9 +46,12 @@ void Screenshots::save_stage(const std::vector<Image>& eyes) {
 }
 
 void Screenshots::save_now(const Image& window) {
-    const auto moment = std::chrono::duration_cast<std::chrono::milliseconds>(
-        std::chrono::system_clock::now().time_since_epoch());
-    write("tact-" + std::to_string(moment.count()) + ".png", window);
+    try {
+        write(new_output("picture", ".png"), window);
+    } catch (const StartupError& e) {
+        spdlog::error("{}", e.what());
+        failed_ = true;
+    }
 }
 
 void Screenshots::write(const std::filesystem::path& path, const Image& image) {

@@ -32,7 +32,7 @@ public:
         if (!path_.empty()) write(path_, window);
     }
     void save_stage(const std::vector<Image>& eyes);  // one for both, or left and right
-    void save_now(const Image& window);               // in the working folder, named by its time
+    void save_now(const Image& window);               // in the output folder
     [[nodiscard]] bool failed() const { return failed_; }
 
 private:

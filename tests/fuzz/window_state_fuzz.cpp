@@ -16,7 +16,7 @@ bool run(std::span<const std::byte> input) {
     require(s.width_px >= 240 && s.width_px <= 16384 && s.height_px >= 240 && s.height_px <= 16384);
     require(s.span_choice >= 0 && s.span_choice < WindowState::kSpans);
     require(s.lateness_choice >= 0 && s.lateness_choice < WindowState::kLateness);
-    require(s.toggles.style >= 0 && s.toggles.style < 3 && s.toggles.molecule >= 0 && s.toggles.molecule < 4);
+    require(s.toggles.style >= 0 && s.toggles.style < 3 && s.toggles.molecule >= 0 && s.toggles.molecule < 5);
     require(s.target_a.allFinite() && std::isfinite(s.distance_a) && s.distance_a >= 0.0);
     require(std::abs(s.q_eye_scene.norm() - 1.0) < 1e-9);
     const std::string once = window_state_text(s);

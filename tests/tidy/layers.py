@@ -59,7 +59,7 @@ BELOW = {
     "gui/base": ["ipc/base"],
     "gui/link": ["ipc/base", "ipc/shm", "ipc/topics", "ipc/scene/file"],
     "gui/render": ["ipc/base", "ipc/topics", "ipc/scene"],
-    "gui/dashboard": ["ipc/base", "ipc/topics"],
+    "gui/dashboard": ["ipc/base", "ipc/topics", "gui/base"],
     # The interface between systems and window; systems do not include each other.
     "gui/system": ["ipc", "gui/base", "gui/link", "gui/render", "gui/dashboard"],
     "gui/docking": ["ipc", "gui/base", "gui/link", "gui/render", "gui/dashboard", "gui/system"],

@@ -24,6 +24,7 @@ if(TACT_GUI)
             unit/gui_draw_test.cpp unit/gui_frames_test.cpp
         USES gui_window gui_drilling gui_drilling_site gui_dashboard gui_render launch scene base gui_docking prep_mesh
             topics shm gui_stereo SYSTEM nlohmann_json::nlohmann_json TIMEOUT 300)
+    tact_test(unit/gui_output_test.cpp USES gui_window gui_dashboard gui_base base SYSTEM spdlog::spdlog)
     tact_test(unit/gui_ribbon_test.cpp USES gui_render scene SYSTEM ZLIB::ZLIB)
     tact_test(unit/gui_draw_scene_test.cpp USES gui_window gui_render launch scene base gui_docking prep_mesh topics shm
         SYSTEM nlohmann_json::nlohmann_json TIMEOUT 300)

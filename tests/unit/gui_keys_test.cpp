@@ -16,6 +16,7 @@ KeySituation where_applies(KeyWhen when) {
     now.bone = when == KeyWhen::bone;
     now.stereo = when == KeyWhen::stereo;
     now.controller = when == KeyWhen::controller;
+    now.replay = when == KeyWhen::replay;
     now.calibrating = when == KeyWhen::calibrating;
     return now;
 }

@@ -29,6 +29,7 @@ protected:
         folder_ = mkdtemp(name);
         setenv("TACT_RUNTIME_DIR", folder_.c_str(), 1);
         setenv("LIBGL_ALWAYS_SOFTWARE", "1", 1);
+        setenv("TACT_OUTPUT", folder_.c_str(), 1);
         setenv("SPDLOG_LEVEL", "debug", 1);
         setenv("ASAN_OPTIONS", "detect_leaks=0", 1);  // graphics drivers keep memory until exit on purpose
         x_server_ = std::make_unique<launch::XServer>(folder_, 800, 600);

@@ -6,6 +6,7 @@
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <regex>
 
 #include "ipc/base/error.hpp"
 #include "tests/unit/gui_wait.hpp"
@@ -16,10 +17,9 @@ namespace {
 class Export : public testing::Test {
 protected:
     void SetUp() override {
-        before_ = std::filesystem::current_path();
         char name[] = "/tmp/tact-export-XXXXXX";
         folder_ = mkdtemp(name);
-        std::filesystem::current_path(folder_);
+        setenv("TACT_OUTPUT", (folder_ / "made").c_str(), 1);
         for (std::int64_t i = 1; i <= 3000; ++i) {
             TraceTopic t{};
             t.taken_at_ns = 1'000'000'000 + 1'000'000 * i;
@@ -30,7 +30,7 @@ protected:
         traces_.scope.hold();
     }
     void TearDown() override {
-        std::filesystem::current_path(before_);
+        unsetenv("TACT_OUTPUT");
         std::filesystem::remove_all(folder_);
     }
     bool message() {
@@ -40,7 +40,7 @@ protected:
         });
     }
 
-    std::filesystem::path before_, folder_;
+    std::filesystem::path folder_;
     TracesState traces_;
     TraceExport out_;
 };
@@ -54,8 +54,12 @@ TEST_F(Export, writes_the_visible_span_and_reports_the_file) {
     ASSERT_TRUE(message());
     EXPECT_EQ(traces_.message_grade, Grade::good) << traces_.message;
     std::vector<std::filesystem::path> files;
-    for (const auto& entry : std::filesystem::directory_iterator(folder_)) files.push_back(entry.path());
+    for (const auto& entry : std::filesystem::directory_iterator(folder_ / "made"))
+        files.push_back(entry.path());
     ASSERT_EQ(files.size(), 1U);  // no partial file beside it
+    EXPECT_TRUE(std::regex_match(files[0].filename().string(),
+                                 std::regex("[0-9]{4}-[0-9]{2}-[0-9]{2}_[0-9]{6}_traces[.]csv")))
+        << files[0];
     EXPECT_NE(traces_.message.find(files[0].string()), std::string::npos) << traces_.message;
     std::ifstream in(files[0]);
     std::string line, last;
@@ -67,8 +71,8 @@ TEST_F(Export, writes_the_visible_span_and_reports_the_file) {
     EXPECT_NE(last.find(",3000,"), std::string::npos) << last;
 }
 
-TEST_F(Export, a_missing_folder_is_reported_with_a_fix) {
-    std::filesystem::remove_all(folder_);
+TEST_F(Export, an_impossible_folder_is_reported_with_a_fix) {
+    setenv("TACT_OUTPUT", "/proc/none", 1);
     traces_.export_wanted = true;
     out_.follow(traces_);
     ASSERT_TRUE(message());

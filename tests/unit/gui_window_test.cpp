@@ -349,10 +349,8 @@ TEST_F(GuiWindow, the_mouse_pauses_the_traces_and_exports_them) {
     for (const auto& [key, value] : x_server_->environment())
         value.empty() ? unsetenv(key.c_str()) : setenv(key.c_str(), value.c_str(), 1);
     fake::Controller controller("t", scene(), checksum_);
-    const std::filesystem::path before = std::filesystem::current_path();
-    std::filesystem::current_path(folder_);  // the export is written to the working folder
+    setenv("TACT_OUTPUT", folder_.c_str(), 1);
     const auto process = gui({"--traces"}, "1280x720");
-    std::filesystem::current_path(before);
     ASSERT_TRUE(drawing(controller)) << log();
     std::uint64_t cycle = 0;
     const auto live = [&](int milliseconds_long) {
