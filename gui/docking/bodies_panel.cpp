@@ -18,7 +18,7 @@ void list(const Theme& theme, DashboardState& state, FittingState& fitting) {
         ImGui::BeginDisabled(!live);
         ImGui::PushStyleColor(ImGuiCol_Text, b.in_hand ? colour::kAccent : colour::kText);
         const std::string name = format("%u  %s%s", b.id, b.name.c_str(), b.in_hand ? " (held)" : "");
-        if (ImGui::Selectable(name.c_str(), b.in_hand, 0, {right - theme.px(128.0F), 0.0F}))
+        if (ImGui::Selectable(name.c_str(), b.in_hand, 0, {right - theme.px(146.0F), 0.0F}))
             state.requests.push_back({CommandKind::select_body, 0.0, {}, b.in_hand ? kNoBody : b.id});
         ImGui::PopStyleColor();
         if (ImGui::IsItemHovered())

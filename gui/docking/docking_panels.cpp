@@ -104,6 +104,13 @@ void DockingPanels::draw_in_scene_card(const Theme& theme, DashboardState& state
     ImGui::PopStyleVar();
 }
 
+void DockingPanels::add_legend(const DashboardState& state, std::vector<LegendLine>& lines) const {
+    if (drawn_as_tubes == 0) return;
+    const bool spheres = state.toggles.molecule == static_cast<int>(MoleculeStyle::spheres);
+    lines.push_back({colour::kWatch, format("%s are slow in software rendering: tubes while anything moves",
+                                            spheres ? "spheres" : "sticks")});
+}
+
 std::string DockingPanels::drawn_text(const DashboardState& state) const {
     return format("%s vertices", grouped(state.load.vertices_drawn).c_str());
 }

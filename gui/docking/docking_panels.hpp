@@ -149,12 +149,14 @@ public:
     FitState fit;
     FittingState fitting;
     ContourRowState contours;
+    std::size_t drawn_as_tubes = 0;  // bodies, in place of their sticks or spheres
 
     [[nodiscard]] CardSize card_size() const override { return {212.0F, 0.3F}; }
     void draw_card(const Theme& theme, const PixelRect& card,
                    DashboardState& state) const override;  // of the fit
     void draw_in_scene_card(const Theme& theme, DashboardState& state) override;
     [[nodiscard]] std::string drawn_text(const DashboardState& state) const override;
+    void add_legend(const DashboardState& state, std::vector<LegendLine>& lines) const override;
 };
 
 // Tabs of the scene card.

@@ -14,7 +14,8 @@ namespace {
 
 // Limit of atoms or bonds drawn as impostors on a software renderer: more take longer than a frame may
 // (tests/bench/draw_bench.cpp).
-constexpr std::size_t kShapesMaxInSoftware = 8000;
+// In software rendering. A view at rest is drawn once, so it may take longer.
+constexpr std::size_t kShapesMaxInSoftware = 8000, kShapesMaxAtRest = 60000;
 
 DockingSummary summary_of(const SceneContent& content) {
     const SceneMeta& meta = content.meta;
@@ -36,7 +37,6 @@ void DockingSystem::use(const std::shared_ptr<const SceneContent>& content, std:
     layer_ = std::make_unique<DockingLayer>(content, view.programs());
     view.set_layer(layer_.get());
     if (!options_.empty()) view.contours().set(contours_of(options_, content->scale));
-    if (context.software) layer_->molecules().set_shapes_max(kShapesMaxInSoftware);
     begin_contours(view.contours(), content->scale, panels_.contours);
     panels_.scene = summary_of(*content);
     count_contour();
@@ -172,6 +172,7 @@ void DockingSystem::prepare(std::int64_t now_ns, bool sharp, ViewFrame& frame, c
     layer_->frame = {t.backbone, t.codebook, t.graph, drawn_, force != nullptr ? force->items : 0};
     if (const PathLevel* const path = c.level(kMoleculesPath)) molecules_level_ = path->level;
     layer_->molecules().set_level(sharp ? 1.0F : molecules_level_);
+    if (context.software) layer_->molecules().set_shapes_max(sharp ? kShapesMaxAtRest : kShapesMaxInSoftware);
     colour_by_fit();
     layer_->molecules().set_look(
         {static_cast<MoleculeStyle>(t.molecule), static_cast<Colouring>(t.colouring)});
@@ -206,16 +207,15 @@ bool DockingSystem::add_to_key(ContentKey& key) const {
     return true;
 }
 
+void DockingSystem::refine() {
+    Molecules& molecules = layer_->molecules();
+    molecules.set_level(1.0F);
+    molecules.set_shapes_max(std::max(molecules.shapes_max(), kShapesMaxAtRest));
+}
+
 void DockingSystem::drawn(const SystemContext& context) {
     static_cast<void>(context);
-    const std::size_t left_out = layer_->molecules().left_out();
-    if (left_out == left_out_) return;
-    left_out_ = left_out;
-    if (left_out > 0)
-        spdlog::info(
-            "bodies drawn as tubes, because this renderer is too slow for "
-            "their atoms: {}",
-            left_out);
+    panels_.drawn_as_tubes = layer_->molecules().left_out();
 }
 
 void DockingSystem::add_to(LoadTopic& load) const {

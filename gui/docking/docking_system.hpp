@@ -32,7 +32,7 @@ public:
     void add_to(LoadTopic& load) const override;
     void adapt() override;
     void prepare(std::int64_t now_ns, bool sharp, ViewFrame& frame, const SystemContext& context) override;
-    void refine() override { layer_->molecules().set_level(1.0F); }
+    void refine() override;
     [[nodiscard]] bool add_to_key(ContentKey& key) const override;
     void drawn(const SystemContext& context) override;
     void finish(const SystemContext& context) override;
@@ -52,7 +52,6 @@ private:
     FitController fit_controller_;
     BodyList list_;
     std::vector<DrawnBody> drawn_;
-    std::size_t left_out_ = 0;
     std::uint64_t coloured_by_ = 0;  // number of the outcome
     float molecules_level_ = 1.0F;   // keeps the controller's newest value
 };

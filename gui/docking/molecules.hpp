@@ -51,6 +51,7 @@ public:
     [[nodiscard]] MoleculeLook look(std::uint32_t id) const;
     [[nodiscard]] MoleculeLook look() const { return look_; }  // of bodies without one of their own
     void set_shapes_max(std::size_t shapes) { shapes_max_ = shapes; }
+    [[nodiscard]] std::size_t shapes_max() const { return shapes_max_; }
     // Colours of the atoms of a body while it is coloured by its fit; without them it is grey.
     void set_fit_colours(std::uint32_t id, std::vector<Rgb8> colours);
     // In (0, 1], from the next draw() on.

@@ -26,6 +26,7 @@ EventLine describe(const EventTopic& event, const LevelsTopic* levels) {
         case EventCode::gui_detached:
         case EventCode::gui_silent:
         case EventCode::input_refused:
+        case EventCode::device_watchdog:
             line.grade = Grade::watch;
             break;
         default:

@@ -27,12 +27,11 @@ void take_events(Controller& controller, DashboardState& state) {
 }  // namespace
 
 void add_event(EventLine line, std::deque<EventLine>& events) {
-    const auto code = static_cast<EventCode>(line.code);
-    const bool one_row = code == EventCode::overrun || code == EventCode::level_changed;
-    auto earlier =
-        std::find_if(events.begin(), events.end(), [&](const EventLine& e) { return e.code == line.code; });
-    const bool repeats = one_row || (line.grade == Grade::watch && earlier == events.begin());
-    if (repeats && earlier != events.end()) {
+    const bool counts =
+        line.grade == Grade::watch || line.code == static_cast<std::uint16_t>(EventCode::level_changed);
+    const auto earlier = std::find_if(events.begin(), events.end(),
+                                      [&](const EventLine& e) { return counts && e.code == line.code; });
+    if (earlier != events.end()) {
         line.count = earlier->count + 1;
         events.erase(earlier);
     }

@@ -10,8 +10,8 @@
 namespace tact {
 
 void show_controller(Controller& controller, const CommandSender& commands, DashboardState& state);
-// Overruns and changes of the level have one row each, which counts; of other warnings those in a row have one, so that a
-// limit that is reached again and again does not push out the rest.
+// Each kind of warning, and changes of the level, have one row, which counts: what comes again and again does not push out
+// the rest.
 void add_event(EventLine line, std::deque<EventLine>& events);
 // Adds a sample to the plots.
 void add_health(const HealthTopic& health, History& to);

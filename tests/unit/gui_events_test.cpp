@@ -28,15 +28,17 @@ TEST(EventRows, overruns_and_levels_have_one_row_each_with_the_newest_text) {
     EXPECT_EQ(events[2].count, 5U);
 }
 
-TEST(EventRows, other_warnings_count_in_a_row_and_ordinary_events_never) {
+TEST(EventRows, each_kind_of_warning_has_one_row_and_ordinary_events_never_count) {
     std::deque<EventLine> events;
     for (int i = 0; i < 3; ++i) add_event(line(EventCode::force_limited, "limit", Grade::watch), events);
     add_event(line(EventCode::hand_left, "left", Grade::good), events);
     add_event(line(EventCode::hand_left, "left", Grade::good), events);
     add_event(line(EventCode::force_limited, "limit", Grade::watch), events);
-    ASSERT_EQ(events.size(), 4U);
-    EXPECT_EQ(events[3].count, 3U);
-    EXPECT_EQ(events[0].count, 1U);
+    ASSERT_EQ(events.size(), 3U);
+    EXPECT_EQ(events[0].count, 4U);
+    EXPECT_EQ(events[1].count, 1U);
+    add_event(line(EventCode::gui_silent, "silent", Grade::watch), events);
+    EXPECT_EQ(events.size(), 4U);
 }
 
 // A row is found where the mouse reaches it: in a replay a click on it asks for its moment.
