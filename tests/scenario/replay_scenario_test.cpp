@@ -236,6 +236,7 @@ TEST(ReplayScenario, a_window_pauses_steps_and_seeks_back_and_forth) {
         const ToolTopic was = tool_after(step);
         EXPECT_EQ(std::memcmp(is.pos_world_m, was.pos_world_m, sizeof is.pos_world_m), 0) << step;
         EXPECT_EQ(is.cycle, was.cycle);
+        EXPECT_LT(std::abs(is.taken_at_ns - t.shown_ns), 100'000'000);  // one clock for all topics
     };
     shows(here + 1);
     EXPECT_EQ(window.left(), 0);  // forward is the same replay
@@ -256,6 +257,7 @@ TEST(ReplayScenario, a_window_pauses_steps_and_seeks_back_and_forth) {
     window.request(++seeks, std::nan(""), 0, true);
     std::this_thread::sleep_for(std::chrono::milliseconds(100));
     EXPECT_EQ(act(window.look()), ReplayAct::ended);
+    EXPECT_EQ(window.look().seeks, seeks - 1);
     stop = true;
     player_thread.join();
 }

@@ -52,6 +52,10 @@ TEST_F(Output, is_one_folder_with_names_by_time_that_never_repeat) {
     const fs::path second = new_output("picture", ".png");
     EXPECT_EQ(first.parent_path(), folder_ / "mine");
     EXPECT_NE(first, second);
+    constexpr std::size_t kStamp = 17;  // 2026-11-28_085312
+    if (first.filename().string().substr(0, kStamp) == second.filename().string().substr(0, kStamp)) {
+        EXPECT_EQ(second.stem(), first.stem().string() + "-2");
+    }
     EXPECT_EQ(second.extension(), ".png");
     setenv("TACT_OUTPUT", "not/absolute", 1);
     setenv("HOME", folder_.c_str(), 1);
