@@ -16,6 +16,7 @@ namespace tact::launch {
     const std::filesystem::path program = find_program(name);
     words.insert(words.begin(), name);
     std::vector<char*> arguments;
+    arguments.reserve(words.size() + 1);
     for (std::string& w : words) arguments.push_back(w.data());
     arguments.push_back(nullptr);
     execv(program.c_str(), arguments.data());

@@ -24,7 +24,7 @@ fs::path free_stem(const fs::path& folder, const ReplayTopic& replay) {
     const std::string name =
         fs::path(field_text(replay.name, sizeof replay.name)).stem().filename().string() + at;
     for (int i = 1;; ++i) {
-        const fs::path stem = folder / (i == 1 ? name : name + "-" + std::to_string(i));
+        fs::path stem = folder / (i == 1 ? name : name + "-" + std::to_string(i));
         if (!fs::exists(stem.string() + ".json") && !fs::exists(stem.string() + ".bone")) return stem;
     }
 }

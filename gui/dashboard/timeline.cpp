@@ -109,7 +109,7 @@ void run_from_here(const Theme& theme, ReplayState& state) {
 }  // namespace
 
 std::string replay_text(const ReplayTopic& r) {
-    const std::string of = format("%.3f s of %.1f s", r.at_s, r.duration_s);
+    std::string of = format("%.3f s of %.1f s", r.at_s, r.duration_s);
     switch (act_of(r)) {
         case ReplayAct::paused:
             return "paused at " + of;

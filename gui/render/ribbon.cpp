@@ -36,6 +36,7 @@ public:
     Ribbon(const Structure& s, const std::vector<std::uint32_t>& atoms, const std::vector<Fold>& folds)
         : folds_(folds), nucleic_(s.element[atoms.front()] != kCarbon) {
         std::vector<Vector3f> raw;
+        raw.reserve(atoms.size());
         for (const std::uint32_t atom : atoms) raw.push_back(point_a(s, atom));
         point_ = raw;
         for (std::size_t i = 1; i + 1 < raw.size(); ++i)

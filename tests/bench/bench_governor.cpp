@@ -105,7 +105,7 @@ void write_copies(const Structure& s, std::size_t copies, const fs::path& file) 
 
 // Writes the map of a baked scene to a file.
 fs::path map_of(const Folder& folder, const SceneFile& scene) {
-    const fs::path file = folder.path / "map.mrc";
+    fs::path file = folder.path / "map.mrc";
     if (!fs::exists(file)) launch::write_whole(file, map_file_bytes(read_grid(scene)));
     return file;
 }
@@ -235,6 +235,7 @@ GovernorRun median_of(const std::vector<GovernorRun>& runs) {
     for (const auto value : {&GovernorRun::miss_share, &GovernorRun::error_n, &GovernorRun::step_n,
                              &GovernorRun::level, &GovernorRun::settled_s, &GovernorRun::rate_hz}) {
         std::vector<double> values;
+        values.reserve(runs.size());
         for (const GovernorRun& r : runs) values.push_back(r.*value);
         std::sort(values.begin(), values.end());
         median.*value = values[values.size() / 2];
