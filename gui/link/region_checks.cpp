@@ -147,11 +147,13 @@ bool sensible(const MarkTopic& m) noexcept { return near(m.pos_model_m); }
 // Places beyond the end are possible for a moment: the last step is shown before the recording's length is known.
 bool sensible(const ReplayTopic& r) noexcept {
     constexpr double kMostS = 1e9;
+    constexpr std::int64_t kMostNs = 4'000'000'000'000'000'000;
     const auto time = [](double s) { return s >= 0.0 && s <= kMostS; };
     return time(r.at_s) && time(r.duration_s) && r.speed >= TimelineTopic::kSpeedLeast &&
            r.speed <= TimelineTopic::kSpeedMost && r.seek_share >= 0.0 && r.seek_share <= 1.0 &&
            r.act <= static_cast<std::uint8_t>(ReplayAct::ended) && r.exact <= 1 && r.whole <= 1 &&
-           r.plays <= 1 && r.can_run <= 1 && r.taken_at_ns >= 0 && r.shown_ns >= 0 && ended(r.name);
+           r.plays <= 1 && r.can_run <= 1 && r.taken_at_ns >= 0 && r.shown_ns >= 0 && r.shown_ns <= kMostNs &&
+           ended(r.name);
 }
 
 bool sensible(const ReplayMarks& m) noexcept {

@@ -38,7 +38,7 @@ ReplayMarks marks_of(const std::vector<EventTopic>& events, std::int64_t begin_n
             code == EventCode::torque_slew_limited)
             continue;
         ReplayMark mark{};
-        mark.at_s = 1e-9 * static_cast<double>(e.taken_at_ns - begin_ns);
+        mark.at_s = seconds_since(begin_ns, e.taken_at_ns);
         mark.code = e.code;
         mark.detail = e.detail;
         mark.grade = mark_grade(e);

@@ -15,6 +15,8 @@ using std::chrono::milliseconds;
 
 constexpr auto kSlice = milliseconds(20);  // of computing, between looks at the window
 constexpr auto kServeEvery = milliseconds(10);
+constexpr double kMostS = 1e9;
+constexpr std::int64_t kMostNs = 4'000'000'000'000'000'000;
 constexpr auto kAttachWithin = milliseconds(5000);  // of a window, to the replay after a way back
 
 }  // namespace
@@ -33,7 +35,7 @@ ReplayPlayer::ReplayPlayer(Settings settings, std::unique_ptr<Replay> first)
 bool ReplayPlayer::differed() const { return differed_ || shown_->result().different > 0; }
 
 double ReplayPlayer::time_s(const RecordedStep& step) const {
-    return 1e-9 * static_cast<double>(step.cycle.now_ns - shown_->recording().about().begin_ns);
+    return seconds_since(shown_->recording().about().begin_ns, step.cycle.now_ns);
 }
 
 void ReplayPlayer::run(const std::function<bool()>& stopped) {
@@ -45,7 +47,8 @@ void ReplayPlayer::run(const std::function<bool()>& stopped) {
         throw StartupError("showing a replay in session '" + settings_.session + "'", "no window attached",
                            "start one with tact replay --show, or tact-gui --session " + settings_.session);
     began_ = true;
-    shift_ = Monotonic::now() - instant_from_ns(shown_->recording().about().begin_ns);
+    shift_ = Monotonic::now() -
+             instant_from_ns(std::clamp<std::int64_t>(shown_->recording().about().begin_ns, 0, kMostNs));
     shown_->shift_by(shift_);
     seek({settings_.from_s, 0});
     while (!stopped()) {
@@ -153,7 +156,7 @@ void ReplayPlayer::seek_on() {
 
 void ReplayPlayer::compute(Replay& replay, double& at_s, std::int64_t& at_ns) {
     at_s = time_s(*replay.upcoming());
-    at_ns = replay.upcoming()->cycle.now_ns + shift_.count();
+    at_ns = std::clamp<std::int64_t>(replay.upcoming()->cycle.now_ns, 0, kMostNs) + shift_.count();
     replay.do_step();
 }
 
@@ -196,9 +199,10 @@ void ReplayPlayer::publish() {
     const RecordingReader::About& about = shown_->recording().about();
     ReplayTopic t{};
     t.taken_at_ns = to_ns(now);
-    t.shown_ns = shown_ns_;
-    t.at_s = at_s_;
-    t.duration_s = 1e-9 * static_cast<double>(about.end_ns - about.begin_ns);
+    // Numbers that the window accepts, whatever the recording holds: without this topic it would show a live run.
+    t.shown_ns = std::clamp<std::int64_t>(shown_ns_, 0, kMostNs);
+    t.at_s = std::clamp(at_s_, 0.0, kMostS);
+    t.duration_s = std::clamp(seconds_since(about.begin_ns, about.end_ns), 0.0, kMostS);
     t.speed = speed_;
     t.step = shown_->result().steps;
     t.steps = about.cycles;

@@ -33,6 +33,7 @@ public:
         thread_.join();
         return outcome_;
     }
+    [[nodiscard]] const record::RecorderOutcome& outcome() const { return outcome_; }  // after join()
     [[nodiscard]] const std::filesystem::path& file() const { return file_; }
 
 private:
@@ -42,6 +43,17 @@ private:
     std::atomic<bool> stop_{false};
     std::thread thread_;
 };
+
+// An armed run of so many cycles, recorded without a loss.
+void record_cycles(const Rig& rig, Recording& recording, std::uint64_t cycles) {
+    Controller rt(rig, {"--arm"});
+    Watch watch(rig);
+    ASSERT_TRUE(watch.attach()) << rt.said();
+    ASSERT_TRUE(watch.cycles_pass(cycles));
+    rt.child().stop();
+    ASSERT_TRUE(rt.child().wait(std::chrono::minutes(1)));
+    ASSERT_EQ(recording.join().progress.dropped, 0U);
+}
 
 ReplayResult again(Replay& replay) {
     while (replay.upcoming() != nullptr) replay.do_step();
@@ -103,15 +115,7 @@ TEST(ReplayScenario, orders_and_rebuilt_models_are_replayed_in_their_steps) {
 TEST(ReplayScenario, a_changed_sample_is_found_at_its_step) {
     const Rig rig;
     Recording recording(rig);
-    {
-        Controller rt(rig, {"--arm"});
-        Watch watch(rig);
-        ASSERT_TRUE(watch.attach()) << rt.said();
-        ASSERT_TRUE(watch.cycles_pass(900));
-        rt.child().stop();
-        ASSERT_TRUE(rt.child().wait(std::chrono::minutes(1)));
-    }
-    ASSERT_EQ(recording.join().progress.dropped, 0U);
+    ASSERT_NO_FATAL_FAILURE(record_cycles(rig, recording, 900));
     const auto change = [&](std::uint64_t row, double by_m) {
         const Hdf5Handle file = hdf5::open_file(recording.file(), true);
         const auto hands = Hdf5Table::open(file.get(), kHandGroups[0], hand_columns(), sizeof(HandRow));
@@ -186,16 +190,8 @@ private:
 TEST(ReplayScenario, a_window_pauses_steps_and_seeks_back_and_forth) {
     const Rig rig;
     Recording recording(rig);
-    {
-        Controller rt(rig, {"--arm"});
-        Watch watch(rig);
-        ASSERT_TRUE(watch.attach()) << rt.said();
-        ASSERT_TRUE(watch.cycles_pass(2500));
-        rt.child().stop();
-        ASSERT_TRUE(rt.child().wait(std::chrono::minutes(1)));
-    }
-    const record::RecorderOutcome& outcome = recording.join();
-    ASSERT_EQ(outcome.progress.dropped, 0U);
+    ASSERT_NO_FATAL_FAILURE(record_cycles(rig, recording, 2500));
+    const record::RecorderOutcome& outcome = recording.outcome();
     // What a window must show at a step: the tool's place after so many steps of a replay of its own.
     const auto tool_after = [&](std::uint64_t steps) {
         Replay replay({.recording = recording.file(), .scene = {}});

@@ -1,6 +1,9 @@
 // Marks of a recording's timeline.
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <limits>
+
 #include "ipc/topics/command.hpp"
 #include "rt/replay/recorded_marks.hpp"
 
@@ -42,6 +45,16 @@ TEST(ReplayMarks, leave_out_what_happens_all_the_time_and_what_comes_in_a_row) {
     const ReplayMarks m = made(events);
     ASSERT_EQ(m.count, 3U);  // two within the first second, one later
     EXPECT_NEAR(m.mark[2].at_s, 5.0, 1e-9);
+}
+
+TEST(ReplayMarks, of_impossible_times_are_finite) {
+    EventTopic first = event(0.0, EventCode::hand_left), last = event(0.0, EventCode::fault_latched);
+    first.taken_at_ns = std::numeric_limits<std::int64_t>::min();
+    last.taken_at_ns = std::numeric_limits<std::int64_t>::max();
+    const ReplayMarks m = marks_of({first, last}, std::numeric_limits<std::int64_t>::max());
+    ASSERT_EQ(m.count, 2U);
+    EXPECT_TRUE(std::isfinite(m.mark[0].at_s) && std::isfinite(m.mark[1].at_s));
+    EXPECT_LT(m.mark[0].at_s, m.mark[1].at_s);
 }
 
 TEST(ReplayMarks, of_too_many_the_gravest_stay_and_the_others_are_counted) {
