@@ -67,7 +67,7 @@ Controller::Fresh Controller::read() {
     fresh.tracker = take(region_->tracker, seen_tracker_, tracker, have_tracker);
     fresh.devices = take(region_->devices, seen_devices_, devices, have_devices);
     fresh.lateness = take(region_->lateness, seen_lateness_, lateness, have_lateness);
-    fresh.replay = take(region_->replay, seen_replay_, replay, have_replay);
+    static_cast<void>(take(region_->replay, seen_replay_, replay, have_replay));
     static_cast<void>(take(region_->replay_marks, seen_replay_marks_, replay_marks, have_replay_marks));
     fresh.mark = take(region_->mark, seen_mark_, mark, have_mark);
     fresh.recorders = take(region_->recorders, seen_recorders_, recorders, have_recorders);

@@ -35,7 +35,7 @@ public:
     struct Fresh {
         bool tool = false, second = false, bodies = false, shapes = false, touch = false, drill = false,
              head = false, tracker = false, devices = false, health = false, lateness = false, levels = false,
-             recorders = false, mark = false, replay = false;
+             recorders = false, mark = false;
     };
     Fresh read();
     [[nodiscard]] bool next_event(EventTopic& event);

@@ -144,7 +144,7 @@ bool sensible(const LevelsTopic& l) noexcept {
 
 bool sensible(const MarkTopic& m) noexcept { return near(m.pos_model_m); }
 
-// Places beyond the end are possible for a moment: the last step is shown before the recording's length is known.
+// The bounds are those within which tact-replay keeps what it publishes.
 bool sensible(const ReplayTopic& r) noexcept {
     constexpr double kMostS = 1e9;
     constexpr std::int64_t kMostNs = 4'000'000'000'000'000'000;

@@ -154,7 +154,6 @@ void GuiApp::follow_controller(std::int64_t now_ns) {
         for (const auto& system : systems_) system->attach(context());
         if (!state_.replay.shown) spdlog::info("attached to the controller of session {}", options_.session);
         second_hand_.forget();
-        timeline_.forget();
         commands_.forget();
         forget_rates(state_);
         traces_place_ = {};

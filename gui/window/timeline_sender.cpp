@@ -6,9 +6,8 @@
 namespace tact {
 
 void TimelineSender::send(const TimelineRequest& request, const ReplayTopic& replay, std::int64_t now_ns) {
-    const bool pending = known_ && waits(replay);
     // A step from a place that is still looked for counts from there.
-    const std::uint64_t from = pending && sent_.seek_step > 0 ? sent_.seek_step : replay.step;
+    const std::uint64_t from = waits(replay) && sent_.seek_step > 0 ? sent_.seek_step : replay.step;
     TimelineTopic t = sent_;
     t.taken_at_ns = now_ns;
     t.speed = replay.speed;
@@ -44,7 +43,6 @@ void TimelineSender::send(const TimelineRequest& request, const ReplayTopic& rep
             break;
         }
     }
-    known_ = true;
     sent_ = t;
     to_.publish(t);
 }

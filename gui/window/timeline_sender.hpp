@@ -18,12 +18,10 @@ public:
     void send(const TimelineRequest& request, const ReplayTopic& replay, std::int64_t now_ns);
     // A place that was requested and is not shown yet.
     [[nodiscard]] bool waits(const ReplayTopic& replay) const { return replay.seeks != sent_.seeks; }
-    void forget() { known_ = false; }  // another replay arrived
 
 private:
     Latest<TimelineTopic>& to_;
     TimelineTopic sent_{};
-    bool known_ = false;  // what was sent concerns the present replay
 };
 
 }  // namespace tact

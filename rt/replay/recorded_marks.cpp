@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <array>
 
-#include "ipc/base/device_notice.hpp"
-#include "ipc/base/run_state.hpp"
 #include "ipc/topics/command.hpp"
 
 namespace tact {

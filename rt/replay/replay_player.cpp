@@ -54,7 +54,7 @@ void ReplayPlayer::run(const std::function<bool()>& stopped) {
     while (!stopped()) {
         const bool waits = act_ == ReplayAct::paused || act_ == ReplayAct::ended;
         if (waits || Monotonic::now() - served_ > kServeEvery) attend(waits ? 10 : 0);
-        if (!attached_ && Monotonic::now() - opened_ > kAttachWithin) break;
+        if (closed_ || (!attached_ && Monotonic::now() - opened_ > kAttachWithin)) break;
         follow_window();
         if (act_ == ReplayAct::seeking)
             seek_on();
@@ -86,10 +86,11 @@ void ReplayPlayer::attend(int timeout_ms) {
         if (TimelineTopic t{}; !began_ && !window_.empty() && window_->timeline.read(t, &timelines_seen_))
             seeks_wanted_ = seeks_done_ = t.seeks, runs_ = t.runs;
         attached_ = true;
+        closed_ = false;
     }
     if (news.gui_left) {
         attached_ = false;
-        opened_ = Monotonic::now() - kAttachWithin;  // it was closed
+        closed_ = true;
     }
     served_ = Monotonic::now();
 }

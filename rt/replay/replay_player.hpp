@@ -66,7 +66,7 @@ private:
     ReplayMarks marks_{};
     Duration shift_{0};
     ReplayAct act_ = ReplayAct::playing;
-    bool began_ = false, attached_ = false, play_ = true, differed_ = false;
+    bool began_ = false, attached_ = false, closed_ = false, play_ = true, differed_ = false;
     double speed_, at_s_ = 0.0;
     std::int64_t shown_ns_ = 0;
     double place_at_s_ = 0.0;  // that `fresh_` has reached

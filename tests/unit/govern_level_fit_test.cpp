@@ -1,5 +1,4 @@
 // Choice of the haptic level: smallest error that fits, whole costs, misses, interrupts, no hunting.
-#include "rt/govern/level_fit.hpp"
 
 #include <gtest/gtest.h>
 
@@ -10,28 +9,15 @@
 #include <random>
 #include <vector>
 
+#include "tests/unit/govern_level_rows.hpp"
+
 namespace tact::govern_level_fit_test {
 namespace {
 
-using Rows = std::vector<LevelFit::Row>;
-
-constexpr double kUs = 1e-6;
-
-// Costs double from level to level, errors halve; the last is exact.
-Rows doubling(std::size_t count, double first_us) {
-    Rows rows;
-    for (std::size_t i = 0; i < count; ++i)
-        rows.push_back({.level = static_cast<float>(i) / static_cast<float>(count - 1),
-                        .cost_s = kUs * first_us * std::exp2(static_cast<double>(i)),
-                        .error = i + 1 == count ? 0.0 : std::exp2(-static_cast<double>(i))});
-    return rows;
-}
-
-LevelFit with(const Rows& rows) {
-    LevelFit fit;
-    EXPECT_TRUE(fit.set_rows(rows));
-    return fit;
-}
+using test::doubling;
+using test::kUs;
+using test::Rows;
+using test::with;
 
 // A loop whose steps cost `cost_us` of their row. The deadline ends a step, which has then done a part of its work.
 class Loop {
@@ -272,45 +258,6 @@ TEST(LevelFit, a_leap_of_the_predicted_cost_lowers_the_level_in_the_same_cycle) 
     EXPECT_LE(4.0 * usual(fit.row()), 700.0);
 }
 
-TEST(LevelFit, the_largest_predicted_cost_and_error_of_the_last_seconds_count) {
-    LevelFit fit = with(doubling(3, 10.0));
-    EXPECT_TRUE(fit.renew(1, 100 * kUs, 5.0, 1e-3));
-    // Unfaded for kKept_s at least, and for twice as long at most, however seldom a row is renewed.
-    double age_s = 0.0, kept_s = 0.0;
-    for (; age_s < 2.5 * LevelFit::kKept_s; age_s += 0.03) {
-        EXPECT_FALSE(fit.renew(1, 1 * kUs, 0.1, 0.03));
-        if (fit.rows()[1].cost_s < 100 * kUs || fit.rows()[1].error < 5.0) continue;
-        kept_s = age_s;
-    }
-    EXPECT_GT(kept_s, LevelFit::kKept_s - 0.05);
-    EXPECT_LT(kept_s, 2.0 * LevelFit::kKept_s + 0.05);
-    EXPECT_NEAR(fit.rows()[1].cost_s, 1 * kUs, 1e-12);
-    EXPECT_NEAR(fit.rows()[1].error, 0.1, 1e-12);
-    EXPECT_TRUE(fit.renew(1, 100 * kUs, 5.0, 1e-3));
-    EXPECT_FALSE(fit.renew(1, 1 * kUs, 0.1, 10.0 * LevelFit::kKept_s));
-    EXPECT_NEAR(fit.rows()[1].cost_s, 1 * kUs, 1e-12);
-    EXPECT_FALSE(fit.renew(1, NAN, 0.0, 1e-3));
-    EXPECT_FALSE(fit.renew(7, 1.0, 0.0, 1e-3));
-    EXPECT_NEAR(fit.rows()[1].cost_s, 1 * kUs, 1e-12);
-    std::vector<bool> due(3);
-    for (int i = 0; i < 3; ++i) {
-        due[fit.due()] = true;
-        static_cast<void>(fit.learn({}));
-    }
-    EXPECT_EQ(due, std::vector<bool>(3, true));
-}
-
-// A contact that may come bounds the level until it has come and has shown its cost.
-TEST(LevelFit, a_foreseen_cost_counts_while_it_is_foreseen_and_is_not_kept) {
-    LevelFit fit = with(doubling(3, 10.0));
-    EXPECT_TRUE(fit.renew(1, 1 * kUs, 0.1, 1e-3, 100 * kUs));
-    EXPECT_NEAR(fit.rows()[1].cost_s, 100 * kUs, 1e-12);
-    EXPECT_FALSE(fit.renew(1, 2 * kUs, 0.1, 1e-3));
-    EXPECT_NEAR(fit.rows()[1].cost_s, 2 * kUs, 1e-12);
-    EXPECT_FALSE(fit.renew(1, 1 * kUs, 0.1, 1e-3, NAN));
-    EXPECT_NEAR(fit.rows()[1].cost_s, 2 * kUs, 1e-12);
-}
-
 TEST(LevelFit, a_small_gain_of_error_is_not_worth_a_change_of_level) {
     for (const double error : {0.9, 0.8}) {
         LevelFit fit = with({{0.0F, 100 * kUs, 1.0}, {1.0F, 600 * kUs, error}});
@@ -322,15 +269,6 @@ TEST(LevelFit, a_small_gain_of_error_is_not_worth_a_change_of_level) {
         loop.run(3000, [](std::size_t row) { return row == 0 ? 100.0 : 200.0; });
         EXPECT_EQ(fit.row(), error < 0.85 ? 1U : 0U) << error;
     }
-}
-
-// What a step measured is never predicted below by a renewal.
-TEST(LevelFit, a_renewed_cost_is_at_least_the_calibrated_one) {
-    LevelFit fit = with(doubling(2, 1.0));
-    float level = 0.0F;
-    while (fit.calibrating(level)) fit.calibrate(50 * kUs, 1 * kUs);
-    EXPECT_FALSE(fit.renew(0, 1 * kUs, 0.0, 100.0 * LevelFit::kKept_s));
-    EXPECT_NEAR(fit.rows()[0].cost_s, 50 * kUs, 1e-12);
 }
 
 // Five in a row are a fault.
