@@ -10,7 +10,7 @@ using test::doubling;
 using test::kUs;
 using test::with;
 
-TEST(LevelFit, the_largest_predicted_cost_and_error_of_the_last_seconds_count) {
+TEST(LevelRows, the_largest_predicted_cost_and_error_of_the_last_seconds_count) {
     LevelFit fit = with(doubling(3, 10.0));
     EXPECT_TRUE(fit.renew(1, 100 * kUs, 5.0, 1e-3));
     // Unfaded for kKept_s at least, and for twice as long at most, however seldom a row is renewed.
@@ -39,7 +39,7 @@ TEST(LevelFit, the_largest_predicted_cost_and_error_of_the_last_seconds_count) {
 }
 
 // A contact that may come bounds the level until it has come and has shown its cost.
-TEST(LevelFit, a_foreseen_cost_counts_while_it_is_foreseen_and_is_not_kept) {
+TEST(LevelRows, a_foreseen_cost_counts_while_it_is_foreseen_and_is_not_kept) {
     LevelFit fit = with(doubling(3, 10.0));
     EXPECT_TRUE(fit.renew(1, 1 * kUs, 0.1, 1e-3, 100 * kUs));
     EXPECT_NEAR(fit.rows()[1].cost_s, 100 * kUs, 1e-12);
@@ -50,7 +50,7 @@ TEST(LevelFit, a_foreseen_cost_counts_while_it_is_foreseen_and_is_not_kept) {
 }
 
 // What a step measured is never predicted below by a renewal.
-TEST(LevelFit, a_renewed_cost_is_at_least_the_calibrated_one) {
+TEST(LevelRows, a_renewed_cost_is_at_least_the_calibrated_one) {
     LevelFit fit = with(doubling(2, 1.0));
     float level = 0.0F;
     while (fit.calibrating(level)) fit.calibrate(50 * kUs, 1 * kUs);
