@@ -8,6 +8,11 @@ struct SceneToggles {
     int style = 0;  // glass, solid, wire
     bool depth_cue = true;
     bool smooth_edges = true;  // initially as the renderer allows; not saved
+    bool shading = true;       // by depth; in software rendering once the view rests
+    bool white_ground = false;
+    bool cut = false;          // what is nearer than a plane is not drawn
+    float cut_at = 0.0F;       // of the plane: before the camera's target, radii of the scene
+    int labels = 0;            // of bodies: none, chains, residues
     bool frame_times = false;  // the table of passes
     bool sound = true;         // of the drill
     bool microscope = false;   // a drilling scene through an operating microscope

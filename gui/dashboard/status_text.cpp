@@ -84,7 +84,7 @@ StatusText deadline_status(const HealthTopic& h, std::int64_t now_ns) {
     if (h.deadline_misses == 0) return {Grade::good, "all met"};
     if (h.deadline_miss_share > 0.0F) {
         char text[64];
-        std::snprintf(text, sizeof text, "%.2g %% in the last second",
+        std::snprintf(text, sizeof text, "%.2g %% last second",
                       100.0 * static_cast<double>(h.deadline_miss_share));
         return {h.deadline_miss_share < 1e-3F ? Grade::watch : Grade::bad, text};
     }

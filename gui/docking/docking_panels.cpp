@@ -63,11 +63,7 @@ void toggles(const Theme& theme, SceneToggles& t, bool residues_current) {
     ImGui::Checkbox("Graph", &t.graph);
     ImGui::SameLine(third);
     ImGui::Checkbox("Map box", &t.box);
-    ImGui::Checkbox("Depth cue", &t.depth_cue);
-    ImGui::SameLine(second);
     ImGui::Checkbox("Frame times", &t.frame_times);
-    ImGui::SameLine(third);
-    ImGui::Checkbox("Smooth", &t.smooth_edges);
     static constexpr std::array<const char*, 5> kMolecule{"trace", "tube", "sticks", "spheres", "cartoon"};
     static constexpr std::array<const char*, 4> kColouring{"chain", "element", "body", "fit"};
     static constexpr std::array<const char*, 3> kSurface{"glass", "solid", "wire"};
@@ -109,6 +105,17 @@ void DockingPanels::add_legend(const DashboardState& state, std::vector<LegendLi
     const bool spheres = state.toggles.molecule == static_cast<int>(MoleculeStyle::spheres);
     lines.push_back({colour::kWatch, format("%s are slow in software rendering: tubes while anything moves",
                                             spheres ? "spheres" : "sticks")});
+}
+
+void DockingPanels::draw_over_view(const OverlayPen& pen, const DashboardState& state,
+                                   const PixelRect& view) const {
+    ImFont* const font =
+        state.toggles.labels == static_cast<int>(LabelKind::chains) ? pen.theme.bold : pen.theme.small;
+    for (const ViewLabel& label : labels) {
+        const float left = 0.5F * pen.width(font, label.text), up = 0.5F * font->FontSize;
+        pen.text(font, {view.x + label.x * view.width - left, view.y + label.y * view.height - up},
+                 IM_COL32(label.colour[0], label.colour[1], label.colour[2], 255), label.text);
+    }
 }
 
 std::string DockingPanels::drawn_text(const DashboardState& state) const {

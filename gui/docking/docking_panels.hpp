@@ -11,6 +11,7 @@
 
 #include "gui/dashboard/dashboard_state.hpp"
 #include "gui/dashboard/pixel_rect.hpp"
+#include "gui/docking/body_labels.hpp"
 #include "gui/system/system_panels.hpp"
 #include "ipc/scene/fit/fit_metrics.hpp"
 #include "ipc/topics/bodies.hpp"
@@ -150,6 +151,7 @@ public:
     FittingState fitting;
     ContourRowState contours;
     std::size_t drawn_as_tubes = 0;  // bodies, in place of their sticks or spheres
+    std::vector<ViewLabel> labels;
 
     [[nodiscard]] CardSize card_size() const override { return {212.0F, 0.3F}; }
     void draw_card(const Theme& theme, const PixelRect& card,
@@ -157,6 +159,8 @@ public:
     void draw_in_scene_card(const Theme& theme, DashboardState& state) override;
     [[nodiscard]] std::string drawn_text(const DashboardState& state) const override;
     void add_legend(const DashboardState& state, std::vector<LegendLine>& lines) const override;
+    void draw_over_view(const OverlayPen& pen, const DashboardState& state,
+                        const PixelRect& view) const override;
 };
 
 // Tabs of the scene card.

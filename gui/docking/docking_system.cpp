@@ -173,9 +173,25 @@ void DockingSystem::prepare(std::int64_t now_ns, bool sharp, ViewFrame& frame, c
     if (const PathLevel* const path = c.level(kMoleculesPath)) molecules_level_ = path->level;
     layer_->molecules().set_level(sharp ? 1.0F : molecules_level_);
     if (context.software) layer_->molecules().set_shapes_max(sharp ? kShapesMaxAtRest : kShapesMaxInSoftware);
+    label(frame, context);
     colour_by_fit();
     layer_->molecules().set_look(
         {static_cast<MoleculeStyle>(t.molecule), static_cast<Colouring>(t.colouring)});
+}
+
+void DockingSystem::label(const ViewFrame& frame, const SystemContext& context) {
+    const SceneToggles& t = context.state.toggles;
+    const auto kind = static_cast<LabelKind>(t.labels);
+    const bool one_view =
+        context.state.stage.empty() && t.backbone;  // each eye of a stereo display has its own
+    panels_.labels.clear();
+    if (kind == LabelKind::none || !one_view) return;
+    const float a_unit = 1.0F / context.text_px;
+    const LabelView view{
+        context.camera.eye(static_cast<float>(frame.width_px) / static_cast<float>(frame.height_px)),
+        static_cast<float>(frame.width_px) * a_unit, static_cast<float>(frame.height_px) * a_unit,
+        t.cut ? context.camera.distance_a() - t.cut_at * view_->radius_a() : 0.0F};
+    panels_.labels = body_labels(*content_, drawn_, kind, view);
 }
 
 void DockingSystem::colour_by_fit() {

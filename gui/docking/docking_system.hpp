@@ -41,6 +41,7 @@ private:
     // What is shown as the contour, and what "inside" refers to: the first contour, as the person set it.
     void count_contour();
     void colour_by_fit();
+    void label(const ViewFrame& frame, const SystemContext& context);
     void describe_shape(const Controller& controller, FittingState& fitting) const;
     void follow_bodies(std::int64_t now_ns, const SystemContext& context);
 

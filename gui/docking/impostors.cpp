@@ -41,6 +41,7 @@ void main() {
     float r = u_grow * sphere.w, z = -c.z, d = z * z - r * r;
     v_colour = picked(element, chain);
     v_sphere = vec4(c, r);
+    gl_ClipDistance[0] = 1.0;  // the fragments are cut
     if (z < 1.05 * r) { v_slope = vec2(0.0); gl_Position = nowhere; return; }
     v_slope = (c.xy * z + corner() * r * sqrt(c.xy * c.xy + d)) / d;
     gl_Position = on_quad(v_slope, z - r);
@@ -62,6 +63,11 @@ void main() {
     float back = sqrt(h / length2);
     vec3 n = (off - back * ray) / v_sphere.w;
     float depth = nearest - back;  // the ray's z is -1
+    if (depth < u_cut) {
+        if (nearest + back < u_cut) discard;
+        face(v_colour, ray);
+        return;
+    }
     finish(v_colour, n, ray, length2, depth);
 }
 )";
@@ -85,6 +91,7 @@ void main() {
     v_colour_to = picked(element_to, chain_to);
     v_from = vec4(a, r);
     v_to = b;
+    gl_ClipDistance[0] = 1.0;
     if (min(-a.z, -b.z) < 1.05 * r) { v_slope = vec2(0.0); gl_Position = nowhere; return; }
     vec2 sa = a.xy / -a.z, sb = b.xy / -b.z;
     float ra = reach(a, r), rb = reach(b, r);
@@ -138,6 +145,14 @@ void main() {
         n = (off - back * ray) / v_from.w;
         t = nearest - back - start;
     }
+    if (start + t < u_cut) {
+        vec3 q = u_cut * ray - a;
+        float part = clamp(dot(q, axis) / max(axis2, 1e-12), 0.0, 1.0);
+        vec3 beside = q - part * axis;
+        if (dot(beside, beside) > r2) discard;
+        face(part < 0.5 ? v_colour_from : v_colour_to, ray);
+        return;
+    }
     finish(y < 0.5 * axis2 ? v_colour_from : v_colour_to, n, ray, length2, start + t);
 }
 )";
@@ -148,9 +163,15 @@ void finish(vec3 base, vec3 n, vec3 ray, float length2, float depth) {
     colour = hazed(vec4(c, 1.0), depth, clip.y / clip.w);
     gl_FragDepth = 0.5 + 0.5 * clip.z / clip.w;
 }
+// Of a cut: both shapes are convex, so a ray that enters one before the plane is inside of it there, or never again.
+void face(vec3 base, vec3 ray) {
+    vec4 clip = u_projection * vec4(u_cut * ray, 1.0);
+    colour = hazed(vec4(0.72 * base, 1.0), u_cut, clip.y / clip.w);
+    gl_FragDepth = 0.5 + 0.5 * clip.z / clip.w;
+}
 )";
 
-// finish() writes to outputs that `text` declares before main(), so it stands between the two.
+// finish() and face() write to outputs that `text` declares before main(), so they stand between the two.
 std::string fragment(const char* text) {
     std::string whole = shader(text);
     whole.insert(whole.find("void main()"), kFinish + 1);

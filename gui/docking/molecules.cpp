@@ -195,13 +195,13 @@ void Molecules::draw_tube(const Source& source, MoleculeStyle style, const Impos
     const TriangleBuffers& full = tube(source, style, 0);  // first: the others are parts of it
     TriangleBuffers& tubes = tube(source, style, step);
     count(static_cast<std::size_t>(tubes.indices()) / 3, static_cast<std::size_t>(full.indices()) / 3);
-    Paint paint;
+    Paint paint{.closed = true};
     if (view.colouring == Colouring::body)
         paint.tint = Eigen::Vector4f(static_cast<float>(view.body[0]) / 255.0F,
                                      static_cast<float>(view.body[1]) / 255.0F,
                                      static_cast<float>(view.body[2]) / 255.0F, 1.0F);
     programs_.use_lit(view.eye_from_local, view.projection, view.haze, paint);
-    glEnable(GL_CULL_FACE);  // tubes are closed
+    if (!(view.haze.cut_a > 0.0F)) glEnable(GL_CULL_FACE);  // tubes are closed
     tubes.draw();
     glDisable(GL_CULL_FACE);
 }

@@ -51,6 +51,22 @@ void main() {
     float t = max(max(near.x, max(near.y, near.z)), 0.0);
     float end = min(far.x, min(far.y, far.z));
     if (t >= end) return;
+    float plane = u_cut / max(-(mat3(u_eye) * d).z, 1e-9);
+    if (u_cut > 0.0 && plane > t) {
+        if (plane >= end) return;
+        t = plane;
+        vec3 p = u_origin + t * d;
+        float dense = bone(p);
+        if (dense >= u_surface) {
+            float label = label_at(p);
+            vec3 face = label > 0.5 ? texelFetch(u_palette, ivec2(int(label), 0), 0).rgb
+                                    : mix(vec3(0.52, 0.30, 0.24), vec3(0.93, 0.89, 0.80), smoothstep(0.3, 0.95, dense));
+            colour = hazed(vec4(0.92 * face, 1.0), u_cut, v_y);
+            vec4 clip = u_projection * (u_eye * vec4(p, 1.0));
+            gl_FragDepth = clamp(0.5 + 0.5 * clip.z / clip.w, 0.0, 0.99999);
+            return;
+        }
+    }
     t += 1e-3;
     float leave = -1.0;
     bool hit = false;

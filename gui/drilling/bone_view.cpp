@@ -15,9 +15,7 @@ constexpr float kSharpStep = 1.0F, kCoarseStep = 1.4F;  // voxels
 constexpr int kCoarsest = 12;                           // pixels per ray
 
 bool same_view(const BoneFrame& a, const BoneFrame& b) {
-    return a.eye_from_scene == b.eye_from_scene && a.projection == b.projection &&
-           a.haze.begin_a == b.haze.begin_a && a.haze.end_a == b.haze.end_a &&
-           a.haze.strength == b.haze.strength && a.haze.top == b.haze.top && a.haze.bottom == b.haze.bottom &&
+    return a.eye_from_scene == b.eye_from_scene && a.projection == b.projection && a.haze == b.haze &&
            a.width_px == b.width_px && a.height_px == b.height_px && a.coaxial_light == b.coaxial_light;
 }
 

@@ -23,10 +23,10 @@ void DrillingLayer::draw_structures(const LayerPass& pass) {
         Pose turned = tool.T_model_tool;
         turned.q = turned.q * Quat(Eigen::AngleAxisd(tool.turned_rad, Vec3::UnitZ()));
         const Eigen::Matrix4f eye_from_tool = pass.eye_from_scene * scene_from_body(turned, centre_model_m_);
-        pass.programs.use_lit(eye_from_tool, pass.projection, pass.haze, {});
+        pass.programs.use_lit(eye_from_tool, pass.projection, pass.haze.uncut(), {});
         hand.rest.draw();
         if (hand.head.indices() == 0) continue;
-        pass.programs.use_lit(eye_from_tool, pass.projection, pass.haze, {.tint = frame.burr_glow});
+        pass.programs.use_lit(eye_from_tool, pass.projection, pass.haze.uncut(), {.tint = frame.burr_glow});
         hand.head.draw();
     }
 }

@@ -150,14 +150,13 @@ void DrillingPanels::draw_in_scene_card(const Theme& theme, DashboardState& stat
     row(theme, "File", state.scene.file, "");
     ImGui::Checkbox("Frame times", &state.toggles.frame_times);
     ImGui::SameLine(theme.px(130.0F));
-    ImGui::Checkbox("Smooth edges", &state.toggles.smooth_edges);
     ImGui::Checkbox("Force arrow", &state.toggles.force);
-    ImGui::SameLine(theme.px(130.0F));
     ImGui::BeginDisabled(!sound.empty());
     ImGui::Checkbox("Sound", &state.toggles.sound);
     ImGui::EndDisabled();
     if (!sound.empty() && ImGui::IsItemHovered(ImGuiHoveredFlags_AllowWhenDisabled))
         ImGui::SetTooltip("no sound: %s", sound.c_str());
+    ImGui::SameLine(theme.px(130.0F));
     ImGui::Checkbox("Microscope", &state.toggles.microscope);
     if (ImGui::IsItemHovered())
         ImGui::SetTooltip(

@@ -31,6 +31,7 @@ void main() {
     // The depth test uses its front, not its centre.
     float radius = u_size.x * look.z / 32.0;
     gl_Position = u_projection * vec4(p.xy, p.z + 0.7 * radius, 1.0);
+    if (-p.z < u_cut) gl_Position = vec4(2.0, 2.0, 2.0, 1.0);
     gl_PointSize = clamp(2.0 * radius * u_size.y / max(-p.z, 1e-3), 1.5, 64.0);
     v_ground = vec4(mix(u_ground_bottom, u_ground_top, 0.5 + 0.5 * gl_Position.y / gl_Position.w),
                     haze_at(-p.z));
@@ -57,7 +58,8 @@ uniform vec2 u_size;  // radius of a disc; pixels per length at distance 1
 out vec3 v_adds;
 void main() {
     vec4 p = u_eye * vec4(at, 1.0);
-    gl_Position = u_projection * vec4(p.xy, p.z + 0.5 * u_size.x, 1.0);
+    gl_Position = -p.z < u_cut ? vec4(2.0, 2.0, 2.0, 1.0)
+                               : u_projection * vec4(p.xy, p.z + 0.5 * u_size.x, 1.0);
     gl_PointSize = clamp(2.0 * u_size.x * u_size.y / max(-p.z, 1e-3), 2.0, 64.0);
     v_adds = vec3(look.x == 1.0 ? 1.0 : 0.0, look.x == 2.0 ? 1.0 : 0.0, -p.z);
 }

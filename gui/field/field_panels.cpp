@@ -29,9 +29,7 @@ void FieldPanels::draw_in_scene_card(const Theme& theme, DashboardState& state) 
         format("of %s vertices", grouped(state.scene.vertices_max).c_str()));
     ImGui::Checkbox("Surfaces", &state.toggles.surface);
     ImGui::SameLine(theme.px(104.0F));
-    ImGui::Checkbox("Depth cue", &state.toggles.depth_cue);
-    ImGui::SameLine(theme.px(196.0F));
-    ImGui::Checkbox("Times", &state.toggles.frame_times);
+    ImGui::Checkbox("Frame times", &state.toggles.frame_times);
     static constexpr std::array<const char*, 3> kStyles{"glass", "solid", "wire"};
     text_coloured(colour::kDim, "Surfaces as");
     ImGui::SameLine(theme.px(104.0F));
@@ -39,7 +37,6 @@ void FieldPanels::draw_in_scene_card(const Theme& theme, DashboardState& state) 
     ImGui::Checkbox("Force", &state.toggles.force);
     ImGui::SameLine(theme.px(104.0F));
     ImGui::Checkbox("Box", &state.toggles.box);
-    ImGui::Checkbox("Smooth edges", &state.toggles.smooth_edges);
 }
 
 std::string FieldPanels::drawn_text(const DashboardState& state) const {

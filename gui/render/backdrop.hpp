@@ -12,6 +12,9 @@
 
 namespace tact {
 
+// Over the whole viewport. plain: one colour; none: the gradient.
+void paint_view_ground(Programs& programs, const std::optional<Eigen::Vector3f>& plain);
+
 class Backdrop {
 public:
     // plain: one colour; none: the gradient. y from below.

@@ -8,6 +8,8 @@ namespace {
 
 // A level is applied at once if that takes no longer than one frame at 30 Hz.
 constexpr double kAtOnceS = 0.033;
+// Opacity of the face of a cut through glass: bodies behind it stay visible.
+constexpr float kGlassFace = 0.4F;
 
 }  // namespace
 
@@ -209,6 +211,27 @@ void Contours::draw_clear(const Eigen::Matrix4f& eye, const Eigen::Matrix4f& pro
     glBlendFunc(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA);
     for (const std::size_t i : inside_first) draw(i, eye, projection, haze, otherwise);
     glDisable(GL_BLEND);
+}
+
+void Contours::draw_cut(const Eigen::Matrix4f& eye, const Eigen::Matrix4f& projection, const Haze& haze,
+                        SurfaceStyle otherwise) {
+    if (content_->grid.values.empty()) return;
+    std::vector<DensitySlice::Level> levels;
+    for (std::size_t i = 0; i < wanted_.size(); ++i) {
+        const Contour& c = wanted_[i];
+        const SurfaceStyle style = c.style.value_or(otherwise);
+        if (!shown(i) || style == SurfaceStyle::wire || c.level < content_->meta.map_mean) continue;
+        const float face = style == SurfaceStyle::glass ? kGlassFace : 1.0F;
+        levels.push_back({slot_[i].state.level, c.colour, face * std::clamp(c.opacity, 0.0F, 1.0F)});
+    }
+    if (levels.empty()) return;
+    if (!slice_) slice_ = std::make_unique<DensitySlice>(content_->grid);
+    // What is translucent hides nothing that is drawn later.
+    const bool solid =
+        std::all_of(levels.begin(), levels.end(), [](const auto& l) { return l.opacity >= 1.0F; });
+    glDepthMask(solid ? GL_TRUE : GL_FALSE);
+    slice_->draw(eye, projection, haze, levels);
+    glDepthMask(GL_TRUE);
 }
 
 void Contours::draw(std::size_t i, const Eigen::Matrix4f& eye, const Eigen::Matrix4f& projection,

@@ -18,6 +18,7 @@
 
 #include "gui/render/content_key.hpp"
 #include "gui/render/contour_worker.hpp"
+#include "gui/render/density_slice.hpp"
 #include "gui/render/looks.hpp"
 #include "gui/render/programs.hpp"
 #include "gui/render/surface.hpp"
@@ -66,6 +67,10 @@ public:
     void draw_clear(const Eigen::Matrix4f& eye_from_model, const Eigen::Matrix4f& projection,
                     const Haze& haze, SurfaceStyle otherwise);
 
+    // The face where haze.cut_a cuts the map: of each shown contour that faces lower densities, in its colour; of glass, glassy.
+    void draw_cut(const Eigen::Matrix4f& eye_from_model, const Eigen::Matrix4f& projection, const Haze& haze,
+                  SurfaceStyle otherwise);
+
     // Totals of all shown surfaces.
     [[nodiscard]] std::uint32_t vertices() const;
     [[nodiscard]] std::uint32_t triangles() const;
@@ -99,6 +104,7 @@ private:
     double share_ = 1.0;
     bool refined_ = false;
     std::unique_ptr<ContourWorker> worker_;  // only if the scene has a map
+    std::unique_ptr<DensitySlice> slice_;    // created by the first cut
 };
 
 }  // namespace tact

@@ -11,8 +11,10 @@ uniform float u_glass;
 uniform float u_opacity;
 uniform vec4 u_tint;
 out vec4 v_colour;
+out vec4 v_inside;
 void main() {
     vec4 p = u_eye * vec4(position, 1.0);
+    gl_ClipDistance[0] = -p.z - u_cut;
     vec3 n = normalize(mat3(u_eye) * normal);
     vec3 v = normalize(-p.xyz);
     float facing = dot(n, v);
@@ -26,8 +28,17 @@ void main() {
         a *= 1.0 - 0.8 * haze_at(-p.z);
     }
     gl_Position = u_projection * p;
-    v_colour = hazed(vec4(c.rgb, min(a * u_opacity, 1.0)), -p.z, gl_Position.y / gl_Position.w);
+    float y = gl_Position.y / gl_Position.w;
+    v_colour = hazed(vec4(c.rgb, min(a * u_opacity, 1.0)), -p.z, y);
+    v_inside = hazed(vec4(0.72 * mix(colour.rgb, u_tint.rgb, u_tint.a), 1.0), -p.z, y);
 }
+)";
+// Of a closed body that is cut: its inner walls look like the face of the cut.
+constexpr char kCutFragment[] = R"(#version 330 core
+in vec4 v_colour;
+in vec4 v_inside;
+out vec4 colour;
+void main() { colour = gl_FrontFacing ? v_colour : v_inside; }
 )";
 constexpr char kPlainFragment[] = R"(#version 330 core
 in vec4 v_colour;
@@ -40,6 +51,7 @@ uniform vec4 u_colour;
 out vec4 v_colour;
 void main() {
     vec4 p = u_eye * vec4(position, 1.0);
+    gl_ClipDistance[0] = -p.z - u_cut;
     gl_Position = u_projection * p;
     v_colour = hazed(u_colour, -p.z, gl_Position.y / gl_Position.w);
 }
@@ -51,6 +63,7 @@ uniform vec2 u_size;  // radius, pixels per ångström at distance 1
 out vec4 v_colour;
 void main() {
     vec4 p = u_eye * vec4(position, 1.0);
+    gl_ClipDistance[0] = -p.z - u_cut;
     gl_PointSize = clamp(2.0 * u_size.x * u_size.y / max(-p.z, 1e-3), 3.0, 64.0);
     gl_Position = u_projection * p;
     v_colour = hazed(u_colour, -p.z, gl_Position.y / gl_Position.w);
@@ -86,17 +99,21 @@ void main() { colour = vec4(v_colour, 1.0); }
 
 }  // namespace
 
+Programs::LitProgram::LitProgram(const char* what, const char* vertex, const char* fragment)
+    : program(what, vertex, fragment),
+      view(program),
+      glass(program.uniform("u_glass")),
+      opacity(program.uniform("u_opacity")),
+      tint(program.uniform("u_tint")) {}
+
 Programs::Programs()
     : lit_("surface", shader(kLitVertex).c_str(), kPlainFragment),
+      cut_("cut surface", shader(kLitVertex).c_str(), kCutFragment),
       flat_("line", shader(kFlatVertex).c_str(), kPlainFragment),
       balls_("point", shader(kBallVertex).c_str(), kBallFragment),
       background_("background", kBackgroundVertex, kBackgroundFragment),
-      lit_view_(lit_),
       flat_view_(flat_),
       balls_view_(balls_),
-      glass_(lit_.uniform("u_glass")),
-      opacity_(lit_.uniform("u_opacity")),
-      tint_(lit_.uniform("u_tint")),
       flat_colour_(flat_.uniform("u_colour")),
       balls_colour_(balls_.uniform("u_colour")),
       balls_size_(balls_.uniform("u_size")) {
@@ -107,11 +124,12 @@ Programs::Programs()
 
 void Programs::use_lit(const Eigen::Matrix4f& eye, const Eigen::Matrix4f& projection, const Haze& haze,
                        const Paint& paint) {
-    lit_.use();
-    lit_view_.set(eye, projection, haze);
-    glUniform1f(glass_, paint.glass ? 1.0F : 0.0F);
-    glUniform1f(opacity_, paint.opacity);
-    glUniform4fv(tint_, 1, paint.tint.data());
+    const LitProgram& lit = paint.closed && haze.cut_a > 0.0F ? cut_ : lit_;
+    lit.program.use();
+    lit.view.set(eye, projection, haze);
+    glUniform1f(lit.glass, paint.glass ? 1.0F : 0.0F);
+    glUniform1f(lit.opacity, paint.opacity);
+    glUniform4fv(lit.tint, 1, paint.tint.data());
 }
 
 void Programs::use_flat(const Eigen::Matrix4f& eye, const Eigen::Matrix4f& projection, const Haze& haze,

@@ -11,8 +11,9 @@ namespace tact {
 
 // Colouring of triangles with normals.
 struct Paint {
-    bool glass = false;                              // transparent where it faces the eye, dense at the rim
-    float opacity = 1.0F;                            // multiplies the colour's own
+    bool glass = false;    // transparent where it faces the eye, dense at the rim
+    bool closed = false;   // where a cut opens it, its back faces look like the face of the cut
+    float opacity = 1.0F;  // multiplies the colour's own
     Eigen::Vector4f tint = Eigen::Vector4f::Zero();  // rgb replaces the vertex colour where a is 1
 };
 
@@ -30,10 +31,17 @@ public:
     void draw_background();
 
 private:
-    GlProgram lit_, flat_, balls_, background_;
+    struct LitProgram {
+        GlProgram program;
+        ViewUniforms view;
+        GLint glass, opacity, tint;
+        LitProgram(const char* what, const char* vertex, const char* fragment);
+    };
+    LitProgram lit_, cut_;
+    GlProgram flat_, balls_, background_;
     GlVertexArray empty_;
-    ViewUniforms lit_view_, flat_view_, balls_view_;
-    GLint glass_, opacity_, tint_, flat_colour_, balls_colour_, balls_size_;
+    ViewUniforms flat_view_, balls_view_;
+    GLint flat_colour_, balls_colour_, balls_size_;
 };
 
 }  // namespace tact

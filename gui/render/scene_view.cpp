@@ -65,20 +65,34 @@ void SceneView::draw(const EyeView& eye, const ViewOptions& options, const ViewF
                    frame.eye,   frame.eyes,         radius_a(),     arrow_a_per_n(),
                    frame.passes};
     SceneLayer& layer = layer_ != nullptr ? *layer_ : no_layer_;
+    const bool cuts = pass.haze.cut_a > 0.0F;
+    const auto cut = [cuts](bool on) {
+        cuts&& on ? glEnable(GL_CLIP_DISTANCE0) : glDisable(GL_CLIP_DISTANCE0);
+    };
     glEnable(GL_DEPTH_TEST);
     glDisable(GL_CULL_FACE);
     glDisable(GL_BLEND);
     {
         const PassClock::Scope scope(frame.passes, Pass::structures);
+        cut(true);
         layer.draw_structures(pass);
+        cut(false);
     }
     layer.draw_volume(pass);
     const Eigen::Matrix4f eye_from_model = pass.eye_from_scene * scene_from_model(content_->centre_model_m);
     const bool replaced = layer.replaces_surface(), surface = options.surface && !replaced;
+    cut(true);
     {
         const PassClock::Scope scope(frame.passes, Pass::surface);
         if (replaced) layer.draw_surface(pass);
         if (surface) contours_.draw_opaque(eye_from_model, pass.projection, pass.haze, options.style);
+    }
+    if (options.shaded) {
+        cut(false);
+        if (!shading_) shading_ = std::make_unique<RestShading>();
+        shading_->shade(pass.projection, pass.haze, pass.size_a, frame.x_px, frame.y_px, frame.width_px,
+                        frame.height_px);
+        cut(true);
     }
     glEnable(GL_BLEND);
     glBlendFunc(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA);
@@ -89,10 +103,15 @@ void SceneView::draw(const EyeView& eye, const ViewOptions& options, const ViewF
     }
     if (surface) {
         const PassClock::Scope scope(frame.passes, Pass::surface);
+        cut(false);
+        if (cuts) contours_.draw_cut(eye_from_model, pass.projection, pass.haze, options.style);
+        cut(true);
         contours_.draw_clear(eye_from_model, pass.projection, pass.haze, options.style);
     }
+    cut(false);
     glDisable(GL_BLEND);
     layer.draw_fluids(pass);
+    pass.haze.cut_a = 0.0F;
     draw_in_front(pass, options, frame);
     glBindVertexArray(0);
     glUseProgram(0);
@@ -121,6 +140,7 @@ Haze SceneView::haze_of(const EyeView& eye, const ViewOptions& options) const {
     haze.begin_a = eye.target_a - kHazeBegin * radius_a();
     haze.end_a = eye.target_a + kHazeEnd * radius_a();
     if (options.depth_cue) haze.strength = kHazeStrength;
+    if (options.cut_a) haze.cut_a = std::max(eye.target_a - *options.cut_a, 0.0F);
     if (!options.gradient) haze.top = haze.bottom = options.plain_ground;
     return haze;
 }

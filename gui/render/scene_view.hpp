@@ -14,6 +14,7 @@
 #include "gui/render/eye_view.hpp"
 #include "gui/render/pass_clock.hpp"
 #include "gui/render/programs.hpp"
+#include "gui/render/rest_shading.hpp"
 #include "gui/render/scene_content.hpp"
 #include "gui/render/scene_layer.hpp"
 #include "gui/render/triangle_buffers.hpp"
@@ -25,8 +26,17 @@ struct ViewOptions {
     SurfaceStyle style = SurfaceStyle::glass;
     bool depth_cue = true;  // far content fades into the background
     bool smooth_edges = true;
+    bool shaded = false;  // by RestShading: too slow for a view that moves
+    std::optional<float>
+        cut_a;  // a plane across the view, so far before the camera's target; what is nearer is not drawn
     bool gradient = true;                                    // background; off: plain_ground, cheaper
     Eigen::Vector3f plain_ground = Eigen::Vector3f::Zero();  // clear colour without a gradient
+
+    // The background's one colour; none: the gradient.
+    [[nodiscard]] std::optional<Eigen::Vector3f> plain() const {
+        if (gradient) return std::nullopt;
+        return plain_ground;
+    }
 };
 
 struct ViewFrame {
@@ -88,6 +98,7 @@ private:
     GlBuffer box_vertices_, box_edges_;
     GLsizei box_indices_ = 0;
     std::unique_ptr<EdgeSmoothing> edges_;  // created for the first smoothed frame
+    std::unique_ptr<RestShading> shading_;  // likewise
 };
 
 }  // namespace tact

@@ -8,6 +8,7 @@ constexpr char kHead[] = R"(#version 330 core
 uniform mat4 u_eye;
 uniform mat4 u_projection;
 uniform vec3 u_haze;  // begin, end, strength
+uniform float u_cut;
 uniform vec3 u_ground_top;
 uniform vec3 u_ground_bottom;
 vec4 lit(vec3 colour, vec3 n, vec3 v) {
@@ -31,6 +32,7 @@ ViewUniforms::ViewUniforms(const GlProgram& program)
     : eye(program.uniform("u_eye")),
       projection(program.uniform("u_projection")),
       haze(program.uniform("u_haze")),
+      cut(program.uniform("u_cut")),
       ground_top(program.uniform("u_ground_top")),
       ground_bottom(program.uniform("u_ground_bottom")) {}
 
@@ -38,6 +40,7 @@ void ViewUniforms::set(const Eigen::Matrix4f& eye_from_local, const Eigen::Matri
     set_uniform(eye, eye_from_local);
     set_uniform(projection, p);
     glUniform3f(haze, h.begin_a, h.end_a, h.strength);
+    glUniform1f(cut, h.cut_a);
     glUniform3fv(ground_top, 1, h.top.data());
     glUniform3fv(ground_bottom, 1, h.bottom.data());
 }

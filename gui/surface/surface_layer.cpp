@@ -24,7 +24,7 @@ void SurfaceLayer::draw_structures(const LayerPass& pass) {
     if (!frame.T_model_tool || tool_.indices() == 0) return;
     pass.programs.use_lit(
         pass.eye_from_scene * scene_from_body(*frame.T_model_tool, content_->centre_model_m), pass.projection,
-        pass.haze, {});
+        pass.haze.uncut(), {});
     tool_.draw();
 }
 

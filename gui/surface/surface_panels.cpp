@@ -24,14 +24,11 @@ void SurfacePanels::draw_in_scene_card(const Theme& theme, DashboardState& state
         format("of %s vertices", grouped(state.scene.vertices_max).c_str()));
     ImGui::Checkbox("Surface", &state.toggles.surface);
     ImGui::SameLine(theme.px(104.0F));
-    ImGui::Checkbox("Depth cue", &state.toggles.depth_cue);
-    ImGui::SameLine(theme.px(196.0F));
-    ImGui::Checkbox("Times", &state.toggles.frame_times);
+    ImGui::Checkbox("Frame times", &state.toggles.frame_times);
     static constexpr std::array<const char*, 3> kStyles{"glass", "solid", "wire"};
     text_coloured(colour::kDim, "Surface as");
     ImGui::SameLine(theme.px(104.0F));
     choose(theme, kStyles, state.toggles.style);
-    ImGui::Checkbox("Smooth edges", &state.toggles.smooth_edges);
     draw_detail(theme, detail, state.toggles.detail);
 }
 

@@ -33,6 +33,8 @@ enum class KeyAction : std::uint8_t {
     other_grit,
     microscope,
     style,
+    cut,
+    picture,
     swap_eyes,
     raise_contour,
     lower_contour,

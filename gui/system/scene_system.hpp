@@ -40,6 +40,7 @@ struct SystemContext {
     DashboardState& state;
     Camera& camera;
     bool software = false;  // the CPU renders
+    float text_px = 1.0F;   // pixels of the view for a pixel of the text's size at scale 1
 };
 
 class SceneSystem {

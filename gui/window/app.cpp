@@ -42,10 +42,8 @@ GuiApp::GuiApp(const GuiOptions& options)
     state_.strip = options.traces ? 1 : 0;
     state_.renderer = window_.renderer();
     if (options.plain) {
-        view_options_.gradient = false;
-        const ImVec4 ground = ImGui::ColorConvertU32ToFloat4(colour::kGround);
-        view_options_.plain_ground = Eigen::Vector3f(ground.x, ground.y, ground.z);
         state_.toggles.style = static_cast<int>(SurfaceStyle::solid);
+        state_.toggles.shading = false;
     }
     view_options_.depth_cue = options.depth_cue;
     if (!options.window_state_file.empty()) {
@@ -65,7 +63,10 @@ GuiApp::GuiApp(const GuiOptions& options)
     spdlog::info("renderer: {}{}", window_.renderer(), options.hidden ? ", hidden" : "");
 }
 
-SystemContext GuiApp::context() { return {controller_, commands_, state_, camera_, window_.software()}; }
+SystemContext GuiApp::context() {
+    return {controller_, commands_,          state_,
+            camera_,     window_.software(), theme_.scale * to_px(window_.size())};
+}
 
 int GuiApp::run() {
     const Instant begun = Monotonic::now();
@@ -91,7 +92,7 @@ void GuiApp::frame(Instant now, bool take_picture) {
     passes_.begin_frame();
     const bool input = window_.take_input();
     const bool of_series = pictures_.series_due(now, view_ != nullptr);
-    sharp_ = of_series || take_picture;
+    sharp_ = of_series || take_picture || state_.picture.save_wanted;
     panels_due_ = panel_image_.due(now, input || take_picture || screenshot_requested_ || layout_changes_);
     if (panels_due_) window_.begin_panels(theme_);
     window_.bind();

@@ -63,6 +63,14 @@ void GuiApp::draw_scene(std::int64_t now_ns) {
     view_options_.style = static_cast<SurfaceStyle>(t.style);
     view_options_.depth_cue = t.depth_cue;
     view_options_.smooth_edges = t.smooth_edges;
+    view_options_.shaded = t.shading && (sharp_ || !window_.software());
+    view_options_.cut_a.reset();
+    if (t.cut) view_options_.cut_a = t.cut_at * view_->radius_a();
+    view_options_.gradient = !t.white_ground && !options_.plain;
+    const ImVec4 dark = ImGui::ColorConvertU32ToFloat4(colour::kGround);
+    view_options_.plain_ground =
+        t.white_ground ? Eigen::Vector3f::Ones() : Eigen::Vector3f(dark.x, dark.y, dark.z);
+    if (state_.picture.save_wanted && sharp_) save_picture(view);
     if (stage_)
         draw_stage(view, now_ns);
     else
@@ -79,9 +87,7 @@ void GuiApp::draw_ground(const Window::Size& size) {
 
 void GuiApp::begin_view(const ViewFrame& view) {
     const PassClock::Scope scope(&passes_, Pass::ground);
-    std::optional<Eigen::Vector3f> plain;
-    if (!view_options_.gradient) plain = view_options_.plain_ground;
-    backdrop_.show(*programs_, plain, view.x_px, view.y_px, view.width_px, view.height_px);
+    backdrop_.show(*programs_, view_options_.plain(), view.x_px, view.y_px, view.width_px, view.height_px);
     glViewport(view.x_px, view.y_px, view.width_px, view.height_px);
 }
 

@@ -1,9 +1,22 @@
 #include <imgui.h>
 #include <spdlog/spdlog.h>
 
+#include <algorithm>
+
 #include "gui/window/app_parts.hpp"
 
 namespace tact {
+
+namespace {
+
+// Towards the user as the wheel turns towards the user; the first turn cuts.
+void move_cut(SceneToggles& t, float steps) {
+    constexpr float kStep = 0.02F;  // radii of the scene
+    if (t.cut) t.cut_at = std::clamp(t.cut_at - kStep * steps, -1.0F, 1.0F);
+    t.cut = true;
+}
+
+}  // namespace
 
 void GuiApp::handle_input() {
     const ImGuiIO& io = ImGui::GetIO();
@@ -18,6 +31,8 @@ void GuiApp::handle_input() {
         if (io.MouseDown[1]) camera_.pan(io.MouseDelta.x, io.MouseDelta.y, height);
         if (io.MouseWheel != 0.0F && io.KeyAlt && content_)
             system().turn_wheel(static_cast<double>(io.MouseWheel));
+        else if (const float turned = io.MouseWheel + io.MouseWheelH; turned != 0.0F && io.KeyShift)
+            move_cut(state_.toggles, turned);
         else if (io.MouseWheel != 0.0F && !io.KeyCtrl && !io.KeyShift)
             camera_.zoom(io.MouseWheel);
     }
@@ -50,6 +65,12 @@ void GuiApp::perform(KeyAction what, std::size_t place) {
             return home_view();
         case KeyAction::style:
             state_.toggles.style = (state_.toggles.style + 1) % 3;
+            return;
+        case KeyAction::cut:
+            state_.toggles.cut = !state_.toggles.cut;
+            return;
+        case KeyAction::picture:
+            state_.picture.open = !state_.picture.open;
             return;
         case KeyAction::swap_eyes:
             return stage_->swap_eyes();

@@ -4,6 +4,7 @@
 // app_scene    the scene shown, its levels, its bodies
 // app_draw     the frame around the 3D view, and both eyes of a stage
 // app_view     the 3D view: its resolution, and its full detail at rest
+// app_picture  pictures of any size
 // app_calibration  the screen of the stage during its calibration
 // app_input    mouse and keys
 #pragma once
@@ -20,6 +21,7 @@
 #include "gui/render/backdrop.hpp"
 #include "gui/render/camera.hpp"
 #include "gui/render/scene_view.hpp"
+#include "gui/render/still_picture.hpp"
 #include "gui/render/view_target.hpp"
 #include "gui/stereo/calibration_controller.hpp"
 #include "gui/stereo/picture_painter.hpp"
@@ -78,6 +80,7 @@ private:
     [[nodiscard]] std::optional<std::uint64_t> view_key(const EyeView& eye, const ViewFrame& view) const;
     [[nodiscard]] bool refining_is_quick() const;
     void measure_resolution(const EyeView& eye, const ViewFrame& view);
+    void save_picture(const ViewFrame& of_window);
     void draw_stage(ViewFrame view, std::int64_t now_ns);
     void open_calibration(bool check_alone);
     void follow_calibration(std::int64_t now_ns);

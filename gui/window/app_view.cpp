@@ -29,6 +29,7 @@ void GuiApp::draw_window_view(const ViewFrame& view, Instant now) {
         system().refine();
         view_->contours().set_refined(true);
         detail_.refined = 1;
+        view_options_.shaded = state_.toggles.shading;
         draw_view(eye, view);
         view_->contours().set_refined(false);
         still_.keep(view.x_px, view.y_px, view.width_px, view.height_px);
@@ -99,7 +100,11 @@ std::optional<std::uint64_t> GuiApp::view_key(const EyeView& eye, const ViewFram
         for (int i = 0; i < 16; ++i) key.add(m.data()[i]);
     for (const int px : {view.x_px, view.y_px, view.width_px, view.height_px}) key.add(px);
     const ViewOptions& o = view_options_;
-    for (const bool on : {o.surface, o.force, o.box, o.depth_cue, o.smooth_edges, o.gradient}) key.add(on);
+    for (const bool on : {o.surface, o.force, o.box, o.depth_cue, o.smooth_edges, o.gradient,
+                          state_.toggles.shading, o.cut_a.has_value()})
+        key.add(on);
+    if (o.cut_a) key.add(*o.cut_a);
+    for (int i = 0; i < 3; ++i) key.add(o.plain_ground[i]);
     key.add(o.style);
     const auto force = [&key](const Vec3& n) {
         for (int i = 0; i < 3; ++i) key.add_rounded(n[i], 1e-3);

@@ -161,6 +161,7 @@ void BrowserController::follow_examination(BrowserState& state) {
         return;
     }
     if (!outcome->good()) return say(state, Grade::bad, error_text(outcome->output));
+    asked_in_log_ = false;
     state.form = read_import_form(last_line(outcome->output));
     if (!state.form)
         return say(state, Grade::bad, "tact-prep examine gave no report: " + last_line(outcome->output));
@@ -170,6 +171,7 @@ void BrowserController::follow_examination(BrowserState& state) {
 void BrowserController::follow_form(BrowserState& state) {
     if (!state.form || examine_.running()) return;
     ImportForm& form = *state.form;
+    if (form.takes_keys && !std::exchange(asked_in_log_, true)) spdlog::info("asking about {}", importing_);
     if (form.cancelled || !state.open) {
         state.form.reset();
         return;

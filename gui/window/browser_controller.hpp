@@ -57,6 +57,7 @@ private:
     std::string importing_;  // first file of the import
     Instant import_begun_{};
     bool cancelled_ = false;
+    bool asked_in_log_ = false;
     std::future<Read> reading_;
     std::future<std::string> keeping_;  // error, or empty
 };

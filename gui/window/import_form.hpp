@@ -53,6 +53,7 @@ struct ImportForm {
 
     std::string title;                         // "Drill head.nrrd."
     bool shown = false;                        // once
+    bool takes_keys = false;                   // what is typed reaches the first answer that is missing
     bool answered = false, cancelled = false;  // by the person
     bool other_choice = false;                 // the files must be examined again, with choice_arguments()
 

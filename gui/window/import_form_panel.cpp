@@ -143,12 +143,16 @@ void draw_import_form(const Theme& theme, ImportForm& form) {
     }
     ImGui::Spacing();
     if (!form.bins.empty()) histogram(theme, form);
-    bool entered = false, focus = !std::exchange(form.shown, true);
+    const bool first_frame = !std::exchange(form.shown, true);
+    bool entered = false, focus = first_frame;
     for (ImportForm::Number& n : form.numbers) {
         const bool first = focus && n.proposed.empty();
         number_field(theme, n, first, entered);
         focus = focus && !first;
     }
+    const bool asks = std::any_of(form.numbers.begin(), form.numbers.end(),
+                                  [](const ImportForm::Number& n) { return n.proposed.empty(); });
+    form.takes_keys = form.takes_keys || (!first_frame && (!asks || ImGui::IsAnyItemActive()));
     if (!form.structures.empty()) structures_table(theme, form);
     ImGui::EndChild();
     const bool complete = form.complete();

@@ -73,6 +73,11 @@ void draw_dashboard(const Theme& theme, PanelState& state, SystemPanels& system,
         draw_browser(theme, state.browser, layout.view);
     else if (!middle.calibration)
         draw_browser_button(theme, state.browser, layout.view);
+    if (!state.browser.open && !middle.calibration && state.scene.loaded) {
+        draw_picture_button(theme, state.picture, layout.view);
+        if (state.picture.open)
+            draw_picture_panel(theme, state.picture, state.toggles, state.situation.bodies, layout.view);
+    }
     ImGui::PopStyleVar();
     draw_overlay(theme, state, system, layout.view);
 }

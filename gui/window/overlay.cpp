@@ -23,9 +23,9 @@ void scale_bar(const OverlayPen& pen, const PanelState& state, const PixelRect& 
     const auto length = static_cast<float>(a / state.a_per_px);
     const float x1 = v.x + v.width - pen.theme.px(18.0F), x0 = x1 - length;
     const float y = v.y + v.height - pen.theme.px(20.0F), t = pen.theme.px(4.0F);
-    pen.draw->AddRectFilled({x0, y}, {x1, y + pen.theme.px(2.0F)}, colour::kText);
-    pen.draw->AddRectFilled({x0, y - t}, {x0 + pen.theme.px(2.0F), y + t}, colour::kText);
-    pen.draw->AddRectFilled({x1 - pen.theme.px(2.0F), y - t}, {x1, y + t}, colour::kText);
+    pen.draw->AddRectFilled({x0, y}, {x1, y + pen.theme.px(2.0F)}, pen.ink(colour::kText));
+    pen.draw->AddRectFilled({x0, y - t}, {x0 + pen.theme.px(2.0F), y + t}, pen.ink(colour::kText));
+    pen.draw->AddRectFilled({x1 - pen.theme.px(2.0F), y - t}, {x1, y + t}, pen.ink(colour::kText));
     const std::string text = length_text(a * kAngstromM);
     pen.text(pen.theme.small, {0.5F * (x0 + x1 - pen.width(pen.theme.small, text)), y - pen.theme.px(18.0F)},
              colour::kText, text);
@@ -64,6 +64,7 @@ void legend(const OverlayPen& pen, const PanelState& state, const SystemPanels& 
             line(colour::kForce, format("model force %.2f N   (arrow: %s per N)", state.force_n,
                                         length_text(state.arrow_a_per_n * kAngstromM).c_str()));
         std::vector<SystemPanels::LegendLine> lines;
+        if (state.toggles.cut) lines.push_back({colour::kWatch, "cut: what is nearer is not drawn"});
         system.add_legend(state, lines);
         for (const SystemPanels::LegendLine& l : lines) line(l.swatch, l.text);
         if (state.second_hand)
@@ -161,7 +162,8 @@ void keys(const OverlayPen& pen, const KeySituation& now, const PixelRect& v) {
 }  // namespace
 
 void draw_overlay(const Theme& theme, PanelState& state, const SystemPanels& system, const PixelRect& view) {
-    const OverlayPen pen{theme, ImGui::GetBackgroundDrawList()};
+    const OverlayPen pen{theme, ImGui::GetBackgroundDrawList(),
+                         state.toggles.white_ground && state.stage.empty()};
     pen.draw->PushClipRect({view.x, view.y}, {view.x + view.width, view.y + view.height});
     if (!state.calibration.open) {
         legend(pen, state, system, view);

@@ -5,12 +5,14 @@
 #include "gui/stereo/calibration_panel.hpp"
 #include "gui/system/keys.hpp"
 #include "gui/window/browser_panel.hpp"
+#include "gui/window/picture_panel.hpp"
 
 namespace tact {
 
 struct PanelState : DashboardState {
     CalibrationCardState calibration;
     BrowserState browser;
+    PictureState picture;
     KeySituation situation;  // for the keys; the user opens its sheet
 };
 

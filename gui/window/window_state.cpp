@@ -25,13 +25,19 @@ struct Flag {
     const char* name;
     bool SceneToggles::*value;
 };
-constexpr Flag kFlags[] = {
-    {"show.surface", &SceneToggles::surface},      {"show.backbone", &SceneToggles::backbone},
-    {"show.codebook", &SceneToggles::codebook},    {"show.graph", &SceneToggles::graph},
-    {"show.force", &SceneToggles::force},          {"show.box", &SceneToggles::box},
-    {"show.depth_cue", &SceneToggles::depth_cue},  {"show.frame_times", &SceneToggles::frame_times},
-    {"show.detail", &SceneToggles::detail},        {"show.sound", &SceneToggles::sound},
-    {"show.microscope", &SceneToggles::microscope}};
+constexpr Flag kFlags[] = {{"show.surface", &SceneToggles::surface},
+                           {"show.backbone", &SceneToggles::backbone},
+                           {"show.codebook", &SceneToggles::codebook},
+                           {"show.graph", &SceneToggles::graph},
+                           {"show.force", &SceneToggles::force},
+                           {"show.box", &SceneToggles::box},
+                           {"show.depth_cue", &SceneToggles::depth_cue},
+                           {"show.frame_times", &SceneToggles::frame_times},
+                           {"show.detail", &SceneToggles::detail},
+                           {"show.sound", &SceneToggles::sound},
+                           {"show.microscope", &SceneToggles::microscope},
+                           {"show.shading", &SceneToggles::shading},
+                           {"show.white_background", &SceneToggles::white_ground}};
 
 std::string line(const char* key, const std::string& value) {
     return std::string(key) + " = " + value + "\n";

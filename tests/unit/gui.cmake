@@ -24,6 +24,7 @@ if(TACT_GUI)
             unit/gui_draw_test.cpp unit/gui_frames_test.cpp
         USES gui_window gui_drilling gui_drilling_site gui_dashboard gui_render launch scene base gui_docking prep_mesh
             topics shm gui_stereo SYSTEM nlohmann_json::nlohmann_json TIMEOUT 300)
+    tact_test(unit/gui_cut_test.cpp USES gui_window gui_render gui_docking launch scene base)
     tact_test(unit/gui_output_test.cpp USES gui_window gui_dashboard gui_base base SYSTEM spdlog::spdlog)
     tact_test(unit/gui_ribbon_test.cpp USES gui_render scene SYSTEM ZLIB::ZLIB)
     tact_test(unit/gui_draw_scene_test.cpp USES gui_window gui_render launch scene base gui_docking prep_mesh topics shm
@@ -31,6 +32,7 @@ if(TACT_GUI)
     tact_tests(gui_docking_tests SOURCES
             unit/gui_view_test.cpp unit/gui_fit_test.cpp unit/gui_history_test.cpp unit/gui_shapes_test.cpp
             unit/gui_contour_test.cpp unit/gui_link_test.cpp unit/gui_placement_test.cpp unit/gui_bent_test.cpp
+            unit/gui_labels_test.cpp
         USES gui_docking gui_render prep_mesh topics shm scene base gui_surface prep_surface prep_synthetic gui_window
             gui_link gui_dashboard SYSTEM rapidcheck CLI11::CLI11 TIMEOUT 300)
     tact_tests(gui_stereo_tests SOURCES
