@@ -95,8 +95,8 @@ void recording(const Theme& theme, DashboardState& state) {
     ImGui::PopStyleVar();
     if (ImGui::IsItemHovered())
         ImGui::SetTooltip("%s", state.own_recording
-                                    ? "ends the recording (Ctrl+R)"
-                                    : "records every cycle from now on into your Tact folder (Ctrl+R)");
+                                    ? "ends the recording"
+                                    : "records every cycle from now on into your Tact folder");
     ImGui::PopFont();
 }
 

@@ -41,12 +41,16 @@ const char* grade_text(Grade grade) noexcept {
     return "unknown";
 }
 
+// Less is how exactly the rate is counted.
+constexpr double kOnTarget = 0.003;
+
 StatusText rate_status(double rate_hz, double goal_hz) {
     if (!(goal_hz > 0.0) || !std::isfinite(rate_hz)) return {Grade::unknown, "no goal set"};
     const double missing = 1.0 - rate_hz / goal_hz;
     char text[48];
-    if (missing <= 0.05) return {Grade::good, "on target"};
-    std::snprintf(text, sizeof text, "%.0f %% below target", 100.0 * missing);
+    if (missing <= kOnTarget) return {Grade::good, "on target"};
+    std::snprintf(text, sizeof text, missing < 0.01 ? "%.1f %% below target" : "%.0f %% below target",
+                  100.0 * missing);
     return {missing <= 0.15 ? Grade::watch : Grade::bad, text};
 }
 

@@ -52,13 +52,13 @@ void actions(const DashboardState& state, FittingState& f, std::vector<Request>&
     const auto request = [&](FitAction action, const std::string& text = {}) {
         f.requests.push_back({action, id, text});
     };
-    if (button("Undo", f.can_undo, "undo the last gesture (Ctrl+Z)")) request(FitAction::undo);
-    if (button("Redo", f.can_redo, "redo the last gesture (Ctrl+Y)")) request(FitAction::redo);
+    if (button("Undo", f.can_undo, "undo the last gesture")) request(FitAction::undo);
+    if (button("Redo", f.can_redo, "redo the last gesture")) request(FitAction::redo);
     if (button("Accept", f.can_undo, "accept the current poses; Revert returns to them (Enter)"))
         request(FitAction::accept);
     if (button("Revert", f.can_undo, "return to the accepted poses (Esc)")) request(FitAction::revert);
     if (button("Refine", held != nullptr && !f.search.running,
-               "best place of the held body nearby, within 10 Å and 20° (R); the Search tab says by which "
+               "best place of the held body nearby, within 10 Å and 20°; the Search tab says by which "
                "objective"))
         request(FitAction::refine);
     if (button("Copy", held != nullptr && f.bodies.size() < kBodiesMax, "copy the held body"))

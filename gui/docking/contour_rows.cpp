@@ -69,8 +69,16 @@ void follow_contours(Contours& contours, const ContourScale& scale, ContourRowSt
 void nudge_contour(ContourRowState& state, const ContourScale& scale, double tenths) {
     if (state.row.empty()) return;
     const double sigma = scale.level_of_sigma(1.0) - scale.level_of_sigma(0.0);
-    state.row[0].level = std::clamp(state.row[0].level + 0.1 * tenths * sigma, state.least, state.greatest);
+    double& level = state.row[state.chosen_row()].level;
+    level = std::clamp(level + 0.1 * tenths * sigma, state.least, state.greatest);
     state.changed = true;
+}
+
+void choose_contour(ContourRowState& state, int rows_down) {
+    const auto rows = static_cast<std::ptrdiff_t>(state.row.size());
+    if (rows == 0) return;
+    const auto at = static_cast<std::ptrdiff_t>(state.chosen_row()) + rows_down;
+    state.chosen = static_cast<std::size_t>((at % rows + rows) % rows);
 }
 
 }  // namespace tact

@@ -61,6 +61,12 @@ void one(const Theme& theme, ContourRowState& state, std::size_t i) {
     static constexpr std::array<const char*, 4> kStyles{"as view", "glass", "solid", "wire"};
     ContourRow& c = state.row[i];
     ImGui::PushID(static_cast<int>(i));
+    if (state.row.size() > 1 && i == state.chosen_row()) {
+        const ImVec2 at = ImGui::GetCursorScreenPos();
+        ImGui::GetWindowDrawList()->AddRectFilled({at.x - theme.px(5.0F), at.y},
+                                                  {at.x - theme.px(2.0F), at.y + ImGui::GetFrameHeight()},
+                                                  colour::kAccent);
+    }
     bool changed = ImGui::Checkbox("##shown", &c.shown);
     ImGui::SameLine();
     changed |=
@@ -105,6 +111,8 @@ void draw_contours_tab(const Theme& theme, ContourRowState& state) {
     ImGui::BeginDisabled(state.row.size() >= state.rows_max);
     if (ImGui::Button("Add a contour")) state.add = true;
     ImGui::EndDisabled();
+    if (state.row.size() > 1)
+        text_small(theme, colour::kDim, "Alt+wheel moves the marked one, Ctrl+wheel marks another");
     const auto moving = std::any_of(state.row.begin(), state.row.end(),
                                     [](const ContourRow& c) { return c.shown && !c.final; });
     if (moving) text_small(theme, colour::kDim, "coarse while dragging; the full surface follows");

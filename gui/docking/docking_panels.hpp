@@ -126,10 +126,12 @@ struct ContourRowState {
     static constexpr std::size_t kNone = static_cast<std::size_t>(-1);
     std::vector<ContourRow> row;
     std::size_t rows_max = 1;
+    std::size_t chosen = 0;                // the one that keys and wheel move; see chosen_row()
     std::vector<std::uint64_t> histogram;  // voxels, bins of equal width from least to greatest
     double least = 0.0, greatest = 0.0;    // of the map, in its unit
     bool changed = false, add = false;     // user input, taken by the application
     std::size_t dragged = kNone, removed = kNone;
+    [[nodiscard]] std::size_t chosen_row() const { return chosen < row.size() ? chosen : 0; }
     // The contour that counts: the first one.
     [[nodiscard]] double counting(double otherwise) const {
         return row.empty() ? otherwise : row.front().level;

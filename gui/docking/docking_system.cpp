@@ -112,6 +112,8 @@ void DockingSystem::turn_wheel(double steps) {
     if (content_) nudge_contour(panels_.contours, content_->scale, steps);
 }
 
+void DockingSystem::choose_by_wheel(double steps) { choose_contour(panels_.contours, steps > 0.0 ? -1 : 1); }
+
 void DockingSystem::adapt() {
     if (view_ != nullptr) follow_contours(view_->contours(), content_->scale, panels_.contours);
 }

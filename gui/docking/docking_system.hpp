@@ -29,6 +29,7 @@ public:
     void read(const Controller::Fresh& fresh, const SystemContext& context) override;
     bool perform(KeyAction what, std::size_t place, const SystemContext& context) override;
     void turn_wheel(double steps) override;
+    void choose_by_wheel(double steps) override;
     void add_to(LoadTopic& load) const override;
     void adapt() override;
     void prepare(std::int64_t now_ns, bool sharp, ViewFrame& frame, const SystemContext& context) override;

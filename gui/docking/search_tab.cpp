@@ -37,7 +37,7 @@ void start_row(const Theme& theme, const DashboardState& state, FittingState& f)
                                  "seconds to a minute"))
         f.requests.push_back({FitAction::search, id, {}});
     ImGui::SameLine();
-    if (button("Refine", ready, "best place of the held body within 10 Å and 20° (R)"))
+    if (button("Refine", ready, "best place of the held body within 10 Å and 20°"))
         f.requests.push_back({FitAction::refine, id, {}});
     ImGui::SameLine(theme.px(152.0F));
     ImGui::Checkbox("Ghosts", &s.ghosts);
@@ -113,7 +113,7 @@ void found_list(const Theme& theme, const DashboardState& state, FittingState& f
                               ImGuiSelectableFlags_SpanAllColumns | ImGuiSelectableFlags_AllowItemOverlap))
             f.requests.push_back({FitAction::take_place, s.found_body, {}, i});
         ImGui::EndDisabled();
-        if (ImGui::IsItemHovered()) ImGui::SetTooltip("click: move the body there (Ctrl+Z returns it)");
+        if (ImGui::IsItemHovered()) ImGui::SetTooltip("click: move the body there; Undo returns it");
         ImGui::TableNextColumn();
         ImGui::TextUnformatted(fixed(r.score, 3).c_str());
         ImGui::TableNextColumn();

@@ -59,11 +59,10 @@ void undo(const Theme& theme, const DrillingState& d, DashboardState& state) {
         if (ImGui::IsItemHovered(ImGuiHoveredFlags_AllowWhenDisabled)) ImGui::SetTooltip("%s", help);
     };
     button("Undo", d.undoable, CommandKind::undo_stroke,
-           "bring back the bone of the last cut; meanwhile there is no force (Ctrl+Z)\n"
+           "bring back the bone of the last cut; meanwhile there is no force\n"
            "a cut: all bone taken without a pause of 0.3 s, for at most 10 s");
     ImGui::SameLine();
-    button("Redo", d.redoable, CommandKind::redo_stroke,
-           "take the bone of the last undone cut again (Ctrl+Y)");
+    button("Redo", d.redoable, CommandKind::redo_stroke, "take the bone of the last undone cut again");
     ImGui::SameLine();
     ImGui::BeginDisabled(!state.commands());
     if (ImGui::Button("Burr ...")) ImGui::OpenPopup(kBurrMenu);
@@ -161,7 +160,7 @@ void DrillingPanels::draw_in_scene_card(const Theme& theme, DashboardState& stat
     if (ImGui::IsItemHovered())
         ImGui::SetTooltip(
             "as through an operating microscope: round field, light along the line of sight,\n"
-            "and blur away from the depth where the burr cuts (V)");
+            "and blur away from the depth where the burr cuts");
 }
 
 void DrillingPanels::draw_over_view(const OverlayPen& pen, const DashboardState& state,

@@ -53,7 +53,10 @@ void CommandSender::forget() {
         stage_ = Stage::unanswered;
         text_ = std::string(command_kind_text(kind_)) + ": the controller ended before it answered";
     }
-    if (stage_ != Stage::unanswered) stage_ = Stage::none;
+    if (stage_ == Stage::unanswered) return;
+    // An answer of the controller before says nothing about the next one.
+    stage_ = Stage::none;
+    text_.clear();
 }
 
 }  // namespace tact

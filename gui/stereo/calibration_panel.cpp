@@ -196,7 +196,7 @@ void ending(const Form& form) {
     form.button("Back", width, CalibrationAction::back, f.step > 0);
     ImGui::SameLine(0.0F, gap);
     form.button("Next  Enter", width, CalibrationAction::next, f.step + 1 < f.steps.size());
-    form.button("Save  Ctrl+S", width, CalibrationAction::save);
+    form.button("Save", width, CalibrationAction::save);
     ImGui::SameLine(0.0F, gap);
     form.button("Leave  Esc", width, CalibrationAction::leave);
     if (!f.saved.empty())

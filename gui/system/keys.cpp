@@ -18,6 +18,7 @@ constexpr auto kKeyRows = [] {
         {{}, 0, always, KeyAction::none, "wheel", "zoom"},
         {{}, 0, always, KeyAction::none, "Shift+wheel", "move the cut"},
         {{}, 0, bodies, KeyAction::none, "Alt+wheel", "contour level"},
+        {{}, 0, bodies, KeyAction::none, "Ctrl+wheel", "choose another contour"},
         {{}, 0, watching, KeyAction::none, "Ctrl+click", "mark this place on the bone"},
         {named_key(KeyCode::escape), 0, sheet, KeyAction::close_sheet, "Esc", "close this table"},
         {named_key(KeyCode::escape), 0, browser, KeyAction::close_browser, "Esc", "close the list of scenes"},
@@ -73,14 +74,6 @@ constexpr auto kKeyRows = [] {
     });
 }();
 
-constexpr char last_character(const KeyRow& row) {
-    return row.last != '\0' ? row.last : row.stroke.character;
-}
-
-constexpr int precedence(KeyWhen when) {
-    return when == KeyWhen::sheet ? 2 : when == KeyWhen::browser ? 1 : 0;
-}
-
 }  // namespace
 
 std::span<const KeyRow> key_rows() noexcept { return kKeyRows; }
@@ -112,25 +105,18 @@ bool applies(KeyWhen when, const KeySituation& now) noexcept {
     return false;
 }
 
-KeyFound find_key(const KeyStroke& stroke, const KeySituation& now) noexcept {
-    KeyFound found;
-    for (const KeyRow& row : kKeyRows) {
-        if (row.action == KeyAction::none || !applies(row.when, now)) continue;
-        KeyStroke of_row = row.stroke;
-        if (row.stroke.code == KeyCode::character && stroke.character >= row.stroke.character &&
-            stroke.character <= last_character(row))
-            of_row.character = stroke.character;
-        if (of_row != stroke) continue;
-        if (found.row == nullptr || precedence(row.when) > precedence(found.row->when))
-            found = {&row, stroke.character - row.stroke.character};
-    }
-    return found;
+namespace {
+char last_of(const KeyRow& row) { return row.last != '\0' ? row.last : row.stroke.character; }
+}  // namespace
+
+int key_precedence(KeyWhen when) noexcept {
+    return when == KeyWhen::sheet ? 2 : when == KeyWhen::browser ? 1 : 0;
 }
 
 bool collide(const KeyRow& a, const KeyRow& b) noexcept {
     using enum KeyWhen;
     if (a.action == KeyAction::none || b.action == KeyAction::none) return false;
-    if (precedence(a.when) != precedence(b.when)) return false;  // one of them takes precedence
+    if (key_precedence(a.when) != key_precedence(b.when)) return false;  // one of them takes precedence
     const bool of_scenes = (a.when == bodies && b.when == bone) || (a.when == bone && b.when == bodies);
     if (of_scenes) return false;  // no scene is both
     const bool of_controllers =
@@ -140,8 +126,8 @@ bool collide(const KeyRow& a, const KeyRow& b) noexcept {
     if ((a.when == calibrating && of_picture(b.when)) || (b.when == calibrating && of_picture(a.when)))
         return false;  // calibration replaces the scene display
     const KeyStroke &p = a.stroke, &q = b.stroke;
-    return p.code == q.code && p.control == q.control && p.shift == q.shift &&
-           p.character <= last_character(b) && q.character <= last_character(a);
+    return p.code == q.code && p.control == q.control && p.shift == q.shift && p.character <= last_of(b) &&
+           q.character <= last_of(a);
 }
 
 int sheet_columns(int rows, int rows_high, int columns_wide) noexcept {

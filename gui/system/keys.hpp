@@ -1,13 +1,19 @@
-// Table of all keyboard shortcuts: the window looks keys up in it, and `?` shows it. No key is handled elsewhere.
+// Table of all keyboard shortcuts: the window looks keys up in it, and `?` shows it. No key is handled elsewhere. A person's own keys replace
+// the table's (KeyTable::read).
 //
 // Letters   as printed on the keyboard, in any layout; signs and digits as typed
 // Modifiers must match a row exactly, so Ctrl+Z is never taken for Z
-// Thread    any; the table is constant
+// Thread    any; a table is constant once made
 #pragma once
 
 #include <array>
 #include <cstdint>
+#include <deque>
+#include <optional>
 #include <span>
+#include <string>
+#include <string_view>
+#include <vector>
 
 namespace tact {
 
@@ -105,11 +111,42 @@ struct KeyFound {
     int place = 0;                // index in the row's range, from 0
 };
 
-[[nodiscard]] std::span<const KeyRow> key_rows() noexcept;
+[[nodiscard]] std::span<const KeyRow> key_rows() noexcept;         // as built in
+[[nodiscard]] const char* action_name(KeyAction action) noexcept;  // in a file of keys
+// "Ctrl+Shift+Z", "Space", "+"; read_stroke() reads it in any case of letters.
+[[nodiscard]] std::string stroke_text(const KeyStroke& stroke);
+[[nodiscard]] std::optional<KeyStroke> read_stroke(std::string_view text);
 [[nodiscard]] bool applies(KeyWhen when, const KeySituation& now) noexcept;
-[[nodiscard]] KeyFound find_key(const KeyStroke& stroke, const KeySituation& now) noexcept;
+// Of rows that apply at once, the one with the highest is meant.
+[[nodiscard]] int key_precedence(KeyWhen when) noexcept;
 // True if both rows can apply at once and one stroke would match both.
 [[nodiscard]] bool collide(const KeyRow& a, const KeyRow& b) noexcept;
+
+class KeyTable {
+public:
+    KeyTable();  // as built in
+    KeyTable(KeyTable&&) = default;
+    KeyTable& operator=(KeyTable&&) = default;
+    KeyTable(const KeyTable& other) { *this = other; }
+    KeyTable& operator=(const KeyTable& other);
+    ~KeyTable() = default;
+    // The built-in table with the keys of a TOML text: ACTION = "KEY", several keys separated by spaces. Every action keeps a key; arming takes
+    // two keys together; keys of a range (1 to 9) stay. Throws StartupError with the action and `name` of the file.
+    [[nodiscard]] static KeyTable read(std::string_view text, const std::string& name);
+    [[nodiscard]] std::span<const KeyRow> rows() const noexcept { return rows_; }
+    [[nodiscard]] KeyFound find(const KeyStroke& stroke, const KeySituation& now) const noexcept;
+    // As shown; the first of several.
+    [[nodiscard]] const char* key_of(KeyAction action) const noexcept;
+    // Reading it gives the same table.
+    [[nodiscard]] std::string text() const;
+
+private:
+    void replace(KeyAction action, std::span<const KeyStroke> strokes);
+
+    std::vector<KeyRow> rows_;
+    std::deque<std::string> own_;  // texts of keys that are not built in
+};
+
 // Columns of the sheet, 1 or 2: two if they fit side by side and one would be too long or too high.
 [[nodiscard]] int sheet_columns(int rows, int rows_high, int columns_wide) noexcept;
 

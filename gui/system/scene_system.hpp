@@ -75,8 +75,9 @@ public:
         static_cast<void>(what), static_cast<void>(place), static_cast<void>(context);
         return false;
     }
-    // Alt + wheel.
+    // Alt + wheel, and Ctrl + wheel: changes what is chosen, and chooses another.
     virtual void turn_wheel(double steps) { static_cast<void>(steps); }
+    virtual void choose_by_wheel(double steps) { static_cast<void>(steps); }
     // The first place of the scene along a line of sight, model metres; none: nothing there, or it cannot be told.
     [[nodiscard]] virtual std::optional<Vec3> place_along(const Vec3& from_m, const Vec3& way) const {
         static_cast<void>(from_m), static_cast<void>(way);

@@ -45,7 +45,6 @@ GuiApp::GuiApp(const GuiOptions& options)
         state_.toggles.style = static_cast<int>(SurfaceStyle::solid);
         state_.toggles.shading = false;
     }
-    view_options_.depth_cue = options.depth_cue;
     if (!options.window_state_file.empty()) {
         state_.toggles = options.window_state.toggles;
         state_.toggles.style = SceneToggles{}.style;  // of the scene
@@ -53,6 +52,8 @@ GuiApp::GuiApp(const GuiOptions& options)
         state_.lateness_choice = options.window_state.lateness_choice;
     }
     state_.toggles.smooth_edges = !window_.software();
+    if (!options.depth_cue) state_.toggles.depth_cue = false;
+    state_.keys = options.keys;
     fps_max_ = options.fps_max >= 0.0 ? options.fps_max : (window_.paced_by_display() ? 0.0 : 60.0);
     if (options.stage.mode != StereoMode::off) make_stage(options.stage);
     if (!options.scene.empty())

@@ -31,9 +31,11 @@ void GuiApp::handle_input() {
         if (io.MouseDown[1]) camera_.pan(io.MouseDelta.x, io.MouseDelta.y, height);
         if (io.MouseWheel != 0.0F && io.KeyAlt && content_)
             system().turn_wheel(static_cast<double>(io.MouseWheel));
+        else if (io.MouseWheel != 0.0F && io.KeyCtrl && content_)
+            system().choose_by_wheel(static_cast<double>(io.MouseWheel));
         else if (const float turned = io.MouseWheel + io.MouseWheelH; turned != 0.0F && io.KeyShift)
             move_cut(state_.toggles, turned);
-        else if (io.MouseWheel != 0.0F && !io.KeyCtrl && !io.KeyShift)
+        else if (io.MouseWheel != 0.0F)
             camera_.zoom(io.MouseWheel);
     }
     KeySituation& now = state_.situation;
@@ -48,7 +50,7 @@ void GuiApp::handle_input() {
     now.watching = controller_.watches();
     for (const KeyStroke& stroke : window_.take_keys()) {
         if (io.WantTextInput) continue;
-        const KeyFound found = find_key(stroke, now);
+        const KeyFound found = state_.keys.find(stroke, now);
         if (found.row == nullptr) continue;
         spdlog::debug("key {}: {}", found.row->keys, found.row->what);
         perform(found.row->action, static_cast<std::size_t>(found.place));

@@ -72,9 +72,9 @@ void draw_dashboard(const Theme& theme, PanelState& state, SystemPanels& system,
     if (state.browser.open)
         draw_browser(theme, state.browser, layout.view);
     else if (!middle.calibration)
-        draw_browser_button(theme, state.browser, layout.view);
+        draw_browser_button(theme, state.browser, state.keys.key_of(KeyAction::open_browser), layout.view);
     if (!state.browser.open && !middle.calibration && state.scene.loaded) {
-        draw_picture_button(theme, state.picture, layout.view);
+        draw_picture_button(theme, state.picture, state.keys.key_of(KeyAction::picture), layout.view);
         if (state.picture.open)
             draw_picture_panel(theme, state.picture, state.toggles, state.situation.bodies, layout.view);
     }

@@ -6,12 +6,19 @@
 #include <iterator>
 #include <map>
 
+#include "gui/base/toml_keys.hpp"
 #include "ipc/base/error.hpp"
+#include "ipc/base/state_folder.hpp"
 #include "ipc/base/whole_numbers.hpp"
 #include "ipc/manual/manual.hpp"
 #include "ipc/version/version.hpp"
 
 namespace tact {
+
+namespace {
+constexpr const char* kKeysFix =
+    "tact-gui --keys lists all actions with their keys, in the form of this file";
+}  // namespace
 
 bool parse_gui_options(int argc, const char* const* argv, GuiOptions& options, int& exit_code) {
     CLI::App app(
@@ -55,6 +62,14 @@ bool parse_gui_options(int argc, const char* const* argv, GuiOptions& options, i
                    "TOML file of the window's settings: read at the start if it exists, written at "
                    "the end")
         ->type_name("FILE.toml");
+    bool list_keys = false;
+    std::string key_file;
+    app.add_option(
+           "--key-file", key_file,
+           "TOML file of the person's own keys; default: keys.toml in $XDG_CONFIG_HOME/tact, if it exists")
+        ->type_name("FILE.toml")
+        ->check(CLI::ExistingFile);
+    app.add_flag("--keys", list_keys, "List the keys in the form of that file and end");
     CLI::Option* const size_option =
         app.add_option("--size", size, "Window size (pixels), for example 1280x720");
     size_option->check(CLI::Validator(
@@ -101,8 +116,7 @@ bool parse_gui_options(int argc, const char* const* argv, GuiOptions& options, i
         ->each(
             [&options](const std::string& text) { options.contours.push_back(read_contour_option(text)); });
     app.add_flag("!--no-depth-cue", options.depth_cue, "Do not fade distant content");
-    app.add_flag("--near-burr", options.near_burr,
-                 "Close view of the burr once it is in bone, as with key F");
+    app.add_flag("--near-burr", options.near_burr, "Close view of the burr once it is in bone");
     app.add_option("--particles", options.particles,
                    "Constant number of particles over bone, to measure their cost")
         ->check(CLI::Range(0, 100000));
@@ -116,7 +130,7 @@ bool parse_gui_options(int argc, const char* const* argv, GuiOptions& options, i
     app.add_option("--stereo", stereo, "Stereo mode of the window")
         ->check(CLI::IsMember(std::vector<std::string>(std::begin(kStereoModes), std::end(kStereoModes))));
     app.add_flag("--calibrate", options.calibrate,
-                 "Start with the calibration of the screen, as with key K; it is saved to --stage FILE");
+                 "Start with the calibration of the screen; it is saved to --stage FILE");
     app.add_flag("--test-picture", options.test_picture,
                  "Start with the test picture, which checks the poses of screen, eyes and tool");
     app.add_flag("--swap-eyes", swap_eyes, "Swap the images of the two eyes");
@@ -129,6 +143,17 @@ bool parse_gui_options(int argc, const char* const* argv, GuiOptions& options, i
     }
     try {
         app.parse(argc, argv);
+        std::filesystem::path own_keys = key_file;
+        if (const auto folder = config_folder(); key_file.empty() && !folder.empty())
+            own_keys = folder / "keys.toml";
+        std::error_code unreadable;
+        if (!key_file.empty() || std::filesystem::exists(own_keys, unreadable))
+            options.keys = KeyTable::read(read_typed_file(own_keys, kKeysFix), own_keys.string());
+        if (list_keys) {
+            std::fputs(options.keys.text().c_str(), stdout);
+            exit_code = 0;
+            return false;
+        }
         // A calibration may create the file.
         if (!options.stage_file.empty() &&
             !(options.calibrate && !std::filesystem::exists(options.stage_file)))

@@ -9,6 +9,7 @@
 #include "gui/drilling/training/training.hpp"
 #include "gui/render/looks.hpp"
 #include "gui/stereo/stage_file.hpp"
+#include "gui/system/keys.hpp"
 #include "gui/window/window_state.hpp"
 
 namespace tact {
@@ -19,6 +20,7 @@ struct GuiOptions {
     std::string
         window_state_file;     // settings of the window: read at the start, written at the end; empty: none
     WindowState window_state;  // as read
+    KeyTable keys;             // with the person's own
     std::string scene_switch;  // the launcher's folder for requests of another scene; empty: none
     std::string screenshot;    // empty: none
     std::string report;        // drilling report, JSON, at the end; empty: none

@@ -75,7 +75,8 @@ void legend(const OverlayPen& pen, const PanelState& state, const SystemPanels& 
     }
     const std::string fps = format("%.0f fps   ", state.load.fps) + system.drawn_text(state);
     float at = v.y + pen.theme.px(12.0F);
-    for (const std::string& words : {fps, frame_line(state.frames), std::string("? keys")}) {
+    for (const std::string& words :
+         {fps, frame_line(state.frames), std::string(state.keys.key_of(KeyAction::help)) + " keys"}) {
         const float left = v.x + v.width - pen.theme.px(16.0F) - pen.width(pen.theme.small, words);
         // In a narrow view, lines that would reach the title are omitted.
         if (left > taken + pen.theme.px(8.0F)) pen.text(pen.theme.small, {left, at}, colour::kDim, words);
@@ -136,9 +137,9 @@ void message(const OverlayPen& pen, const PanelState& state, const PixelRect& v)
 }
 
 // Keys that apply now.
-void keys(const OverlayPen& pen, const KeySituation& now, const PixelRect& v) {
+void keys(const OverlayPen& pen, const KeyTable& table, const KeySituation& now, const PixelRect& v) {
     std::vector<const KeyRow*> rows;
-    for (const KeyRow& row : key_rows())
+    for (const KeyRow& row : table.rows())
         if (applies(row.when, now)) rows.push_back(&row);
     const float line = pen.theme.px(20.0F), pad = pen.theme.px(14.0F), column = pen.theme.px(430.0F);
     const auto columns = static_cast<std::size_t>(
@@ -175,7 +176,7 @@ void draw_overlay(const Theme& theme, PanelState& state, const SystemPanels& sys
     }
     stop_banner(pen, state, view);
     replay_sign(pen, state, view);
-    if (state.situation.sheet) keys(pen, state.situation, view);
+    if (state.situation.sheet) keys(pen, state.keys, state.situation, view);
     pen.draw->PopClipRect();
 }
 

@@ -14,6 +14,7 @@ struct PanelState : DashboardState {
     BrowserState browser;
     PictureState picture;
     KeySituation situation;  // for the keys; the user opens its sheet
+    KeyTable keys;
 };
 
 }  // namespace tact

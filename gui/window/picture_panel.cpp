@@ -18,7 +18,7 @@ void explain(const char* text) {
 
 void cut_row(const Theme& theme, SceneToggles& t) {
     ImGui::Checkbox("Cut", &t.cut);
-    explain("cuts off what is nearer than a plane (C); Shift+wheel moves it");
+    explain("cuts off what is nearer than a plane; Shift+wheel moves it");
     ImGui::SameLine(theme.px(70.0F));
     ImGui::SetNextItemWidth(theme.px(240.0F));
     ImGui::BeginDisabled(!t.cut);
@@ -61,7 +61,7 @@ void size_row(const Theme& theme, PictureState& p, const PixelRect& view) {
 
 }  // namespace
 
-void draw_picture_button(const Theme& theme, PictureState& picture, const PixelRect& view) {
+void draw_picture_button(const Theme& theme, PictureState& picture, const char* key, const PixelRect& view) {
     const float width = theme.px(kWide);
     ImGui::SetNextWindowPos(
         {view.x + view.width - width - theme.px(kFromRight), view.y + theme.px(kFromTop)});
@@ -71,7 +71,7 @@ void draw_picture_button(const Theme& theme, PictureState& picture, const PixelR
                  ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoSavedSettings |
                      ImGuiWindowFlags_NoBackground | ImGuiWindowFlags_NoNav |
                      ImGuiWindowFlags_NoBringToFrontOnFocus);
-    if (ImGui::Button("Picture (I)", {width, 0.0F})) picture.open = !picture.open;
+    if (ImGui::Button(format("Picture (%s)", key).c_str(), {width, 0.0F})) picture.open = !picture.open;
     ImGui::End();
     ImGui::PopStyleVar();
 }

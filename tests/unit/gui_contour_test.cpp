@@ -13,6 +13,7 @@
 #include "gui/base/scratch_folder.hpp"
 #include "gui/docking/contour_child.hpp"
 #include "gui/docking/contour_option.hpp"
+#include "gui/docking/contour_rows.hpp"
 #include "gui/window/load_scene.hpp"
 #include "ipc/base/error.hpp"
 #include "tests/unit/gui_fake.hpp"
@@ -278,6 +279,30 @@ TEST(ContourOption, gives_level_colour_opacity_and_style) {
     const ContourScale scale(grid, -0.9, 0.2);
     EXPECT_DOUBLE_EQ(level_of(o, scale), -0.4);
     EXPECT_NEAR(scale.fraction_inside(level_of(read_contour_option("8%"), scale)), 0.08, 1e-3);
+}
+
+TEST(ContourRows, wheel_and_keys_move_the_chosen_one_and_choose_around_the_end) {
+    const auto content = ball(17);
+    const ContourScale scale(content->grid, -0.9, 0.3);
+    ContourRowState state;
+    state.least = scale.least();
+    state.greatest = scale.greatest();
+    choose_contour(state, 1);
+    nudge_contour(state, scale, 1.0);
+    EXPECT_FALSE(state.changed) << "nothing to move";
+    state.row.resize(3);
+    for (ContourRow& row : state.row) row.level = -0.8;
+    choose_contour(state, -1);
+    EXPECT_EQ(state.chosen_row(), 2U);
+    nudge_contour(state, scale, 2.0);
+    const double sigma = scale.level_of_sigma(1.0) - scale.level_of_sigma(0.0);
+    EXPECT_NEAR(state.row[2].level, -0.8 + 0.2 * sigma, 1e-9);
+    EXPECT_EQ(state.row[0].level, -0.8);
+    choose_contour(state, 1);
+    EXPECT_EQ(state.chosen_row(), 0U);
+    choose_contour(state, 2);
+    state.row.pop_back();
+    EXPECT_EQ(state.chosen_row(), 0U) << "the chosen one was removed";
 }
 
 }  // namespace

@@ -322,9 +322,32 @@ TEST(CommandSender, numbers_commands_and_reports_their_results) {
     EXPECT_EQ(sender.sequence(), 4U);
 }
 
+TEST(CommandSender, forgets_what_an_earlier_controller_answered) {
+    OwnedRegion<GuiRegion> region;
+    CommandSender sender(region->commands);
+    ASSERT_TRUE(sender.send({.kind = CommandKind::arm}, 100));
+    HealthTopic health{};
+    health.command_sequence = 1;
+    health.command_result = static_cast<std::uint32_t>(CommandResult::done);
+    sender.update(health, 200);
+    EXPECT_EQ(sender.text(), "arm: done");
+    sender.forget();
+    EXPECT_EQ(sender.text(), "");
+    EXPECT_EQ(sender.stage(), CommandSender::Stage::none);
+    ASSERT_TRUE(sender.send({.kind = CommandKind::arm}, 300));
+    sender.forget();
+    EXPECT_NE(sender.text().find("ended before it answered"), std::string::npos) << sender.text();
+    sender.forget();
+    EXPECT_NE(sender.text().find("ended before it answered"), std::string::npos)
+        << "until something else is asked";
+}
+
 TEST(StatusText, grades_the_rate_against_its_goal) {
     EXPECT_EQ(rate_status(1000.0, 1000.0).grade, Grade::good);
-    EXPECT_EQ(rate_status(951.0, 1000.0).grade, Grade::good);
+    EXPECT_EQ(rate_status(998.0, 1000.0).grade, Grade::good);
+    EXPECT_EQ(rate_status(1200.0, 1000.0).grade, Grade::good);
+    EXPECT_EQ(rate_status(996.0, 1000.0).grade, Grade::watch);
+    EXPECT_EQ(rate_status(996.0, 1000.0).text, "0.4 % below target");
     EXPECT_EQ(rate_status(940.0, 1000.0).grade, Grade::watch);
     EXPECT_EQ(rate_status(700.0, 1000.0).grade, Grade::bad);
     EXPECT_NE(rate_status(700.0, 1000.0).text.find("30 %"), std::string::npos);
