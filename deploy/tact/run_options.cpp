@@ -37,6 +37,8 @@ constexpr PassedOption kVisual[] = {
     {"--stereo", "off|anaglyph|side-by-side|top-bottom|two-windows|quad-buffer", "Stereo mode of the window"},
     {"--window-state", "FILE.toml",
      "Settings of the window (TOML), read at the start if the file exists and written at the end"},
+    {"--texts", "FILE.json",
+     "Keep this file up to date with the texts on the window, for scripts that operate it by its labels"},
     {"--training", "FILE.toml", "Training task of a drilling scene; see deploy/tact/drilling/README.md"},
     {"--trainee", "NAME", "Name of the trainee, for the report"},
     {"--training-folder", "DIR", "Folder of training reports; default: in $XDG_STATE_HOME/tact"},

@@ -9,9 +9,11 @@
 #include <chrono>
 #include <utility>
 
+#include "gui/dashboard/drawn_texts.hpp"
 #include "gui/window/app_parts.hpp"
 #include "gui/window/show_controller.hpp"
 #include "ipc/base/units.hpp"
+#include "ipc/base/whole_file.hpp"
 
 namespace tact {
 namespace {
@@ -213,6 +215,8 @@ void GuiApp::draw_panels() {
     draw_dashboard(theme_, state_, system().panels(), io.DisplaySize.x, io.DisplaySize.y);
     ImGui::Render();
     panel_image_.draw(*ImGui::GetDrawData(), layout_, to_px(size), size.width_px, size.height_px);
+    if (!options_.texts.empty())
+        write_whole_file(options_.texts, texts_json(drawn_texts(*ImGui::GetDrawData())));
     for (const Request& request : state_.requests)
         if (controller_.watches())
             watch(request);

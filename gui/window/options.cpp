@@ -54,6 +54,11 @@ bool parse_gui_options(int argc, const char* const* argv, GuiOptions& options, i
     app.add_option("--frames", options.frames,
                    "Write the times of frames and their passes as JSON at the end")
         ->type_name("FILE.json");
+    app.add_option("--texts", options.texts,
+                   "Keep this file up to date with the texts on the window and where they are (JSON), for "
+                   "scripts that "
+                   "operate it by its labels")
+        ->type_name("FILE.json");
     app.add_option("--picture-every", options.every_s,
                    "Interval (s) of a series NAME-01.png, ... of the 3D view; needs --screenshot NAME.png")
         ->check(CLI::Range(0.1, 1e5));

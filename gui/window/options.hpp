@@ -24,6 +24,7 @@ struct GuiOptions {
     std::string scene_switch;  // the launcher's folder for requests of another scene; empty: none
     std::string screenshot;    // empty: none
     std::string report;        // drilling report, JSON, at the end; empty: none
+    std::string texts;         // the texts on the window, JSON, while it runs; empty: none
     std::string frames;        // frame times, JSON, at the end; empty: none
     double every_s = 0.0;      // interval of a screenshot series; 0: none
     double seconds = 0.0;      // 0: until closed

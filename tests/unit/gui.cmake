@@ -2,7 +2,7 @@
 if(TACT_GUI)
     find_package(CLI11 REQUIRED)
     tact_tests(gui_dashboard_tests SOURCES
-            unit/gui_plot_series_test.cpp unit/gui_dashboard_test.cpp
+            unit/gui_plot_series_test.cpp unit/gui_dashboard_test.cpp unit/gui_layout_test.cpp
             unit/gui_traces_test.cpp unit/gui_traces_panel_test.cpp unit/gui_trace_export_test.cpp
             unit/gui_timeline_test.cpp unit/gui_events_test.cpp
         USES gui_dashboard gui_window gui_docking gui_link topics base)
