@@ -15,7 +15,7 @@ struct Letter {
     unsigned codepoint = 0;
     float x0 = 0.0F, y0 = 0.0F, x1 = 0.0F, y1 = 0.0F;
     float top = 0.0F, line = 0.0F;  // of the line of text
-    bool cut = false;
+    bool cut = false, cut_below = false;
 };
 
 struct GlyphAt {
@@ -43,8 +43,8 @@ public:
             (last.pos.y - first.pos.y) / (last.uv.y - first.uv.y) * (g.V1 - g.V0) / (g.Y1 - g.Y0);
         letter.top = first.pos.y - scale * g.Y0;
         letter.line = scale * at.font->FontSize;
-        letter.cut = std::abs(first.uv.x - g.U0) > 1e-6F || std::abs(last.uv.x - g.U1) > 1e-6F ||
-                     std::abs(first.uv.y - g.V0) > 1e-6F || std::abs(last.uv.y - g.V1) > 1e-6F;
+        letter.cut = std::abs(first.uv.x - g.U0) > 1e-6F || std::abs(last.uv.x - g.U1) > 1e-6F;
+        letter.cut_below = std::abs(first.uv.y - g.V0) > 1e-6F || std::abs(last.uv.y - g.V1) > 1e-6F;
         return letter;
     }
 
@@ -80,14 +80,14 @@ public:
         const float x0 = std::max(l.x0, clip.x), x1 = std::min(l.x1, clip.z);
         const float y0 = std::max(l.y0, clip.y), y1 = std::min(l.y1, clip.w);
         if (x1 <= x0 || y1 <= y0) return;  // none of it is seen
-        const bool cut = l.cut || l.x0 < clip.x - kBesidePx || l.x1 > clip.z + kBesidePx ||
-                         l.y0 < clip.y - kBesidePx || l.y1 > clip.w + kBesidePx;
+        const bool cut = l.cut || l.x0 < clip.x - kBesidePx || l.x1 > clip.z + kBesidePx;
+        const bool cut_below = l.cut_below || l.y0 < clip.y - kBesidePx || l.y1 > clip.w + kBesidePx;
         const float gap = l.x0 - end_;
         const bool follows =
             !now_.text.empty() && std::abs(l.top - top_) < 0.6F && gap > -0.3F * l.line && gap < l.line;
         if (!follows) finish();
-        if (follows && gap > 0.16F * l.line) now_.text += ' ';
-        if (now_.text.empty()) now_ = {"", owner_, x0, y0, 0.0F, 0.0F, false, list_};
+        if (follows && gap > 0.19F * l.line) now_.text += ' ';
+        if (now_.text.empty()) now_ = {"", owner_, x0, y0, 0.0F, 0.0F, false, false, list_};
         add_utf8(now_.text, l.codepoint);
         const float right = std::max(now_.x + now_.w, x1), low = std::max(now_.y + now_.h, y1);
         now_.x = std::min(now_.x, x0);
@@ -95,6 +95,7 @@ public:
         now_.w = right - now_.x;
         now_.h = low - now_.y;
         now_.cut = now_.cut || cut;
+        now_.cut_below = now_.cut_below || cut_below;
         top_ = l.top;
         end_ = l.x1;
     }
@@ -167,9 +168,11 @@ std::string texts_json(const std::vector<DrawnText>& texts) {
     for (std::size_t i = 0; i < texts.size(); ++i) {
         const DrawnText& t = texts[i];
         std::snprintf(numbers, sizeof numbers,
-                      "\"x\": %.1f, \"y\": %.1f, \"w\": %.1f, \"h\": %.1f, \"cut\": %s, \"list\": %zu",
+                      "\"x\": %.1f, \"y\": %.1f, \"w\": %.1f, \"h\": %.1f, \"cut\": %s, \"cut_below\": %s, "
+                      "\"list\": %zu",
                       static_cast<double>(t.x), static_cast<double>(t.y), static_cast<double>(t.w),
-                      static_cast<double>(t.h), t.cut ? "true" : "false", t.list);
+                      static_cast<double>(t.h), t.cut ? "true" : "false", t.cut_below ? "true" : "false",
+                      t.list);
         out += (i == 0 ? "\n" : ",\n") + std::string("{\"text\": \"") + escaped(t.text) +
                "\", \"owner\": \"" + escaped(t.owner) + "\", " + numbers + "}";
     }

@@ -17,9 +17,10 @@ struct DrawnText {
     std::string text;   // UTF-8
     std::string owner;  // name of the draw list: a window, or "##Background"
     float x = 0.0F, y = 0.0F, w = 0.0F,
-          h = 0.0F;        // visible part of its letters, from the upper left corner of the window
-    bool cut = false;      // a letter reaches out of its clip rectangle
-    std::size_t list = 0;  // number of the draw list
+          h = 0.0F;  // visible part of its letters, from the upper left corner of the window
+    bool cut = false,
+         cut_below = false;  // a letter reaches out of its clip rectangle at a side; above or below
+    std::size_t list = 0;    // number of the draw list
 };
 
 [[nodiscard]] std::vector<DrawnText> drawn_texts(const ImDrawData& data);

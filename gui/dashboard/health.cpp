@@ -1,5 +1,6 @@
 // Health panel: state of the controller as numbers, text and colour, and the buttons needed first.
 #include <algorithm>
+#include <array>
 #include <cctype>
 #include <cmath>
 
@@ -177,9 +178,11 @@ void delay(const Theme& theme, const HealthTopic& h) {
     const double now = 1e-3 * static_cast<double>(h.model_n_m),
                  most = 1e-3 * static_cast<double>(h.stiffness_n_m_max);
     const bool reduced = h.field_gain < 0.995F;
-    row(theme, "Loop delay", duration_text(1e-9 * static_cast<double>(h.delay_p99_ns)),
-        reduced ? format("force at %.0f %%, to be stable", 100.0 * static_cast<double>(h.field_gain))
-                : format("%.2f of %.1f N/mm stable", now, most));
+    const std::string part = format("force at %.0f %%", 100.0 * static_cast<double>(h.field_gain));
+    const std::array<std::string, 2> notes{
+        reduced ? part + ", to be stable" : format("%.2f of %.1f N/mm stable", now, most),
+        reduced ? part : format("%.2f of %.1f N/mm", now, most)};
+    row(theme, "Loop delay", duration_text(1e-9 * static_cast<double>(h.delay_p99_ns)), notes);
 }
 
 void law_and_goal(const Theme& theme, DashboardState& state) {

@@ -34,7 +34,7 @@ struct ReplayState {
     std::vector<TimelineRequest> requests;  // emptied by the application
 };
 
-inline constexpr float kTimelineHeight = 58.0F;  // at scale 1
+inline constexpr float kTimelineHeight = 66.0F;  // at scale 1
 
 // "paused at 12.340 s of 130.0 s", "playing at 0.5 x, 12.3 s of 130.0 s", "looking for 40.0 s: 43 %".
 [[nodiscard]] std::string replay_text(const ReplayTopic& replay);

@@ -80,7 +80,9 @@ void row(const Theme& theme, const char* what, const std::string& value, const s
     row_start(theme, what, value, colour::kText);
     if (note.empty()) return;
     ImGui::SameLine(0.0F, theme.px(6.0F));
-    text_coloured(colour::kDim, note);
+    const std::string shown = cut_text(ImGui::GetFont(), note, ImGui::GetContentRegionAvail().x);
+    text_coloured(colour::kDim, shown);
+    if (shown != note && ImGui::IsItemHovered()) ImGui::SetTooltip("%s", note.c_str());
 }
 
 void row(const Theme& theme, const char* what, const std::string& value, std::span<const std::string> notes) {

@@ -19,6 +19,7 @@ void end_card();
 void badge(const Theme& theme, const std::string& word, ImU32 fill, ImFont* font = nullptr);
 // One row: label on the left, the value, and a text in the colour of its grade.
 void row(const Theme& theme, const char* what, const std::string& value, const StatusText& status);
+// A note that does not fit is shortened, and whole under the mouse.
 void row(const Theme& theme, const char* what, const std::string& value,
          const std::string& unit_or_note = "");
 // With the first note that fits, else the last.

@@ -17,8 +17,12 @@ void list(const Theme& theme, DashboardState& state, FittingState& fitting) {
         ImGui::SetCursorScreenPos({at.x + theme.px(14.0F), at.y});
         ImGui::BeginDisabled(!live);
         ImGui::PushStyleColor(ImGuiCol_Text, b.in_hand ? colour::kAccent : colour::kText);
-        const std::string name = format("%u  %s%s", b.id, b.name.c_str(), b.in_hand ? " (held)" : "");
-        if (ImGui::Selectable(name.c_str(), b.in_hand, 0, {right - theme.px(146.0F), 0.0F}))
+        const float wide = right - theme.px(146.0F);
+        const std::string held = b.in_hand ? " (held)" : "", number = format("%u  ", b.id);
+        const std::string name =
+            number +
+            cut_text(ImGui::GetFont(), b.name, wide - ImGui::CalcTextSize((number + held).c_str()).x) + held;
+        if (ImGui::Selectable(name.c_str(), b.in_hand, 0, {wide, 0.0F}))
             state.requests.push_back({CommandKind::select_body, 0.0, {}, b.in_hand ? kNoBody : b.id});
         ImGui::PopStyleColor();
         if (ImGui::IsItemHovered())
@@ -54,7 +58,7 @@ void actions(const DashboardState& state, FittingState& f, std::vector<Request>&
     };
     if (button("Undo", f.can_undo, "undo the last gesture")) request(FitAction::undo);
     if (button("Redo", f.can_redo, "redo the last gesture")) request(FitAction::redo);
-    if (button("Accept", f.can_undo, "accept the current poses; Revert returns to them (Enter)"))
+    if (button("Accept", f.can_undo, "accept the current poses; Revert returns to them"))
         request(FitAction::accept);
     if (button("Revert", f.can_undo, "return to the accepted poses (Esc)")) request(FitAction::revert);
     if (button("Refine", held != nullptr && !f.search.running,
