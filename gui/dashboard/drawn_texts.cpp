@@ -15,6 +15,7 @@ struct Letter {
     unsigned codepoint = 0;
     float x0 = 0.0F, y0 = 0.0F, x1 = 0.0F, y1 = 0.0F;
     float top = 0.0F, line = 0.0F;  // of the line of text
+    float from = 0.0F, to = 0.0F, space = 0.0F;  // of the pen, before and after it; of a space
     bool cut = false, cut_below = false;
 };
 
@@ -43,6 +44,9 @@ public:
             (last.pos.y - first.pos.y) / (last.uv.y - first.uv.y) * (g.V1 - g.V0) / (g.Y1 - g.Y0);
         letter.top = first.pos.y - scale * g.Y0;
         letter.line = scale * at.font->FontSize;
+        letter.from = first.pos.x - scale * (g.X0 + (first.uv.x - g.U0) / (g.U1 - g.U0) * (g.X1 - g.X0));
+        letter.to = letter.from + scale * g.AdvanceX;
+        letter.space = scale * at.font->GetCharAdvance(' ');
         letter.cut = std::abs(first.uv.x - g.U0) > 1e-6F || std::abs(last.uv.x - g.U1) > 1e-6F;
         letter.cut_below = std::abs(first.uv.y - g.V0) > 1e-6F || std::abs(last.uv.y - g.V1) > 1e-6F;
         return letter;
@@ -82,11 +86,11 @@ public:
         if (x1 <= x0 || y1 <= y0) return;  // none of it is seen
         const bool cut = l.cut || l.x0 < clip.x - kBesidePx || l.x1 > clip.z + kBesidePx;
         const bool cut_below = l.cut_below || l.y0 < clip.y - kBesidePx || l.y1 > clip.w + kBesidePx;
-        const float gap = l.x0 - end_;
+        const float gap = l.from - end_;
         const bool follows =
-            !now_.text.empty() && std::abs(l.top - top_) < 0.6F && gap > -0.3F * l.line && gap < l.line;
+            !now_.text.empty() && std::abs(l.top - top_) < 0.6F && gap > -0.3F * l.line && gap < 1.8F * l.space;
         if (!follows) finish();
-        if (follows && gap > 0.19F * l.line) now_.text += ' ';
+        if (follows && gap > 0.5F * l.space) now_.text += ' ';
         if (now_.text.empty()) now_ = {"", owner_, x0, y0, 0.0F, 0.0F, false, false, list_};
         add_utf8(now_.text, l.codepoint);
         const float right = std::max(now_.x + now_.w, x1), low = std::max(now_.y + now_.h, y1);
@@ -97,7 +101,7 @@ public:
         now_.cut = now_.cut || cut;
         now_.cut_below = now_.cut_below || cut_below;
         top_ = l.top;
-        end_ = l.x1;
+        end_ = l.to;
     }
     void finish() {
         if (!now_.text.empty()) out_.push_back(std::move(now_));

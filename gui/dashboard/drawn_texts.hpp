@@ -2,7 +2,7 @@
 // visible labels.
 //
 // How      a letter is a quad with a glyph's place in the font texture. Letters of one draw command that follow each other on a line are one text;
-//          gaps of more than a line's height separate texts
+//          gaps wider than a space separate texts
 // Thread   frame thread, after ImGui::Render().
 #pragma once
 

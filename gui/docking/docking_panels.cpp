@@ -94,13 +94,15 @@ void DockingPanels::draw_in_scene_card(const Theme& theme, DashboardState& state
     } else if (state.tab == 2) {
         draw_contours_tab(theme, contours);
     } else {
-        scene_rows(theme, state, scene);
         toggles(theme, state.toggles, fit.residues_current);
+        scene_rows(theme, state, scene);
     }
     ImGui::PopStyleVar();
 }
 
 void DockingPanels::add_legend(const DashboardState& state, std::vector<LegendLine>& lines) const {
+    if (!fitting.message.empty() && state.now_ns < message_until_ns)
+        lines.push_back({grade_colour(fitting.message_grade), fitting.message});
     if (drawn_as_tubes == 0) return;
     const bool spheres = state.toggles.molecule == static_cast<int>(MoleculeStyle::spheres);
     lines.push_back({colour::kWatch, format("%s are slow in software rendering: tubes while anything moves",

@@ -154,6 +154,7 @@ public:
     ContourRowState contours;
     std::size_t drawn_as_tubes = 0;  // bodies, in place of their sticks or spheres
     std::vector<ViewLabel> labels;
+    std::int64_t message_until_ns = 0;  // fitting.message is also shown over the view until then
 
     [[nodiscard]] CardSize card_size() const override { return {212.0F, 0.3F}; }
     void draw_card(const Theme& theme, const PixelRect& card,

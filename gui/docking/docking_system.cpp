@@ -17,6 +17,8 @@ namespace {
 // In software rendering. A view at rest is drawn once, so it may take longer.
 constexpr std::size_t kShapesMaxInSoftware = 8000, kShapesMaxAtRest = 60000;
 
+constexpr std::int64_t kMessageShown_ns = 12'000'000'000;
+
 DockingSummary summary_of(const SceneContent& content) {
     const SceneMeta& meta = content.meta;
     DockingSummary s{.resolution_m = meta.resolution_m, .voxels = content.grid.size};
@@ -142,6 +144,11 @@ void DockingSystem::follow_bodies(std::int64_t now_ns, const SystemContext& cont
         for (const Command& command : commands) context.commands.send(command, now_ns);
     fit_controller_.describe(list_, topic, fitting, panels_.fit);
     describe_shape(context.controller, fitting);
+    // The list of bodies may be longer than its card, with the message below its edge.
+    if (fitting.message != message_) {
+        message_ = fitting.message;
+        panels_.message_until_ns = now_ns + kMessageShown_ns;
+    }
 }
 
 void DockingSystem::describe_shape(const Controller& controller, FittingState& fitting) const {

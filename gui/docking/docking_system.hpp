@@ -54,6 +54,7 @@ private:
     FitController fit_controller_;
     BodyList list_;
     std::vector<DrawnBody> drawn_;
+    std::string message_;            // of the last action, as shown
     std::uint64_t coloured_by_ = 0;  // number of the outcome
     float molecules_level_ = 1.0F;   // keeps the controller's newest value
 };

@@ -47,11 +47,14 @@ std::string duration_text(double s) {
 
 }  // namespace
 
+// A hand does not feel less.
+constexpr double kErrorShown_n = 0.0005;
+
 std::string level_status_text(const PathLevel& p, std::int64_t now_ns) {
     std::string text = p.level >= kFull ? "full detail" : limit_text(p);
     const double since_s = 1e-9 * static_cast<double>(now_ns - p.changed_at_ns);
     if (p.level < kFull && p.changed_at_ns > 0 && since_s >= 0.0) text += ", " + duration_text(since_s);
-    if (p.haptic != 0 && p.error > 0.0 && std::isfinite(p.error) && p.error < 1e3) {
+    if (p.haptic != 0 && p.error >= kErrorShown_n && std::isfinite(p.error) && p.error < 1e3) {
         std::array<char, 48> error{};
         std::snprintf(error.data(), error.size(), ", ±%.2g N", p.error);
         text += error.data();

@@ -7,149 +7,18 @@ usage: operate_test.py BIN_DIR
 Exit code 77: Xvfb or xdotool is missing.
 """
 import csv
-import json
 import math
 import os
 import re
 import shutil
 import signal
-import struct
 import subprocess
 import sys
 import tempfile
-import time
 
-PATIENCE_S = 60.0
+from operator_of_window import Operator, expect
 
-# Colour of an enabled button, with and without the mouse on it; no letter or lamp is as large.
-BUTTONS = {
-    "Arm": lambda r, g, b: g - r > 20 and g < 160,
-    "Disarm": lambda r, g, b: r - g < 50 and g - b > 15 and r - b > 25 and r < 160,
-    "Reset": lambda r, g, b: r - g > 25 and r - b > 25 and abs(g - b) < 20 and r < 160,
-}
-BUTTONS_WITHIN = (310, 360)  # pixels of the window, around the controller's card
-SOLID = (12, 14)
 RAMPED_OUT_S = 0.1  # twice safety.ramp_out_ms
-
-
-class Operator:
-    """A private X screen with at most one run on it."""
-
-    def __init__(self, bin_dir, folder):
-        self.bin, self.folder = bin_dir, folder
-        read, write = os.pipe()
-        self.x = subprocess.Popen(["Xvfb", "-displayfd", str(write), "-screen", "0", "1300x760x24", "-fbdir", folder], pass_fds=[write],
-                                  stderr=subprocess.DEVNULL)
-        os.close(write)
-        with os.fdopen(read) as f:
-            self.env = dict(os.environ, DISPLAY=":" + f.readline().strip(), LIBGL_ALWAYS_SOFTWARE="1", TACT_RUNTIME_DIR=folder)
-        self.run = None
-
-    def program(self, name):
-        return os.path.join(self.bin, name)
-
-    def start(self, *options, hand="passive"):
-        self.report = os.path.join(self.folder, "run.json")
-        if os.path.exists(self.report):
-            os.remove(self.report)
-        self.log = open(os.path.join(self.folder, "run.log"), "wb")
-        self.run = subprocess.Popen(
-            [self.program("tact"), "run", os.path.join(self.folder, "scene.tact"), "--size", "1280x720", "--hand", hand, "--quiet",
-             "--session", "keys", "--json", self.report, *options], env=self.env, stdout=self.log, stderr=self.log)
-        self.wait("the window draws", lambda s: s["gui"]["attached"] and s["gui"]["frames"] and s["gui"]["frames"]["count"] > 20)
-        subprocess.run(["xdotool", "mousemove", "800", "300"], env=self.env, check=True)
-
-    def status(self):
-        said = subprocess.run([self.program("tact"), "status", "--session", "keys", "--json"], env=self.env, stdout=subprocess.PIPE,
-                              stderr=subprocess.DEVNULL)
-        return json.loads(said.stdout) if said.returncode == 0 else None
-
-    def wait(self, what, true):
-        end = time.monotonic() + PATIENCE_S
-        while time.monotonic() < end:
-            now = self.status()
-            if now is not None and true(now):
-                return now
-            time.sleep(0.1)
-        sys.exit("FAILED %s: timed out after %.0f s; the log:\n%s" % (what, PATIENCE_S, self.said()[-3000:]))
-
-    def said(self):
-        with open(self.log.name, errors="replace") as f:
-            return f.read()
-
-    def key(self, key):
-        subprocess.run(["xdotool", "key", key], env=self.env, check=True)
-
-    # The screen's pixels as a function (x, y) -> (red, green, blue), from the file in xwd format that Xvfb writes.
-    def picture(self):
-        with open(os.path.join(self.folder, "Xvfb_screen0"), "rb") as f:
-            data = f.read()
-        head = struct.unpack(">25I", data[:100])
-        begin, line = head[0] + 12 * head[19], head[12]
-
-        def pixel(x, y):
-            at = begin + line * y + 4 * x
-            return data[at + 2], data[at + 1], data[at]
-        return pixel
-
-    # Finds the enabled button in the window; None: not visible.
-    def button(self, name):
-        pixel, like = self.picture(), BUTTONS[name]
-        wide, high = SOLID
-        for y in range(0, BUTTONS_WITHIN[1] - high, 4):
-            for x in range(0, BUTTONS_WITHIN[0] - wide, 4):
-                if all(like(*pixel(x + dx, y + dy)) for dx in range(0, wide, 2) for dy in range(0, high, 2)):
-                    return x + wide // 2, y + high // 2
-        return None
-
-    # Clicks the button until the condition holds: in a slow window the button may have moved since the last frame.
-    def press(self, name, what, true):
-        end = time.monotonic() + PATIENCE_S
-        while time.monotonic() < end:
-            if (at := self.button(name)) is not None:
-                subprocess.run(["xdotool", "mousemove", str(at[0]), str(at[1]), "click", "1"], env=self.env, check=True)
-            again = time.monotonic() + (3.0 if at is not None else 0.0)
-            while True:
-                if (now := self.status()) is not None and true(now):
-                    return now
-                if time.monotonic() > again:
-                    break
-                time.sleep(0.1)
-        sys.exit("FAILED %s: timed out after %.0f s; the window shows %s enabled button %s; the log:\n%s" %
-                 (what, PATIENCE_S, "an" if at else "no", name, self.said()[-3000:]))
-
-    # The process id of the controller.
-    def controller(self):
-        with open("/proc/%d/task/%d/children" % (self.run.pid, self.run.pid)) as f:
-            for pid in map(int, f.read().split()):
-                with open("/proc/%d/comm" % pid) as name:
-                    if name.read().strip() == "tact-rt":
-                        return pid
-        sys.exit("FAILED: the run has no controller")
-
-    # Presses keys that place a body, each after the controller has executed the last one.
-    def place(self, *keys):
-        for done, key in enumerate(keys, 1):
-            self.key(key)
-            self.wait("%s places the body" % key, lambda s: self.said().count("command place a body: done") >= done)
-
-    def end(self):
-        self.run.send_signal(signal.SIGINT)
-        self.run.wait(60)
-        self.run = None
-        with open(self.report) as f:
-            return json.load(f)
-
-    def close(self):
-        if self.run is not None:
-            self.run.kill()
-        self.x.kill()
-        self.x.wait()
-
-
-def expect(what, true):
-    print("%s %s" % ("ok  " if true else "FAIL", what), flush=True)
-    return 0 if true else 1
 
 
 def arming(operator):

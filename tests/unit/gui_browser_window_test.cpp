@@ -5,8 +5,10 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <cmath>
 #include <cstdlib>
 #include <fstream>
+#include <nlohmann/json.hpp>
 #include <thread>
 
 #include "deploy/tact/child.hpp"
@@ -53,7 +55,7 @@ protected:
         if (tact_ == 0) {
             if (freopen((folder_ + "/said").c_str(), "w", stdout) == nullptr || dup2(1, 2) < 0) _exit(126);
             execl(TACT_PROGRAM, TACT_PROGRAM, "run", first_.c_str(), "--session", "t", "--size", "1280x720",
-                  nullptr);
+                  "--texts", (folder_ + "/texts.json").c_str(), nullptr);
             _exit(127);
         }
         ASSERT_TRUE(wait_for_words("showing " + first_)) << log();
@@ -75,30 +77,61 @@ protected:
         std::ifstream file(folder_ + "/state/tact/recent.json");
         return {std::istreambuf_iterator<char>(file), {}};
     }
-    // Repeats `act` until the text appears, because a busy window may miss a click.
-    template <class Act>
-    bool until_words(const std::string& words, Act&& act) {
+    bool wait_for_words(const std::string& words) {
         const Instant until = Monotonic::now() + kPatience;
         while (Monotonic::now() < until) {
             if (log().find(words) != std::string::npos) return true;
-            act();
-            std::this_thread::sleep_for(milliseconds(300));
+            std::this_thread::sleep_for(milliseconds(100));
         }
         return false;
-    }
-    bool wait_for_words(const std::string& words) {
-        return until_words(words, [] {});
     }
     static void x(const std::string& words) {
         ASSERT_EQ(std::system(("xdotool " + words + " >/dev/null 2>&1").c_str()), 0) << words;
     }
 
-    static void press(const std::string& place) {
-        x("mousemove " + place);
-        std::this_thread::sleep_for(milliseconds(200));
-        x("mousedown 1");
-        std::this_thread::sleep_for(milliseconds(200));
-        x("mouseup 1");
+    // The middle of a text on the window, as xdotool wants it; empty: it is not shown.
+    [[nodiscard]] std::string place_of(const std::string& label) const {
+        std::ifstream file(folder_ + "/texts.json");
+        const std::string all{std::istreambuf_iterator<char>(file), {}};
+        const auto texts = nlohmann::json::parse(all, nullptr, false);
+        if (texts.is_discarded()) return {};
+        for (const auto& t : texts["texts"]) {
+            const std::string text = t["text"];
+            if (text.substr(0, label.size()) != label) continue;
+            const auto middle = [&t](const char* at, const char* size) {
+                return std::to_string(std::lround(t[at].get<double>() + 0.5 * t[size].get<double>()));
+            };
+            return middle("x", "w") + " " + middle("y", "h");
+        }
+        return {};
+    }
+    // Clicks a text until another is shown: a busy window may miss a click.
+    void click(const std::string& label, const std::string& then) {
+        const Instant until = Monotonic::now() + kPatience;
+        while (Monotonic::now() < until) {
+            if (const std::string place = place_of(label); !place.empty()) {
+                x("mousemove " + place);
+                std::this_thread::sleep_for(milliseconds(200));
+                x("mousedown 1");
+                std::this_thread::sleep_for(milliseconds(200));
+                x("mouseup 1");
+            }
+            const Instant seen_by = Monotonic::now() + std::chrono::seconds(5);
+            while (Monotonic::now() < seen_by) {
+                std::this_thread::sleep_for(milliseconds(100));
+                if (log().find(then) != std::string::npos || !place_of(then).empty()) return;
+            }
+        }
+        ADD_FAILURE() << label << " was clicked, but '" << then << "' was not shown\n" << log();
+    }
+    // Opens the list and shows the folder of the scenes.
+    void open_folder() {
+        const Instant until = Monotonic::now() + kPatience;
+        while (place_of("Recently used").empty() && Monotonic::now() < until) {
+            x("key --clearmodifiers o");
+            std::this_thread::sleep_for(milliseconds(500));
+        }
+        click("Folder", "../");
     }
 
     std::string folder_, first_, second_;
@@ -107,12 +140,8 @@ protected:
 };
 
 TEST_F(BrowserInTheWindow, a_clicked_scene_runs_and_becomes_the_newest_of_the_list) {
-    // The running scene is first in the list, the previous one second.
-    EXPECT_TRUE(until_words("requesting from the launcher: " + second_, [] {
-        x("key --clearmodifiers o");
-        std::this_thread::sleep_for(milliseconds(500));
-        press("600 162");
-    })) << log();
+    open_folder();
+    click("second.tact", "requesting from the launcher: " + second_);
     ASSERT_TRUE(wait_for_words("showing " + second_)) << log();
     EXPECT_NE(log().find("another scene was requested: " + second_), std::string::npos) << log();
     const Instant until = Monotonic::now() + kPatience;
@@ -129,14 +158,9 @@ TEST_F(BrowserInTheWindow, a_clicked_scene_runs_and_becomes_the_newest_of_the_li
 TEST_F(BrowserInTheWindow, marked_raw_data_in_the_folder_is_imported_and_run) {
     const std::string mesh = folder_ + "/tetra.obj";
     std::ofstream(mesh) << "v 0 0 0\nv 9 0 0\nv 0 9 0\nv 0 0 9\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 1 4 3\n";
-    EXPECT_TRUE(until_words("importing " + mesh, [] {
-        x("key --clearmodifiers o");
-        std::this_thread::sleep_for(milliseconds(500));
-        press("646 82");  // the folder: its parent, two folders, three scenes, the mesh
-        std::this_thread::sleep_for(milliseconds(500));
-        press("600 329");
-        press("506 488");  // the button below the rows
-    })) << log();
+    open_folder();
+    click("tetra.obj", "Clear");
+    click("Import", "importing " + mesh);
     EXPECT_TRUE(wait_for_words("showing " + folder_ + "/cache/tact/tetra-")) << log();
 }
 
@@ -155,20 +179,11 @@ TEST_F(BrowserInTheWindow, the_resolution_of_a_map_is_typed_corrected_and_entere
                        at_a.x(), at_a.y(), at_a.z());
     }
     pdb.close();
+    open_folder();
+    click("a.mrc", "1 marked");
+    click("a.pdb", "Dock a.pdb into a.mrc.");
     // Keys that come before the field has the keyboard are lost, as in any program.
-    const std::string asking = "asking about " + folder_ + "/a.mrc";
-    EXPECT_TRUE(until_words(asking, [&] {
-        x("key --clearmodifiers o");
-        std::this_thread::sleep_for(milliseconds(500));
-        press("646 82");  // the folder: its parent, two folders, three scenes, map and structure
-        std::this_thread::sleep_for(milliseconds(500));
-        press("600 329");
-        press("600 355");
-        press("506 488");  // asks for the resolution
-        const Instant until = Monotonic::now() + std::chrono::seconds(20);
-        while (log().find(asking) == std::string::npos && Monotonic::now() < until)
-            std::this_thread::sleep_for(milliseconds(100));
-    })) << log();
+    click("Import", "asking about " + folder_ + "/a.mrc");
     x("type --delay 100 19");
     x("key BackSpace");
     std::this_thread::sleep_for(milliseconds(300));
