@@ -17,7 +17,7 @@ namespace tact::launch {
 namespace {
 
 struct ReplayOptions {
-    std::string file, scene, bone, session = "replay", size = "1280x800", screenshot;
+    std::string file, scene, bone, session = "replay", size = "1280x800", screenshot, texts;
     bool show = false, json = false, headless = false;
     double from_s = 0.0, speed = 1.0, seconds = 0.0;
 };
@@ -53,6 +53,7 @@ int show(const ReplayOptions& o) {
     drawing.arguments = {"--session", o.session, "--size", o.size};
     if (!o.screenshot.empty())
         drawing.arguments.insert(drawing.arguments.end(), {"--screenshot", o.screenshot});
+    if (!o.texts.empty()) drawing.arguments.insert(drawing.arguments.end(), {"--texts", o.texts});
     if (o.seconds > 0.0)
         drawing.arguments.insert(drawing.arguments.end(), {"--seconds", std::to_string(o.seconds)});
     if (screen) drawing.environment = screen->environment();
@@ -79,6 +80,8 @@ int show(const ReplayOptions& o) {
     if (moment) {
         std::vector<std::string> live = run_words(*moment);
         if (o.headless) live.emplace_back("--headless");
+        live.insert(live.end(), {"--size", o.size});
+        if (!o.texts.empty()) live.insert(live.end(), {"--texts", o.texts});
         std::string line = "tact";
         for (const std::string& word : live) line += " " + word;
         std::fprintf(stderr, "live from %.3f s of the recording: %s\n", moment->at_s, line.c_str());
@@ -124,6 +127,12 @@ void add_replay(CLI::App& app, int& exit_code) {
     command->add_option("--size", o->size, "Size of the window (pixels)")->type_name("WxH")->needs(shown);
     command->add_option("--screenshot", o->screenshot, "Screenshot of the window at the end")
         ->type_name("FILE.png")
+        ->needs(shown);
+    command
+        ->add_option("--texts", o->texts,
+                     "Keep this file up to date with the texts on the window, for scripts that operate it by "
+                     "its labels")
+        ->type_name("FILE.json")
         ->needs(shown);
     command->add_option("--session", o->session, "Session name shared by window and replay")
         ->type_name("NAME")

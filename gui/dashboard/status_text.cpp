@@ -42,7 +42,7 @@ const char* grade_text(Grade grade) noexcept {
 }
 
 // Less is how exactly the rate is counted.
-constexpr double kOnTarget = 0.003;
+constexpr double kOnTarget = 0.0025;
 
 StatusText rate_status(double rate_hz, double goal_hz) {
     if (!(goal_hz > 0.0) || !std::isfinite(rate_hz)) return {Grade::unknown, "no goal set"};

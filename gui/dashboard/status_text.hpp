@@ -23,7 +23,7 @@ struct StatusText {
 [[nodiscard]] std::string ago_text(double seconds);          // "12 s ago", "3 min ago"
 [[nodiscard]] const char* grade_text(Grade grade) noexcept;  // "good", "watch", "bad", "unknown"
 
-// Watch from 0.3 % below the goal, so a single late cycle of a few periods shows; bad from 15 %.
+// Watch from 0.25 % below the goal, so a single late cycle of a few periods shows; bad from 15 %.
 [[nodiscard]] StatusText rate_status(double rate_hz, double goal_hz);
 // Relative to the period: watch from a tenth at the 99th percentile, bad from half. Free running: relative to 1 ms.
 [[nodiscard]] StatusText lateness_status(std::int64_t p99_ns, std::int64_t period_ns);

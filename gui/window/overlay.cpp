@@ -166,7 +166,7 @@ void draw_overlay(const Theme& theme, PanelState& state, const SystemPanels& sys
     const OverlayPen pen{theme, ImGui::GetBackgroundDrawList(),
                          state.toggles.white_ground && state.stage.empty()};
     pen.draw->PushClipRect({view.x, view.y}, {view.x + view.width, view.y + view.height});
-    if (!state.calibration.open) {
+    if (!state.calibration.open && !state.situation.sheet) {  // the table of keys takes their place
         legend(pen, state, system, view);
         axes(pen, state, view);
         scale_bar(pen, state, view);

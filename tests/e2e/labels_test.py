@@ -128,6 +128,7 @@ def docking(script):
     script.click("Scenes (", "Recent")
     script.key("Escape", "the list is closed", lambda: o.find("Recent") is None)
     script.act("the recording ends", lambda: o.key("ctrl+r"), lambda: recordings(o))
+    script.recording = recordings(o)[0]
     o.end()
 
 
@@ -142,16 +143,17 @@ def pictures(o):
 
 
 def recordings(o):
-    return [f for f in glob.glob(os.path.join(o.folder, "out", "*.h5")) if "ended" in o.said() or os.path.getsize(f) > 0]
+    return glob.glob(os.path.join(o.folder, "out", "*.h5")) if o.find("recorded", "Events") else []
 
 
 def replay(script):
     o = script.operator
     o.report = ""
-    o.launch("replay", recordings(o)[0], "--show")
+    o.launch("replay", script.recording, "--show", "--scene", o.scene())
     script.act("a replay says so", lambda: None, lambda: o.find("REPLAY", "Replay") and o.find("no device, no force"))
     at = lambda: next((t["text"] for t in o.texts() if " s of " in t["text"]), "")
-    before = o.until("the place in the recording", at)
+    script.key("period", "paused, one step on", lambda: "paused" in at())
+    before = at()
     script.key("period", "one step on", lambda: at() != before)
     here = at()
     script.key("comma", "one step back", lambda: at() == before)

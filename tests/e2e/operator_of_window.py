@@ -171,7 +171,7 @@ class Operator:
         with open(self.report) as f:
             return json.load(f)
 
-    def close(self):
+    def close(self):  # ends what still runs
         if self.run is not None:
             self.run.terminate()
             try:

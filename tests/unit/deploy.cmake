@@ -40,7 +40,11 @@ if(TACT_GUI)
     set_tests_properties(deploy_replay_e2e_test PROPERTIES LABELS e2e TIMEOUT 900 SKIP_RETURN_CODE 77 RUN_SERIAL TRUE)
     if(NOT TACT_SANITIZE)
         add_test(NAME operate_test COMMAND tests/e2e/operate_test.py $<TARGET_FILE_DIR:tact> WORKING_DIRECTORY ${CMAKE_SOURCE_DIR})
-        set_tests_properties(operate_test PROPERTIES LABELS e2e TIMEOUT 900 SKIP_RETURN_CODE 77 RUN_SERIAL TRUE)
+        add_test(NAME labels_test COMMAND tests/e2e/labels_test.py $<TARGET_FILE_DIR:tact> WORKING_DIRECTORY ${CMAKE_SOURCE_DIR})
+        add_test(NAME window_states_test COMMAND tests/e2e/window_states_test.py $<TARGET_FILE_DIR:tact>
+            ${CMAKE_BINARY_DIR}/window_states WORKING_DIRECTORY ${CMAKE_SOURCE_DIR})
+        set_tests_properties(operate_test labels_test window_states_test
+            PROPERTIES LABELS e2e TIMEOUT 900 SKIP_RETURN_CODE 77 RUN_SERIAL TRUE)
     endif()
 endif()
 find_package(Python3 COMPONENTS Interpreter REQUIRED)

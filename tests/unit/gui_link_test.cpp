@@ -346,7 +346,7 @@ TEST(StatusText, grades_the_rate_against_its_goal) {
     EXPECT_EQ(rate_status(1000.0, 1000.0).grade, Grade::good);
     EXPECT_EQ(rate_status(998.0, 1000.0).grade, Grade::good);
     EXPECT_EQ(rate_status(1200.0, 1000.0).grade, Grade::good);
-    EXPECT_EQ(rate_status(996.0, 1000.0).grade, Grade::watch);
+    EXPECT_EQ(rate_status(997.0, 1000.0).grade, Grade::watch);
     EXPECT_EQ(rate_status(996.0, 1000.0).text, "0.4 % below target");
     EXPECT_EQ(rate_status(940.0, 1000.0).grade, Grade::watch);
     EXPECT_EQ(rate_status(700.0, 1000.0).grade, Grade::bad);

@@ -1,0 +1,170 @@
+#!/usr/bin/python3
+"""Draws every state of the window with the real programs and checks the texts that it shows: none cut, none on another. Keeps a picture of each and
+a contact sheet.
+
+usage: window_states_test.py BIN_DIR OUT_DIR [SIZE...]     default: 1280x720 1920x1080; 3840x2160 takes minutes in software rendering
+
+Exit code 77: Xvfb or xdotool is missing.
+"""
+import os
+import shutil
+import signal
+import struct
+import subprocess
+import sys
+import tempfile
+import time
+import zlib
+
+from operator_of_window import Operator, expect
+
+THUMBNAIL_PX = 480
+
+
+def png_bytes(width, rows):
+    """rows: RGB, from the top."""
+    def chunk(kind, data):
+        return struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data))
+    body = b"".join(b"\0" + row for row in rows)
+    return b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", struct.pack(">IIBBBBB", width, len(rows), 8, 2, 0, 0, 0)) + \
+        chunk(b"IDAT", zlib.compress(body, 6)) + chunk(b"IEND", b"")
+
+
+class States:
+    def __init__(self, operator, out):
+        self.operator, self.out, self.faults, self.thumbnails = operator, out, [], []
+        self.wide, self.high = map(int, operator.size.split("x"))
+
+    # The screen from the file in xwd format that Xvfb writes, as rows of RGB.
+    def rows(self):
+        with open(os.path.join(self.operator.folder, "Xvfb_screen0"), "rb") as f:
+            data = f.read()
+        head = struct.unpack(">25I", data[:100])
+        begin, line = head[0] + 12 * head[19], head[12]
+        rows = []
+        for y in range(self.high):
+            pixels = data[begin + line * y:begin + line * y + 4 * self.wide]
+            row = bytearray(3 * self.wide)
+            row[0::3], row[1::3], row[2::3] = pixels[2::4], pixels[1::4], pixels[0::4]
+            rows.append(bytes(row))
+        return rows
+
+    def keep(self, name):
+        time.sleep(1.2)  # plots and texts follow twelve times a second
+        layout = self.operator.layout()
+        texts = layout["texts"]
+        self.faults += ["%s: '%s' is cut in %s" % (name, t["text"], t["owner"]) for t in texts if t["cut"]]
+        self.faults += ["%s: '%s' and '%s' lie on each other" % (name, texts[a]["text"], texts[b]["text"]) for a, b in layout["overlaps"]]
+        if len(texts) < 20:
+            self.faults.append("%s: only %d texts" % (name, len(texts)))
+        rows = self.rows()
+        with open(os.path.join(self.out, "%s_%s.png" % (self.operator.size, name)), "wb") as f:
+            f.write(png_bytes(self.wide, rows))
+        step = max(self.wide // THUMBNAIL_PX, 1)
+        self.thumbnails.append([b"".join(row[3 * x:3 * x + 3] for x in range(0, step * (self.wide // step), step)) for row in rows[::step]])
+        print("ok   %s %s: %d texts" % (self.operator.size, name, len(texts)), flush=True)
+
+    def sheet(self):
+        columns = 4
+        rows, empty = [], [bytes(len(self.thumbnails[0][0]))] * len(self.thumbnails[0])
+        for i in range(0, len(self.thumbnails), columns):
+            line = (self.thumbnails[i:i + columns] + [empty] * columns)[:columns]
+            rows += [b"".join(t[y] for t in line) for y in range(len(empty))]
+        with open(os.path.join(self.out, "%s_all.png" % self.operator.size), "wb") as f:
+            f.write(png_bytes(len(rows[0]) // 3, rows))
+
+
+def draw(states):
+    o = states.operator
+    # Without a controller.
+    o.log = open(os.path.join(o.folder, "run.log"), "wb")
+    o.run = subprocess.Popen([o.program("tact-gui"), "--session", "nobody", "--size", o.size, "--texts", o.texts_file], env=o.env, stdout=o.log, stderr=o.log)
+    o.see("No scene yet")
+    states.keep("waiting")
+    o.report = ""
+    o.end()
+
+    o.start("--config", o.scene("lines.toml"), "--start-offset-a", "4", "--seed", "3", scene="dock.tact")
+    o.see("Disarmed. Press Arm.")
+    states.keep("ready")
+    o.press("Arm", "the button arms", lambda s: s["state"] in ("armed", "active"))
+    states.keep("docking_bodies")
+    for tab in ("Search", "Contours", "View"):
+        o.click(tab, "Scene")
+        states.keep("docking_" + tab.lower())
+    o.click("Picture (")
+    o.see("Depth cue")
+    o.click("Cut", "Picture")
+    o.click("residues", "Picture")
+    states.keep("picture")
+    o.key("i")
+    o.click("Traces", "Over time")
+    states.keep("traces")
+    o.key("o")
+    o.see("Recently used")
+    states.keep("scenes")
+    o.key("Escape")
+    o.key("question")
+    o.see("this table")
+    states.keep("keys")
+    o.key("Escape")
+    os.kill(o.controller(), signal.SIGUSR1)
+    o.wait("the emergency stop trips", lambda s: s["state"] == "fault")
+    states.keep("fault")
+    o.end()
+
+    o.start("--record", o.scene("run.h5"), scene="touch.tact", hand="stroke")
+    o.wait("the run is armed", lambda s: s["state"] == "active")
+    states.keep("surface")
+    o.end()
+    o.start(scene="drill.tact", hand="drill")
+    o.wait("the run is armed", lambda s: s["state"] == "active")
+    time.sleep(2)
+    states.keep("drilling")
+    o.click("Burr ...", "Drilling")
+    states.keep("burrs")
+    o.end()
+    o.start(scene="field.tact", hand="wander")
+    states.keep("field")
+    o.end()
+
+    o.report = ""
+    o.launch("replay", o.scene("run.h5"), "--show", "--scene", o.scene("touch.tact"))
+    o.see("REPLAY", "Replay")
+    states.keep("replay")
+    o.end()
+    states.sheet()
+
+
+def main():
+    if len(sys.argv) < 3:
+        sys.exit(__doc__)
+    missing = [p for p in ("Xvfb", "xdotool") if shutil.which(p) is None]
+    if missing:
+        print("skipped: %s is not installed" % ", ".join(missing))
+        return 77
+    bin_dir, out, sizes = sys.argv[1], sys.argv[2], sys.argv[3:] or ["1280x720", "1920x1080"]
+    os.makedirs(out, exist_ok=True)
+    bad = 0
+    for size in sizes:
+        with tempfile.TemporaryDirectory(prefix="tact-states-", ignore_cleanup_errors=True) as folder:
+            for kind in ("dock", "touch", "drill", "field"):
+                subprocess.run([os.path.join(bin_dir, "tact-prep"), "demo", kind, "-o", os.path.join(folder, kind + ".tact")], check=True,
+                               stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+            with open(os.path.join(folder, "lines.toml"), "w") as f:
+                f.write('[lines]\ndriver = "sim"\n')
+            operator = Operator(bin_dir, folder, size)
+            states = States(operator, out)
+            try:
+                draw(states)
+            finally:
+                operator.close()
+            for fault in states.faults:
+                print("FAIL %s %s" % (size, fault))
+            bad += expect("%s: %d states, no text cut, none on another; %s" %
+                          (size, len(states.thumbnails), os.path.join(out, size + "_all.png")), not states.faults)
+    return 1 if bad else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
