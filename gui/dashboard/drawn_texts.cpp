@@ -14,7 +14,7 @@ constexpr float kBesidePx = 1.0F;
 struct Letter {
     unsigned codepoint = 0;
     float x0 = 0.0F, y0 = 0.0F, x1 = 0.0F, y1 = 0.0F;
-    float top = 0.0F, line = 0.0F;  // of the line of text
+    float top = 0.0F, line = 0.0F;               // of the line of text
     float from = 0.0F, to = 0.0F, space = 0.0F;  // of the pen, before and after it; of a space
     bool cut = false, cut_below = false;
 };
@@ -87,8 +87,8 @@ public:
         const bool cut = l.cut || l.x0 < clip.x - kBesidePx || l.x1 > clip.z + kBesidePx;
         const bool cut_below = l.cut_below || l.y0 < clip.y - kBesidePx || l.y1 > clip.w + kBesidePx;
         const float gap = l.from - end_;
-        const bool follows =
-            !now_.text.empty() && std::abs(l.top - top_) < 0.6F && gap > -0.3F * l.line && gap < 1.8F * l.space;
+        const bool follows = !now_.text.empty() && std::abs(l.top - top_) < 0.6F && gap > -0.3F * l.line &&
+                             gap < 1.8F * l.space;
         if (!follows) finish();
         if (follows && gap > 0.5F * l.space) now_.text += ' ';
         if (now_.text.empty()) now_ = {"", owner_, x0, y0, 0.0F, 0.0F, false, false, list_};
