@@ -98,9 +98,13 @@ void Window::open(int width_px, int height_px, bool hidden) {
     if (glfwInit() != GLFW_TRUE) {
         const char* const display = std::getenv("DISPLAY");
         const char* const wayland = std::getenv("WAYLAND_DISPLAY");
-        const bool none = display == nullptr && wayland == nullptr;
+        if (display == nullptr && wayland != nullptr)
+            throw StartupError("opening a window", "this Wayland session has no X server: DISPLAY is not set",
+                               "install the package xwayland and start the session again, or use its own X "
+                               "server: xvfb-run -a tact-gui ...");
         throw StartupError(
-            "opening a window", none ? "no display: DISPLAY and WAYLAND_DISPLAY are not set" : glfw_text(),
+            "opening a window",
+            display == nullptr ? "no display: DISPLAY and WAYLAND_DISPLAY are not set" : glfw_text(),
             "run it in a desktop session, or under its own X server: xvfb-run -a tact-gui ...");
     }
     glfwWindowHint(GLFW_CONTEXT_VERSION_MAJOR, 3);

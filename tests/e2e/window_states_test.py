@@ -84,7 +84,7 @@ def draw(states):
     o.report = ""
     o.end()
 
-    o.start("--config", o.scene("lines.toml"), "--start-offset-a", "4", "--seed", "3", scene="dock.tact")
+    o.start("--config", o.scene("lines.toml"), "--disarmed", "--start-offset-a", "4", "--seed", "3", scene="dock.tact")
     o.see("Disarmed. Press Arm.")
     states.keep("ready")
     o.press("Arm", "the button arms", lambda s: s["state"] in ("armed", "active"))

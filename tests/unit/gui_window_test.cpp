@@ -435,6 +435,10 @@ TEST_F(GuiWindow, a_missing_display_is_reported_with_a_fix) {
     EXPECT_EQ(gui({"--seconds", "1"})->wait(), 1);
     EXPECT_NE(log().find("no display"), std::string::npos) << log();
     EXPECT_NE(log().find("fix:"), std::string::npos) << log();
+    setenv("WAYLAND_DISPLAY", "wayland-0", 1);
+    EXPECT_EQ(gui({"--seconds", "1"})->wait(), 1);
+    EXPECT_NE(log().find("install the package xwayland"), std::string::npos) << log();
+    unsetenv("WAYLAND_DISPLAY");
 }
 
 TEST_F(GuiWindow, a_series_of_screenshots_is_written) {
