@@ -166,18 +166,4 @@ void draw_browser(const Theme& theme, BrowserState& browser, const PixelRect& vi
     end_card();
 }
 
-void draw_browser_button(const Theme& theme, BrowserState& browser, const char* key, const PixelRect& view) {
-    const float width = theme.px(96.0F);
-    ImGui::SetNextWindowPos({view.x + view.width - width - theme.px(10.0F), view.y + theme.px(70.0F)});
-    ImGui::SetNextWindowSize({width, theme.px(30.0F)});
-    ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, ImVec2(0.0F, 0.0F));
-    ImGui::Begin("scenes button", nullptr,
-                 ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoSavedSettings |
-                     ImGuiWindowFlags_NoBackground | ImGuiWindowFlags_NoNav |
-                     ImGuiWindowFlags_NoBringToFrontOnFocus);
-    if (ImGui::Button(format("Scenes (%s)", key).c_str(), {width, 0.0F})) browser.open = !browser.open;
-    ImGui::End();
-    ImGui::PopStyleVar();
-}
-
 }  // namespace tact

@@ -45,7 +45,5 @@ struct BrowserState {
 
 // Over the centre of the view.
 void draw_browser(const Theme& theme, BrowserState& browser, const PixelRect& view);
-// The button that opens the list, in the corner of the view.
-void draw_browser_button(const Theme& theme, BrowserState& browser, const char* key, const PixelRect& view);
 
 }  // namespace tact

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "gui/dashboard/panels.hpp"
+#include "gui/window/view_button.hpp"
 
 namespace tact {
 
@@ -69,13 +70,17 @@ void draw_dashboard(const Theme& theme, PanelState& state, SystemPanels& system,
     if (state.replay.shown) draw_timeline(theme, state.replay, layout.timeline);
     draw_plots(theme, state, layout.plots);
     draw_events(theme, state, layout.events);
-    if (state.browser.open)
+    const auto button = [&](const char* window, const char* text, KeyAction key, float top) {
+        return view_button(theme, window, text, state.keys.key_of(key), top, layout.view);
+    };
+    if (state.browser.open) {
         draw_browser(theme, state.browser, layout.view);
-    else if (!middle.calibration)
-        draw_browser_button(theme, state.browser, state.keys.key_of(KeyAction::open_browser), layout.view);
-    if (!state.browser.open && !middle.calibration && state.scene.loaded) {
-        draw_picture_button(theme, state.picture, state.keys.key_of(KeyAction::picture), layout.view);
-        if (state.picture.open)
+    } else if (!middle.calibration) {
+        if (button("scenes button", "Scenes", KeyAction::open_browser, kScenesButtonTop))
+            state.browser.open = true;
+        if (state.scene.loaded && button("picture button", "Picture", KeyAction::picture, kPictureButtonTop))
+            state.picture.open = !state.picture.open;
+        if (state.scene.loaded && state.picture.open)
             draw_picture_panel(theme, state.picture, state.toggles, state.situation.bodies, layout.view);
     }
     ImGui::PopStyleVar();

@@ -5,11 +5,11 @@
 #include <cmath>
 
 #include "gui/dashboard/widgets.hpp"
+#include "gui/window/view_button.hpp"
 
 namespace tact {
 namespace {
 
-constexpr float kWide = 96.0F, kFromRight = 10.0F, kFromTop = 104.0F;
 constexpr float kPanelWide = 330.0F, kSecond = 150.0F;
 
 void explain(const char* text) {
@@ -61,26 +61,11 @@ void size_row(const Theme& theme, PictureState& p, const PixelRect& view) {
 
 }  // namespace
 
-void draw_picture_button(const Theme& theme, PictureState& picture, const char* key, const PixelRect& view) {
-    const float width = theme.px(kWide);
-    ImGui::SetNextWindowPos(
-        {view.x + view.width - width - theme.px(kFromRight), view.y + theme.px(kFromTop)});
-    ImGui::SetNextWindowSize({width, theme.px(30.0F)});
-    ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, ImVec2(0.0F, 0.0F));
-    ImGui::Begin("picture button", nullptr,
-                 ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoSavedSettings |
-                     ImGuiWindowFlags_NoBackground | ImGuiWindowFlags_NoNav |
-                     ImGuiWindowFlags_NoBringToFrontOnFocus);
-    if (ImGui::Button(format("Picture (%s)", key).c_str(), {width, 0.0F})) picture.open = !picture.open;
-    ImGui::End();
-    ImGui::PopStyleVar();
-}
-
 void draw_picture_panel(const Theme& theme, PictureState& picture, SceneToggles& t, bool labels,
                         const PixelRect& view) {
     const float width = std::min(theme.px(kPanelWide), view.width);
-    ImGui::SetNextWindowPos(
-        {view.x + view.width - width - theme.px(kFromRight), view.y + theme.px(kFromTop + 32.0F)});
+    ImGui::SetNextWindowPos({view.x + view.width - width - theme.px(kViewButtonRight),
+                             view.y + theme.px(kPictureButtonTop + 32.0F)});
     ImGui::SetNextWindowSize({width, 0.0F});
     ImGui::PushStyleColor(ImGuiCol_WindowBg, colour::kPanel);
     ImGui::Begin("Picture", nullptr,

@@ -21,8 +21,6 @@ struct PictureState {
     StatusText result;                // of the newest picture
 };
 
-// key: that opens it too.
-void draw_picture_button(const Theme& theme, PictureState& picture, const char* key, const PixelRect& view);
 // labels: whether the scene has something to label.
 void draw_picture_panel(const Theme& theme, PictureState& picture, SceneToggles& toggles, bool labels,
                         const PixelRect& view);

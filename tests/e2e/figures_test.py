@@ -9,13 +9,11 @@ Exit code 77: Xvfb or xdotool is missing.
 import os
 import random
 import re
-import shutil
-import subprocess
 import sys
 import tempfile
 import time
 
-from operator_of_window import Operator, expect
+from operator_of_window import Operator, arguments, bake_demo, expect
 
 INSTANTS, SEED = 20, 20261128
 SHOWN_LATE_S = 0.35  # the window draws its texts twelve times a second, the controller publishes ten times
@@ -93,19 +91,13 @@ def mode(operator, scene, hand, rng):
 
 
 def main():
-    if len(sys.argv) != 2:
-        sys.exit(__doc__)
-    missing = [p for p in ("Xvfb", "xdotool") if shutil.which(p) is None]
-    if missing:
-        print("skipped: %s is not installed" % ", ".join(missing))
-        return 77
+    bin_dir = arguments(__doc__, 1)[0]
     rng, bad = random.Random(SEED), 0
     with tempfile.TemporaryDirectory(prefix="tact-figures-", ignore_cleanup_errors=True) as folder:
-        operator = Operator(sys.argv[1], folder)
+        operator = Operator(bin_dir, folder)
         try:
             for scene, hand in (("dock", "wander"), ("touch", "stroke"), ("drill", "drill")):
-                subprocess.run([os.path.join(sys.argv[1], "tact-prep"), "demo", scene, "-o", os.path.join(folder, scene + ".tact")], check=True,
-                               stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+                bake_demo(bin_dir, scene, os.path.join(folder, scene + ".tact"))
                 figures = mode(operator, scene, hand, rng)
                 for fault in figures.faults:
                     print("FAIL " + fault)

@@ -9,14 +9,12 @@ Exit code 77: Xvfb or xdotool is missing.
 import glob
 import os
 import re
-import shutil
 import struct
-import subprocess
 import sys
 import tempfile
 import time
 
-from operator_of_window import Operator, expect
+from operator_of_window import Operator, arguments, bake_demo, expect
 
 
 class Script:
@@ -179,16 +177,10 @@ def seek(o, place):
 
 
 def main():
-    if len(sys.argv) != 2:
-        sys.exit(__doc__)
-    missing = [p for p in ("Xvfb", "xdotool") if shutil.which(p) is None]
-    if missing:
-        print("skipped: %s is not installed" % ", ".join(missing))
-        return 77
+    bin_dir = arguments(__doc__, 1)[0]
     with tempfile.TemporaryDirectory(prefix="tact-labels-", ignore_cleanup_errors=True) as folder:
-        subprocess.run([os.path.join(sys.argv[1], "tact-prep"), "demo", "dock", "-o", os.path.join(folder, "scene.tact")], check=True,
-                       stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
-        operator = Operator(sys.argv[1], folder)
+        bake_demo(bin_dir, "dock", os.path.join(folder, "scene.tact"))
+        operator = Operator(bin_dir, folder)
         script = Script(operator)
         try:
             docking(script)

@@ -10,13 +10,12 @@ import csv
 import math
 import os
 import re
-import shutil
 import signal
 import subprocess
 import sys
 import tempfile
 
-from operator_of_window import Operator, expect
+from operator_of_window import Operator, arguments, bake_demo, expect
 
 RAMPED_OUT_S = 0.1  # twice safety.ramp_out_ms
 
@@ -104,16 +103,10 @@ def gestures(operator):
 
 
 def main():
-    if len(sys.argv) != 2:
-        sys.exit(__doc__)
-    missing = [p for p in ("Xvfb", "xdotool") if shutil.which(p) is None]
-    if missing:
-        print("skipped: %s is not installed" % ", ".join(missing))
-        return 77
+    bin_dir = arguments(__doc__, 1)[0]
     with tempfile.TemporaryDirectory(prefix="tact-keys-") as folder:
-        subprocess.run([os.path.join(sys.argv[1], "tact-prep"), "demo", "dock", "-o", os.path.join(folder, "scene.tact")], check=True,
-                       stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
-        operator = Operator(sys.argv[1], folder)
+        bake_demo(bin_dir, "dock", os.path.join(folder, "scene.tact"))
+        operator = Operator(bin_dir, folder)
         try:
             return 1 if arming(operator) + buttons(operator) + gestures(operator) > 0 else 0
         finally:

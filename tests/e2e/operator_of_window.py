@@ -1,6 +1,7 @@
 """Operates the window of a run by the labels that it shows. Used by operate_test.py and labels_test.py."""
 import json
 import os
+import shutil
 import signal
 import subprocess
 import sys
@@ -180,6 +181,21 @@ class Operator:
                 self.run.kill()
         self.x.kill()
         self.x.wait()
+
+
+def arguments(doc, least):
+    """Of the command line; ends the test where it cannot run."""
+    if len(sys.argv) <= least:
+        sys.exit(doc)
+    missing = [p for p in ("Xvfb", "xdotool") if shutil.which(p) is None]
+    if missing:
+        print("skipped: %s is not installed" % ", ".join(missing))
+        sys.exit(77)
+    return sys.argv[1:]
+
+
+def bake_demo(bin_dir, kind, path):
+    subprocess.run([os.path.join(bin_dir, "tact-prep"), "demo", kind, "-o", path], check=True, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
 
 
 def expect(what, true):

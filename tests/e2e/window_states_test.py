@@ -7,7 +7,6 @@ usage: window_states_test.py BIN_DIR OUT_DIR [SIZE...]     default: 1280x720 192
 Exit code 77: Xvfb or xdotool is missing.
 """
 import os
-import shutil
 import signal
 import struct
 import subprocess
@@ -16,7 +15,7 @@ import tempfile
 import time
 import zlib
 
-from operator_of_window import Operator, expect
+from operator_of_window import Operator, arguments, bake_demo, expect
 
 THUMBNAIL_PX = 480
 
@@ -137,20 +136,13 @@ def draw(states):
 
 
 def main():
-    if len(sys.argv) < 3:
-        sys.exit(__doc__)
-    missing = [p for p in ("Xvfb", "xdotool") if shutil.which(p) is None]
-    if missing:
-        print("skipped: %s is not installed" % ", ".join(missing))
-        return 77
-    bin_dir, out, sizes = sys.argv[1], sys.argv[2], sys.argv[3:] or ["1280x720", "1920x1080"]
+    bin_dir, out, *sizes = arguments(__doc__, 2)
     os.makedirs(out, exist_ok=True)
     bad = 0
-    for size in sizes:
+    for size in sizes or ["1280x720", "1920x1080"]:
         with tempfile.TemporaryDirectory(prefix="tact-states-", ignore_cleanup_errors=True) as folder:
             for kind in ("dock", "touch", "drill", "field"):
-                subprocess.run([os.path.join(bin_dir, "tact-prep"), "demo", kind, "-o", os.path.join(folder, kind + ".tact")], check=True,
-                               stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+                bake_demo(bin_dir, kind, os.path.join(folder, kind + ".tact"))
             with open(os.path.join(folder, "lines.toml"), "w") as f:
                 f.write('[lines]\ndriver = "sim"\n')
             operator = Operator(bin_dir, folder, size)

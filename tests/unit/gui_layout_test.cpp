@@ -205,7 +205,7 @@ class Layouts : public testing::TestWithParam<Size> {
 protected:
     void expect_clean(const char* state, const std::function<void(PanelState&, DockingPanels&)>& change) {
         SCOPED_TRACE(state);
-        const auto [width, height] = GetParam();
+        const float width = GetParam().width, height = GetParam().height;
         test::TestDashboard d(width, height, theme_scale(static_cast<int>(width), static_cast<int>(height)));
         fill_run(d.state);
         fill_docking(d.panels);
@@ -290,7 +290,7 @@ TEST_P(Layouts, of_every_state_of_a_run_are_clean) {
 }
 
 TEST_P(Layouts, of_the_other_systems_are_clean) {
-    const auto [width, height] = GetParam();
+    const float width = GetParam().width, height = GetParam().height;
     const auto expect_clean_with = [&](const char* what, SystemPanels& panels,
                                        const std::function<void(PanelState&)>& change) {
         SCOPED_TRACE(what);
