@@ -22,9 +22,13 @@ class Script:
         self.operator, self.actions, self.faults = operator, 0, set()
 
     def act(self, what, do, seen):
-        """seen: polled until it holds."""
-        do()
-        self.operator.until(what, seen)
+        """seen: polled until it holds. A busy window may miss a click, so it is done again after a while."""
+        for _ in range(3):
+            do()
+            if self.operator.holds_within(seen, 20.0):
+                break
+        else:
+            self.operator.fail(what)
         self.actions += 1
         self.look(what)
         print("ok   %2d %s" % (self.actions, what), flush=True)

@@ -58,15 +58,19 @@ class Operator:
         sys.exit("FAILED %s; the window shows:\n%s\nthe log:\n%s" %
                  (what, "\n".join(t["text"] for t in self.texts()), self.said()[-3000:]))
 
-    def until(self, what, found, patience_s=PATIENCE_S):
-        """The first result of found() that is not None or False."""
+    @staticmethod
+    def holds_within(found, patience_s):
+        """The first result of found() that is not None or False; None: there was none."""
         end = time.monotonic() + patience_s
         while time.monotonic() < end:
             result = found()
             if result:
                 return result
             time.sleep(0.1)
-        self.fail("%s: timed out after %.0f s" % (what, patience_s))
+        return None
+
+    def until(self, what, found):
+        return self.holds_within(found, PATIENCE_S) or self.fail("%s: timed out after %.0f s" % (what, PATIENCE_S))
 
     def wait(self, what, true):
         def now():
