@@ -12,7 +12,9 @@ std::array<int, 3> mean(const Image& image, std::uint32_t x, std::uint32_t y, st
     for (std::uint32_t j = 0; j < side; ++j)
         for (std::uint32_t i = 0; i < side; ++i)
             for (std::size_t k = 0; k < 3; ++k)
-                sum[k] += image.rgb[3 * (std::size_t{y * side + j} * image.width_px + x * side + i) + k];
+                sum[k] +=
+                    image.rgb[3 * ((std::size_t{y} * side + j) * image.width_px + std::size_t{x} * side + i) +
+                              k];
     std::array<int, 3> out{};
     for (std::size_t k = 0; k < 3; ++k) out[k] = static_cast<int>((sum[k] + side * side / 2) / (side * side));
     return out;

@@ -178,6 +178,7 @@ KeyTable KeyTable::read(std::string_view text, const std::string& name) {
         if (!range) wanted.emplace_back(action, "");
     }
     std::vector<TomlKey> keys;
+    keys.reserve(wanted.size());
     for (auto& [action, value] : wanted) keys.push_back({action_name(action), &value});
     const std::vector<std::string> present = reader.read(text, keys);
     for (const auto& [action, value] : wanted) {

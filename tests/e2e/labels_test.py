@@ -34,13 +34,7 @@ class Script:
         print("ok   %2d %s" % (self.actions, what), flush=True)
 
     def look(self, what):
-        layout = self.operator.layout()
-        texts = layout["texts"]
-        for t in texts:
-            if t["cut"]:
-                self.faults.add("%s: '%s' is cut in %s" % (what, t["text"], t["owner"]))
-        for a, b in layout["overlaps"]:
-            self.faults.add("%s: '%s' and '%s' lie on each other" % (what, texts[a]["text"], texts[b]["text"]))
+        self.faults |= {"%s: %s" % (what, fault) for fault in self.operator.layout_faults()}
 
     # Presses a label; then another label is shown.
     def click(self, label, then, within=None, gone=False):

@@ -98,6 +98,20 @@ class Operator:
     def texts(self):
         return self.layout()["texts"]
 
+    def layout_faults(self):
+        """Texts that are cut or lie on another, and stay so: a window that grows is cut for one frame."""
+        def now():
+            layout = self.layout()
+            texts = layout["texts"]
+            return {"'%s' is cut in %s" % (t["text"], t["owner"]) for t in texts if t["cut"]} | \
+                {"'%s' and '%s' lie on each other" % (texts[a]["text"], texts[b]["text"]) for a, b in layout["overlaps"]}
+        faults = now()
+        for _ in range(3):
+            if faults:
+                time.sleep(0.2)
+                faults &= now()
+        return faults
+
     def find(self, label, within=None):
         """The middle of a text, or of a part of it; None: it is not shown. within: begin of the name of its window."""
         for exact in (True, False):

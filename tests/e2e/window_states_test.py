@@ -50,10 +50,8 @@ class States:
 
     def keep(self, name):
         time.sleep(1.2)  # plots and texts follow twelve times a second
-        layout = self.operator.layout()
-        texts = layout["texts"]
-        self.faults += ["%s: '%s' is cut in %s" % (name, t["text"], t["owner"]) for t in texts if t["cut"]]
-        self.faults += ["%s: '%s' and '%s' lie on each other" % (name, texts[a]["text"], texts[b]["text"]) for a, b in layout["overlaps"]]
+        self.faults += ["%s: %s" % (name, fault) for fault in sorted(self.operator.layout_faults())]
+        texts = self.operator.texts()
         if len(texts) < 20:
             self.faults.append("%s: only %d texts" % (name, len(texts)))
         rows = self.rows()

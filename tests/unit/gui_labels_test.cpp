@@ -78,6 +78,20 @@ TEST_F(BodyLabels, residues_are_named_in_front_of_the_middle_and_never_cover_eac
     camera_.rotate(200.0F, 30.0F, 700.0F);
     const auto named = labels(LabelKind::residues, view());
     ASSERT_GT(named.size(), 4U);
+    // From far away, so that many stand in one place.
+    LabelView far_away = view();
+    far_away.width = kWide / 8.0F;
+    far_away.height = kHigh / 8.0F;
+    const auto few = labels(LabelKind::residues, far_away);
+    ASSERT_GT(few.size(), 0U);
+    EXPECT_LT(few.size(), named.size());
+    for (const ViewLabel& a : few)
+        for (const ViewLabel& b : few)
+            if (&a != &b) {
+                EXPECT_TRUE(std::abs(a.y - b.y) * far_away.height >= 17.0F ||
+                            std::abs(a.x - b.x) * far_away.width >= 4.0F * static_cast<float>(a.text.size()))
+                    << a.text << " and " << b.text;
+            }
     const Structure& s = docking_of(*content_).bodies[0];
     const double middle = -(camera_.view().cast<double>() *
                             ((body_.T_model_body.p_m - content_->centre_model_m) / kAngstromM).homogeneous())
