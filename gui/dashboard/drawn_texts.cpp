@@ -9,7 +9,7 @@ namespace tact {
 namespace {
 
 // Parts of a letter that do not show: hinting and antialiasing.
-constexpr float kBesidePx = 1.0F;
+float beside_px(float line) { return std::max(1.0F, 0.07F * line); }
 
 struct Letter {
     unsigned codepoint = 0;
@@ -42,13 +42,17 @@ public:
         Letter letter{g.Codepoint, first.pos.x, first.pos.y, last.pos.x, last.pos.y};
         const float scale =
             (last.pos.y - first.pos.y) / (last.uv.y - first.uv.y) * (g.V1 - g.V0) / (g.Y1 - g.Y0);
-        letter.top = first.pos.y - scale * g.Y0;
+        letter.top = first.pos.y - scale * (g.Y0 + (first.uv.y - g.V0) / (g.V1 - g.V0) * (g.Y1 - g.Y0));
         letter.line = scale * at.font->FontSize;
         letter.from = first.pos.x - scale * (g.X0 + (first.uv.x - g.U0) / (g.U1 - g.U0) * (g.X1 - g.X0));
         letter.to = letter.from + scale * g.AdvanceX;
         letter.space = scale * at.font->GetCharAdvance(' ');
-        letter.cut = std::abs(first.uv.x - g.U0) > 1e-6F || std::abs(last.uv.x - g.U1) > 1e-6F;
-        letter.cut_below = std::abs(first.uv.y - g.V0) > 1e-6F || std::abs(last.uv.y - g.V1) > 1e-6F;
+        // What a letter reaches beyond its pen, as the hook of a j, may be missing.
+        const float beside = beside_px(letter.line);
+        letter.cut = first.pos.x - (letter.from + scale * g.X0) > beside ||
+                     letter.from + scale * g.X1 - last.pos.x > beside;
+        letter.cut_below = first.pos.y - (letter.top + scale * g.Y0) > beside ||
+                           letter.top + scale * g.Y1 - last.pos.y > beside;
         return letter;
     }
 
@@ -84,8 +88,9 @@ public:
         const float x0 = std::max(l.x0, clip.x), x1 = std::min(l.x1, clip.z);
         const float y0 = std::max(l.y0, clip.y), y1 = std::min(l.y1, clip.w);
         if (x1 <= x0 || y1 <= y0) return;  // none of it is seen
-        const bool cut = l.cut || l.x0 < clip.x - kBesidePx || l.x1 > clip.z + kBesidePx;
-        const bool cut_below = l.cut_below || l.y0 < clip.y - kBesidePx || l.y1 > clip.w + kBesidePx;
+        const float beside = beside_px(l.line);
+        const bool cut = l.cut || l.x0 < clip.x - beside || l.x1 > clip.z + beside;
+        const bool cut_below = l.cut_below || l.y0 < clip.y - beside || l.y1 > clip.w + beside;
         const float gap = l.from - end_;
         const bool follows = !now_.text.empty() && std::abs(l.top - top_) < 0.6F && gap > -0.3F * l.line &&
                              gap < 1.8F * l.space;
