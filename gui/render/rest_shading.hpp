@@ -1,9 +1,9 @@
-// Shading of a resting view from its depth: places that little light of the surroundings reaches are darker, and outlines stand where the depth
+// Shading of a view from its depth: places that little light of the surroundings reaches are darker, and outlines stand where the depth
 // jumps.
 //
 // Source   McGuire, Mara, Luebke, "Scalable Ambient Obscurance", HPG 2012, equation 10; samples on a spiral, and a mean over 4 x 4 pixels that
 //          lie as deep. Outlines: the second difference of the distance.
-// Cost     about 40 reads of a pixel; 0.1 to 0.2 s for 1280 x 720 pixels in software rendering, so only once a view rests
+// Cost     about 40 reads of a pixel; 0.1 to 0.2 s for 1280 x 720 pixels in software rendering, so there only once a view rests
 // Thread   frame thread, context current
 #pragma once
 

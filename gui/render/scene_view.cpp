@@ -88,6 +88,7 @@ void SceneView::draw(const EyeView& eye, const ViewOptions& options, const ViewF
         if (surface) contours_.draw_opaque(eye_from_model, pass.projection, pass.haze, options.style);
     }
     if (options.shaded) {
+        const PassClock::Scope scope(frame.passes, Pass::edges);
         cut(false);
         if (!shading_) shading_ = std::make_unique<RestShading>();
         shading_->shade(pass.projection, pass.haze, pass.size_a, frame.x_px, frame.y_px, frame.width_px,

@@ -26,7 +26,7 @@ struct ViewOptions {
     SurfaceStyle style = SurfaceStyle::glass;
     bool depth_cue = true;  // far content fades into the background
     bool smooth_edges = true;
-    bool shaded = false;  // by RestShading: too slow for a view that moves
+    bool shaded = false;  // by RestShading: in software rendering too slow for a view that moves
     std::optional<float>
         cut_a;  // a plane across the view, so far before the camera's target; what is nearer is not drawn
     bool gradient = true;                                    // background; off: plain_ground, cheaper
