@@ -26,6 +26,8 @@ void add_file_option(CLI::App& app, const PassedOption& option, BakedRun& baked)
 
 }  // namespace
 
+void add_demo_run_options(CLI::App& app, BakedRun& baked) { add_baked_run_options(app, {}, baked); }
+
 void add_baked_run_options(CLI::App& app, std::span<const PassedOption> prep, BakedRun& baked) {
     app.add_flag("--bake-only", baked.bake_only, "Bake the scene, print its path and exit");
     for (const PassedOption& option : prep) {

@@ -22,6 +22,9 @@ struct BakedRun {
 // `baked` must outlive parsing: the callbacks hold its address.
 void add_baked_run_options(CLI::App& app, std::span<const PassedOption> prep, BakedRun& baked);
 
+// Options of a demo, which has no files.
+void add_demo_run_options(CLI::App& app, BakedRun& baked);
+
 // Returns the exit code.
 int bake_and_run(BakeRequest request, const BakedRun& baked);
 

@@ -1,7 +1,5 @@
 #include "gui/window/app.hpp"
 
-#include <csignal>
-
 #include <imgui.h>
 #include <spdlog/spdlog.h>
 
@@ -12,25 +10,11 @@
 #include "gui/dashboard/drawn_texts.hpp"
 #include "gui/window/app_parts.hpp"
 #include "gui/window/show_controller.hpp"
+#include "gui/window/stop_signal.hpp"
 #include "ipc/base/units.hpp"
 #include "ipc/base/whole_file.hpp"
 
 namespace tact {
-namespace {
-
-volatile std::sig_atomic_t stop_signal = 0;
-void on_signal(int number) { stop_signal = number; }
-
-void catch_signals() {
-    struct sigaction action {};
-    action.sa_handler = on_signal;
-    sigaction(SIGINT, &action, nullptr);
-    sigaction(SIGTERM, &action, nullptr);
-    sigaction(SIGHUP, &action, nullptr);
-}
-
-}  // namespace
-
 GuiApp::GuiApp(const GuiOptions& options)
     : options_(options),
       controller_(options.session, options.watch ? -1 : region_.fd()),
@@ -77,7 +61,7 @@ int GuiApp::run() {
         const Instant now = Monotonic::now();
         // A screenshot must show the scene, so the run does not end before the scene is loaded.
         const bool screenshot_pending = pictures_.wanted_at_end() && loader_.running();
-        last = stop_signal != 0 || window_.close_wanted() || (stage_ && stage_->close_wanted()) ||
+        last = stop_signal() != 0 || window_.close_wanted() || (stage_ && stage_->close_wanted()) ||
                (options_.seconds > 0.0 && to_s(now - begun) >= options_.seconds && !screenshot_pending);
         frame(now, last && pictures_.wanted_at_end());
         if (!last) clock_.pace(fps_max_);
@@ -86,7 +70,7 @@ int GuiApp::run() {
     keep_window_state();
     for (const auto& system : systems_) system->finish(context());
     write_frame_report(options_.frames, frame_metrics(clock_, passes_));
-    if (stop_signal != 0) spdlog::info("ended by signal {}", static_cast<int>(stop_signal));
+    if (stop_signal() != 0) spdlog::info("ended by signal {}", stop_signal());
     return pictures_.failed() ? 1 : 0;
 }
 
@@ -290,7 +274,7 @@ double GuiApp::due_s() const {
 }
 
 int run_gui(const GuiOptions& options) {
-    catch_signals();
+    catch_stop_signals();
     return GuiApp(options).run();
 }
 

@@ -297,7 +297,7 @@ void BrowserController::follow(BrowserState& state) {
             std::error_code ignored;
             state.folder = std::filesystem::current_path(ignored).string();
         }
-        if (!reading_.valid()) read(state);
+        refresh(state);
     }
     if (!state.open && was_open_ && !asked_) state.message.clear();
     was_open_ = state.open;

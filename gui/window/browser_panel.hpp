@@ -15,7 +15,8 @@ namespace tact {
 
 struct SceneRow {
     std::string path, name;
-    std::string place;       // its folder
+    std::string title;       // of a scene
+    std::string place;       // as displayed below the name: its folder, whole path or title
     std::string kind;        // docking, surface, drilling; for raw data map, structure, mesh, scan
     std::string size, when;  // as displayed
     std::string trouble;     // why it cannot be opened: missing, not a scene, ...

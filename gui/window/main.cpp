@@ -7,6 +7,7 @@
 
 #include "gui/drilling/bench_particles.hpp"
 #include "gui/window/app.hpp"
+#include "gui/window/start_window.hpp"
 
 int main(int argc, char** argv) {
     spdlog::set_default_logger(spdlog::stderr_color_mt("tact-gui"));
@@ -20,7 +21,7 @@ int main(int argc, char** argv) {
             std::printf("%s\n", tact::bench_particles().dump(2).c_str());
             return 0;
         }
-        return tact::run_gui(options);
+        return options.start_page ? tact::run_start_page(options) : tact::run_gui(options);
     } catch (const std::exception& e) {
         std::fprintf(stderr, "tact-gui: %s\n", e.what());
         return 1;

@@ -35,6 +35,9 @@ bool parse_gui_options(int argc, const char* const* argv, GuiOptions& options, i
     app.add_option("--scene-switch", options.scene_switch,
                    "Folder for requests to run another scene; set by tact")
         ->check(CLI::ExistingDirectory);
+    app.add_flag("--start-page", options.start_page,
+                 "Show demos and recent scenes, for tact without arguments; needs --scene-switch")
+        ->needs("--scene-switch");
     app.add_option("--seconds", options.seconds, "Run time (s); 0: until the window is closed")
         ->check(CLI::Range(0.0, 1e7));
     app.add_option("--screenshot", options.screenshot, "Write a PNG of the last frame at the end")

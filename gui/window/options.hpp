@@ -34,6 +34,7 @@ struct GuiOptions {
     bool traces = false;    // in place of the plots, at the start
     bool hidden = false;
     bool plain = false;
+    bool start_page = false;                       // demos and recent scenes instead of a scene
     StageSettings stage;                           // of the stereo display
     std::string stage_file;                        // its file, which a calibration writes
     bool calibrate = false, test_picture = false;  // at the start

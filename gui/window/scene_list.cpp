@@ -95,7 +95,9 @@ SceneRow scene_row_of(const std::filesystem::path& path, std::int64_t used_unix_
     row.size = size_text(static_cast<std::uint64_t>(info.st_size));
     row.when = ago_text(used_unix_s != 0 ? used_unix_s : info.st_mtime, now_unix_s);
     try {
-        row.kind = scene_kind_text(peek_scene(path).kind);
+        const SceneMeta meta = peek_scene(path);
+        row.kind = scene_kind_text(meta.kind);
+        row.title = meta.title;
     } catch (const StartupError& e) {
         row.trouble = reason_of(e.what(), row.path);
     }
@@ -105,7 +107,15 @@ SceneRow scene_row_of(const std::filesystem::path& path, std::int64_t used_unix_
 std::vector<SceneRow> recent_rows(const std::vector<RecentScene>& scenes, std::int64_t now_unix_s) {
     std::vector<SceneRow> rows;
     rows.reserve(scenes.size());
-    for (const RecentScene& s : scenes) rows.push_back(scene_row_of(s.path, s.used_unix_s, now_unix_s));
+    for (const RecentScene& s : scenes) {
+        SceneRow row = scene_row_of(s.path, s.used_unix_s, now_unix_s);
+        // The cache names files by numbers.
+        if (!row.title.empty()) {
+            row.name = row.title;
+            row.place = row.path;
+        }
+        rows.push_back(std::move(row));
+    }
     return rows;
 }
 
@@ -189,7 +199,10 @@ FolderRows folder_rows(const std::filesystem::path& folder, std::int64_t now_uni
         std::min(raw.size(), std::max(rest / 2, rest - std::min(rest, folders.size())));
     const std::size_t folders_shown = std::min(folders.size(), rest - raw_shown);
     for (std::size_t i = 0; i < folders_shown; ++i) add_folder(folders[i], folders[i].filename().string());
-    for (std::size_t i = 0; i < scenes_shown; ++i) out.rows.push_back(scene_row_of(scenes[i], 0, now_unix_s));
+    for (std::size_t i = 0; i < scenes_shown; ++i) {
+        out.rows.push_back(scene_row_of(scenes[i], 0, now_unix_s));
+        if (SceneRow& row = out.rows.back(); !row.title.empty()) row.place = row.title;
+    }
     for (std::size_t i = 0; i < raw_shown; ++i)
         out.rows.push_back(raw_row_of(raw[i], raw_file_text(raw[i].filename().string()), now_unix_s));
     if (out.trouble.empty() &&

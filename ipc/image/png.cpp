@@ -31,6 +31,11 @@ PngReader::PngReader(const std::filesystem::path& path) : state_(std::make_uniqu
         throw PngError(state_->image.message);
 }
 
+PngReader::PngReader(std::span<const std::uint8_t> content) : state_(std::make_unique<State>()) {
+    if (png_image_begin_read_from_memory(&state_->image, content.data(), content.size()) == 0)
+        throw PngError(state_->image.message);
+}
+
 PngReader::~PngReader() = default;
 
 std::uint32_t PngReader::width_px() const noexcept { return state_->image.width; }

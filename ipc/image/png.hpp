@@ -24,6 +24,8 @@ enum class PngFormat : std::uint8_t { grey = 1, rgb = 3, rgba = 4 };  // bytes p
 class PngReader {
 public:
     explicit PngReader(const std::filesystem::path& path);
+    // Of a file's content, which must outlive the reader.
+    explicit PngReader(std::span<const std::uint8_t> content);
     ~PngReader();
     PngReader(const PngReader&) = delete;
     PngReader& operator=(const PngReader&) = delete;

@@ -80,6 +80,11 @@ def draw(states):
     states.keep("waiting")
     o.report = ""
     o.end()
+    o.launch()
+    o.see("Scenes used before")
+    o.until("the computer was examined", lambda: o.find("examining ...") is None)
+    states.keep("start_page")
+    o.end()
 
     o.start("--config", o.scene("lines.toml"), "--disarmed", "--start-offset-a", "4", "--seed", "3", scene="dock.tact")
     o.see("Disarmed. Press Arm.")

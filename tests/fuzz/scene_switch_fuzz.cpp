@@ -40,12 +40,27 @@ void judge_refusal(const Folder& folder, std::string_view text) {
     require(take_refusal(folder.path) == refusal);
 }
 
+void judge_demo(const Folder& folder, std::string_view text) {
+    folder.put("demo", text);
+    std::optional<std::string> demo;
+    try {
+        demo = take_asked_demo(folder.path);
+        require(demo.has_value() && !demo->empty() && demo->size() <= kDemoNameMost);
+        require(std::all_of(demo->begin(), demo->end(), [](char c) { return c >= 'a' && c <= 'z'; }));
+        require(text == *demo + "\n");
+    } catch (const StartupError& error) {
+        require(std::strstr(error.what(), "fix:") != nullptr);
+    }
+    require(!take_asked_demo(folder.path));
+}
+
 }  // namespace
 
 bool run(std::span<const std::byte> input) {
     static const Folder folder;
     const std::string_view text(reinterpret_cast<const char*>(input.data()), input.size());
     judge_refusal(folder, text);
+    judge_demo(folder, text);
     folder.put("open", text);
     std::optional<std::filesystem::path> asked;
     try {
@@ -67,7 +82,7 @@ bool run(std::span<const std::byte> input) {
 std::vector<Input> seeds() {
     std::vector<Input> all;
     for (const std::string& text :
-         {std::string("/data/a b.tact\n"), std::string("/a/../\u00fc/./b//c.tact\n"),
+         {std::string("dock\n"), std::string("/data/a b.tact\n"), std::string("/a/../\u00fc/./b//c.tact\n"),
           "/" + std::string(kAskedPathMost - 2, 'x') + "\n"})
         all.emplace_back(std::as_bytes(std::span(text)).begin(), std::as_bytes(std::span(text)).end());
     return all;

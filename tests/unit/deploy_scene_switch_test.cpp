@@ -149,6 +149,21 @@ TEST_F(OtherScene, a_run_with_a_report_of_its_scene_keeps_the_scene) {
     EXPECT_NE(lines("told")[1].find("(--json)"), std::string::npos);
 }
 
+TEST_F(OtherScene, a_requested_demo_is_one_word_and_is_removed_when_read) {
+    const auto folder = scratch_.path();
+    EXPECT_EQ(take_asked_demo(folder), std::nullopt);
+    ask_for_demo(folder, "drill");
+    EXPECT_EQ(take_asked_demo(folder), "drill");
+    EXPECT_EQ(take_asked_demo(folder), std::nullopt);
+    for (const std::string& bad : {std::string(), std::string("\n"), std::string("dock"),
+                                   std::string("--help\n"), std::string("dock --save /\n"),
+                                   std::string("a\nb\n"), std::string(kDemoNameMost + 1, 'a') + "\n"}) {
+        std::ofstream(folder / "demo", std::ios::binary) << bad;
+        EXPECT_THROW((void)take_asked_demo(folder), StartupError) << bad;
+        EXPECT_FALSE(std::filesystem::exists(folder / "demo"));
+    }
+}
+
 TEST_F(OtherScene, a_request_is_one_absolute_path_and_is_removed_when_read) {
     const auto folder = scratch_.path();
     const auto taken = [&](const std::string& text) {

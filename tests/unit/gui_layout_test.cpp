@@ -9,6 +9,7 @@
 #include "gui/drilling/drilling_panel.hpp"
 #include "gui/field/field_panels.hpp"
 #include "gui/surface/surface_panels.hpp"
+#include "gui/window/start_controller.hpp"
 #include "ipc/topics/text.hpp"
 #include "tests/unit/gui_dashboard_fixture.hpp"
 
@@ -359,6 +360,43 @@ TEST_P(Layouts, of_the_other_systems_are_clean) {
         expect_clean_with("field", field, change);
         expect_clean_with("drilling", drill, change);
     }
+}
+
+TEST_P(Layouts, of_the_start_page_are_clean) {
+    const float width = GetParam().width, height = GetParam().height;
+    test::TestDashboard d(width, height, theme_scale(static_cast<int>(width), static_cast<int>(height)));
+    StartPageState page;
+    page.demos = demo_cards();
+    SceneRow row;
+    row.path = "/home/somebody/.cache/tact/dock-0123456789abcdef.tact";
+    row.name = "emd_1080_groel_11.5A.mrc and 1kp8A_fitted_in_emd_1080.pdb and 1oel_without_water.pdb";
+    row.kind = "docking";
+    row.when = "2026-11-20";
+    BrowserState lists;
+    const auto expect_clean = [&](const char* what) {
+        SCOPED_TRACE(what);
+        for (int i = 0; i < 3; ++i) {
+            ImGui::NewFrame();
+            draw_start_page(d.theme, page, lists, {0.0F, 0.0F, width, height});
+            ImGui::Render();
+        }
+        EXPECT_EQ(faults(), "");
+    };
+    expect_clean("at first");
+    lists.recent.assign(30, row);
+    page.device.status = {
+        Grade::watch,
+        "device.driver = \"phantom-usb\", serial 1234567: the device is there, but its group has "
+        "no right to open it"};
+    page.computer.status = {Grade::bad,
+                            "no OpenGL 3.3: cannot open the driver of the graphics card (and 12 more: "
+                            "tact doctor)"};
+    expect_clean("long findings");
+    page.preparing = true;
+    page.share = 0.4;
+    page.message.text =
+        "Preparing the demo, once: [ 40 %] sampling the bone and its labels at 256 x 256 x 256 voxels";
+    expect_clean("a demo is prepared");
 }
 
 INSTANTIATE_TEST_SUITE_P(Sizes, Layouts, testing::ValuesIn(kSizes), [](const auto& size) {

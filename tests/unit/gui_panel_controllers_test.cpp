@@ -96,6 +96,8 @@ TEST_F(TestDashboard, a_row_shows_the_kind_of_a_scene_and_its_faults) {
     const auto rows = recent_rows({{good, 1000}, {broken, 900}, {folder_ / "gone.tact", 800}}, 1300);
     ASSERT_EQ(rows.size(), 3U);
     EXPECT_EQ(rows[0].kind, "docking");
+    EXPECT_EQ(rows[0].name, peek_scene(good).title) << "a cached file's name is a number";
+    EXPECT_EQ(rows[0].place, good);
     EXPECT_EQ(rows[0].when, "5 min ago");
     EXPECT_TRUE(rows[0].trouble.empty()) << rows[0].trouble;
     EXPECT_EQ(rows[1].trouble, "the file is incomplete");

@@ -78,16 +78,16 @@ void add_docking_commands(CLI::App& app, int& exit_code) {
 void add_docking_demo(CLI::App& demo, int& exit_code) {
     auto* const command =
         demo.add_subcommand("dock", "The force draws a ring of six subunits to its position in a 12 A map");
-    const auto options = std::make_shared<RunOptions>();
-    add_run_options(*command, *options);
-    command->callback([options, &exit_code] {
+    const auto baked = std::make_shared<BakedRun>();
+    add_demo_run_options(*command, *baked);
+    command->callback([baked, &exit_code] {
+        RunOptions& options = baked->run;
         // Far enough that the motion is visible, near enough that the force draws the ring back.
         for (const auto& [name, value] :
              {std::pair("--start-offset-a", "15"), std::pair("--start-rotation-deg", "30")})
-            if (!options->has_controller_option(name) && !options->has_controller_option("--poses"))
-                options->add_for_scene({name, value});
-        const auto scene = baked_scene({.inputs = {}, .words = {"demo", "dock"}, .options = {}});
-        exit_code = scene.empty() ? 130 : run_scene(scene, *options);
+            if (!options.has_controller_option(name) && !options.has_controller_option("--poses"))
+                options.add_for_scene({name, value});
+        exit_code = bake_and_run({.inputs = {}, .words = {"demo", "dock"}, .options = {}}, *baked);
     });
 }
 

@@ -90,24 +90,24 @@ namespace {
 
 void add_ear_demo(CLI::App& demo, const char* name, const char* what, bool training, int& exit_code) {
     auto* const command = demo.add_subcommand(name, what);
-    const auto options = std::make_shared<RunOptions>();
+    const auto baked = std::make_shared<BakedRun>();
     const auto voxels = std::make_shared<std::string>("256");
     command->add_option("--voxels", *voxels, "Number of voxels of the bone along each axis, from 16 to 1024")
         ->capture_default_str();
-    add_run_options(*command, *options);
-    command->callback([options, voxels, training, &exit_code] {
-        const auto& window = options->visual;
+    add_demo_run_options(*command, *baked);
+    command->callback([baked, voxels, training, &exit_code] {
+        RunOptions& options = baked->run;
+        const auto& window = options.visual;
         if (training && std::find(window.begin(), window.end(), "--training") == window.end()) {
             const auto task = cache_folder() / "demo-task.toml";
             write_whole(task, kDemoTask);
-            options->visual.insert(options->visual.end(), {"--training", task.string()});
+            options.visual.insert(options.visual.end(), {"--training", task.string()});
         }
-        let_the_hands_drill(*options);
-        if (options->has_controller_option("surgeon") && !options->has_controller_option("--hand-at-mm"))
-            options->add_for_scene({"--hand-at-mm", kMastoidMm});
-        const auto scene =
-            baked_scene({.inputs = {}, .words = {"demo", "drill", "--voxels", *voxels}, .options = {}});
-        exit_code = scene.empty() ? 130 : run_scene(scene, *options);
+        let_the_hands_drill(options);
+        if (options.has_controller_option("surgeon") && !options.has_controller_option("--hand-at-mm"))
+            options.add_for_scene({"--hand-at-mm", kMastoidMm});
+        exit_code = bake_and_run(
+            {.inputs = {}, .words = {"demo", "drill", "--voxels", *voxels}, .options = {}}, *baked);
     });
 }
 

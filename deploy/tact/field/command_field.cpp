@@ -60,12 +60,11 @@ void add_field(CLI::App& app, int& exit_code) {
 
 void add_field_demo(CLI::App& demo, int& exit_code) {
     auto* const command = demo.add_subcommand("field", "A hand wanders in the field of two opposite charges");
-    const auto options = std::make_shared<RunOptions>();
-    add_run_options(*command, *options);
-    command->callback([options, &exit_code] {
-        let_the_hand_wander(*options);
-        const auto scene = baked_scene({.inputs = {}, .words = {"demo", "field"}, .options = {}});
-        exit_code = scene.empty() ? 130 : run_scene(scene, *options);
+    const auto baked = std::make_shared<BakedRun>();
+    add_demo_run_options(*command, *baked);
+    command->callback([baked, &exit_code] {
+        let_the_hand_wander(baked->run);
+        exit_code = bake_and_run({.inputs = {}, .words = {"demo", "field"}, .options = {}}, *baked);
     });
 }
 

@@ -56,19 +56,18 @@ void add_touch(CLI::App& app, int& exit_code) {
 
 void add_touch_demo(CLI::App& demo, int& exit_code) {
     auto* const command = demo.add_subcommand("touch", "A hand strokes a rough terrain or a dense sphere");
-    const auto options = std::make_shared<RunOptions>();
+    const auto baked = std::make_shared<BakedRun>();
     const auto shape = std::make_shared<std::string>("terrain");
     command->add_option("--shape", *shape, "Synthetic surface: terrain, sphere (rough) or smooth-sphere")
         ->check(CLI::IsMember({"terrain", "sphere", "smooth-sphere"}))
         ->capture_default_str();
     const auto tool = add_tool_options(*command);
-    add_run_options(*command, *options);
-    command->callback([options, shape, tool, &exit_code] {
-        let_the_hand_stroke(*options);
+    add_demo_run_options(*command, *baked);
+    command->callback([baked, shape, tool, &exit_code] {
+        let_the_hand_stroke(baked->run);
         BakeRequest request{.inputs = {}, .words = {"demo", "touch", "--shape", *shape}, .options = {}};
         tool->add_to(request);
-        const auto scene = baked_scene(request);
-        exit_code = scene.empty() ? 130 : run_scene(scene, *options);
+        exit_code = bake_and_run(request, *baked);
     });
 }
 

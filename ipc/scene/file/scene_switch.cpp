@@ -14,6 +14,7 @@ namespace tact {
 namespace {
 
 constexpr const char* kAsked = "open";
+constexpr const char* kDemo = "demo";
 constexpr const char* kRefused = "refused";
 
 // Reads and removes a small file; nothing: it does not exist. A file of more than `most` bytes, or not a
@@ -55,6 +56,22 @@ std::optional<std::filesystem::path> take_asked_scene(const std::filesystem::pat
         refuse("the requested path is not a single line of text");
     if (path.empty() || path.front() != '/') refuse("the requested path is not absolute");
     return path;
+}
+
+void ask_for_demo(const std::filesystem::path& folder, const std::string& name) {
+    write_whole_file(folder / kDemo, name + "\n");
+}
+
+std::optional<std::string> take_asked_demo(const std::filesystem::path& folder) {
+    auto text = take_small(folder / kDemo, kDemoNameMost + 1);
+    if (!text) return std::nullopt;
+    const bool line = !text->empty() && text->back() == '\n';
+    if (line) text->pop_back();
+    if (!line || text->empty() ||
+        !std::all_of(text->begin(), text->end(), [](char c) { return c >= 'a' && c <= 'z'; }))
+        throw StartupError("starting a demo", "the request contains no name of lower-case letters",
+                           "choose the demo again, or use tact demo");
+    return text;
 }
 
 void refuse_scene(const std::filesystem::path& folder, const std::string& why) {
