@@ -10,7 +10,7 @@ void add_run(CLI::App& app, int& exit_code) {
     auto* const command = app.add_subcommand("run", "Run a baked scene");
     const auto options = std::make_shared<RunOptions>();
     const auto scene = std::make_shared<std::filesystem::path>();
-    command->add_option("SCENE", *scene, "Scene file written by tact-prep")
+    command->add_option("SCENE", *scene, "Scene file written by tact-prep, or a session saved in the window")
         ->required()
         ->check(CLI::ExistingFile);
     add_run_options(*command, *options);

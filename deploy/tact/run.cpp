@@ -37,11 +37,11 @@ constexpr int kHeaderEvery = 20;
 class OneRun {
 public:
     // The first scene of a run is armed when the run is up; for a scene opened from the window, a person arms it.
-    OneRun(const SceneSwitch::Asked& asked, RunOptions options, SceneSwitch* scene_switch, bool first)
+    OneRun(const Asked& asked, RunOptions options, SceneSwitch* scene_switch, bool first)
         : options_(std::move(options)),
           scene_switch_(scene_switch),
           first_(first),
-          bone_(asked.bone),
+          asked_(asked),
           file_(SceneFile::open(asked.scene)),
           system_(system_of(file_).open_run(file_)),
           observer_(options_.session) {
@@ -62,7 +62,7 @@ public:
     }
 
     // What the window requested, if the run ended for it.
-    [[nodiscard]] const std::optional<SceneSwitch::Asked>& next() const { return next_; }
+    [[nodiscard]] const std::optional<Asked>& next() const { return next_; }
     [[nodiscard]] bool came_up() const { return seen_at_.has_value(); }
 
 private:
@@ -80,9 +80,16 @@ private:
         if (!first_) {  // they were meant for the scene before
             options_.keep.clear();
             options_.drop_controller_option("--resume");
-            if (!bone_.empty())
-                options_.controller.insert(options_.controller.end(), {"--resume", bone_.string()});
+            if (asked_.bodies) options_.drop_controller_option("--poses");
         }
+        const auto begin_with = [this](bool wanted, const char* option, const std::filesystem::path& file) {
+            if (wanted && !options_.has_controller_option(option))
+                options_.controller.insert(options_.controller.end(), {option, file.string()});
+        };
+        begin_with(!asked_.bone.empty(), "--resume", asked_.bone);
+        begin_with(asked_.bodies, "--poses", asked_.session);
+        if (!asked_.session.empty())
+            options_.visual.insert(options_.visual.end(), {"--open-session", asked_.session.string()});
         // Before the controller, like a recording.
         auto words = system_->keeper_arguments(options_);
         if (words.empty() && !options_.keep.empty())
@@ -287,8 +294,8 @@ private:
     RunOptions options_;
     SceneSwitch* scene_switch_;  // null: the window cannot request scenes
     bool first_;
-    std::optional<SceneSwitch::Asked> next_;
-    std::filesystem::path bone_;  // to begin with; empty: as baked, or as the options say
+    std::optional<Asked> next_;
+    Asked asked_;
     RunDescription facts_;
     SceneFile file_;
     std::unique_ptr<SystemRun> system_;
@@ -312,11 +319,11 @@ int run_scene(const std::filesystem::path& scene, RunOptions options) {
     options.settle();
     std::optional<SceneSwitch> scene_switch;
     if (options.gui && !options.headless) scene_switch.emplace(options);
-    SceneSwitch::Asked now{scene}, before;
+    Asked now = asked_of(scene), before;
     for (bool first = true;; first = false) {
         int code = 1;
         bool came_up = false;
-        std::optional<SceneSwitch::Asked> next;
+        std::optional<Asked> next;
         try {
             OneRun run(now, options, scene_switch ? &*scene_switch : nullptr, first);
             code = run.go();

@@ -6,6 +6,7 @@
 #include "ipc/scene/bone/drilled_bone.hpp"
 #include "ipc/scene/file/scene_meta.hpp"
 #include "ipc/scene/file/scene_switch.hpp"
+#include "ipc/scene/session/session_file.hpp"
 
 namespace tact::launch {
 
@@ -19,7 +20,14 @@ std::string bound_to_one_scene(const RunOptions& o) {
     return {};
 }
 
-std::optional<SceneSwitch::Asked> SceneSwitch::poll(const SceneFile& shown) {
+Asked asked_of(const std::filesystem::path& file) {
+    if (!is_session(file)) return {file};
+    const Session session = read_session(file);
+    return {find_session_scene(session), session.bone, std::filesystem::absolute(file),
+            !session.bodies.empty()};
+}
+
+std::optional<Asked> SceneSwitch::poll(const SceneFile& shown) {
     try {
         const auto scene = take_asked_scene(folder());
         if (!scene) return std::nullopt;
@@ -37,8 +45,9 @@ std::optional<SceneSwitch::Asked> SceneSwitch::poll(const SceneFile& shown) {
                                    "open the scene that was drilled, then this file");
             return Asked{std::filesystem::absolute(shown.name()), *scene};
         }
-        static_cast<void>(read_meta(SceneFile::open(*scene)));
-        return Asked{*scene};
+        Asked asked = asked_of(*scene);
+        static_cast<void>(read_meta(SceneFile::open(asked.scene)));
+        return asked;
     } catch (const StartupError& e) {
         refuse(e.what());
         return std::nullopt;

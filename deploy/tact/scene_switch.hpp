@@ -18,17 +18,22 @@ namespace tact::launch {
 // The option that writes files about one scene at the end of a run; empty: none was given.
 [[nodiscard]] std::string bound_to_one_scene(const RunOptions& options);
 
+// What a run shows: a scene, perhaps with bone that was kept of it, or with all that a session holds.
+struct Asked {
+    std::filesystem::path scene;
+    std::filesystem::path bone{};     // empty: as baked
+    std::filesystem::path session{};  // empty: none
+    bool bodies = false;              // the session has bodies
+};
+// file: a scene or a session. Throws StartupError: not readable, or the scene of the session is not found.
+[[nodiscard]] Asked asked_of(const std::filesystem::path& file);
+
 class SceneSwitch {
 public:
     explicit SceneSwitch(const RunOptions& options) : bound_by_(bound_to_one_scene(options)) {}
     [[nodiscard]] const std::filesystem::path& folder() const { return scratch_.path(); }
     // Window state for the next window of this run, if the user keeps no such file.
     [[nodiscard]] std::filesystem::path window_state() const { return folder() / "window.toml"; }
-    // What was requested and can be opened: a scene, or the scene that is shown with bone that was kept of it.
-    struct Asked {
-        std::filesystem::path scene;
-        std::filesystem::path bone{};  // empty: as baked
-    };
     [[nodiscard]] std::optional<Asked> poll(const SceneFile& shown);
     void refuse(const std::string& why);
 

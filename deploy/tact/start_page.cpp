@@ -11,6 +11,7 @@
 
 #include "deploy/tact/child.hpp"
 #include "deploy/tact/files.hpp"
+#include "deploy/tact/scene_switch.hpp"
 #include "deploy/tact/signals.hpp"
 #include "ipc/base/error.hpp"
 #include "ipc/scene/file/scene_meta.hpp"
@@ -30,7 +31,7 @@ std::optional<std::vector<std::string>> chosen_in(const std::filesystem::path& f
             if (scene->extension() == ".bone")
                 throw StartupError("opening " + scene->string(), "it is bone of a scene, without the scene",
                                    "open the scene first, then this file");
-            static_cast<void>(peek_scene(*scene));
+            static_cast<void>(peek_scene(asked_of(*scene).scene));
             return std::vector<std::string>{"run", scene->string()};
         }
     } catch (const StartupError& e) {

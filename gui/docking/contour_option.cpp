@@ -1,7 +1,9 @@
 #include "gui/docking/contour_option.hpp"
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <cstdlib>
 
 namespace tact {
@@ -59,11 +61,28 @@ ContourOption read_contour_option(const std::string& text) {
             option.style = SurfaceStyle::solid;
         } else if (p == "wire") {
             option.style = SurfaceStyle::wire;
+        } else if (p == "hidden") {
+            option.shown = false;
         } else {
             refuse(p);
         }
     }
     return option;
+}
+
+std::string contour_option_text(const Contour& c) {
+    char text[96];
+    const auto byte = [](float v) {
+        return static_cast<int>(std::lround(255.0F * std::clamp(v, 0.0F, 1.0F)));
+    };
+    std::snprintf(text, sizeof text, "%.17g:%02x%02x%02x:%.9g", c.level, byte(c.colour.x()),
+                  byte(c.colour.y()), byte(c.colour.z()), static_cast<double>(c.opacity));
+    std::string out = text;
+    if (c.style)
+        out += *c.style == SurfaceStyle::glass   ? ":glass"
+               : *c.style == SurfaceStyle::solid ? ":solid"
+                                                 : ":wire";
+    return c.shown ? out : out + ":hidden";
 }
 
 double level_of(const ContourOption& option, const ContourScale& scale) {
@@ -82,7 +101,7 @@ std::vector<Contour> contours_of(std::span<const ContourOption> options, const C
     std::vector<Contour> contours;
     for (const ContourOption& o : options)
         contours.push_back({level_of(o, scale), o.colour.value_or(contour_colour(contours.size())), o.opacity,
-                            o.style, true});
+                            o.style, o.shown});
     return contours;
 }
 

@@ -249,6 +249,22 @@ void DockingSystem::add_to(LoadTopic& load) const {
     load.molecule_triangles = std::min(layer_->molecules().triangles(), load.molecule_triangles_max);
 }
 
+void DockingSystem::add_to(Session& session) const {
+    fit_controller_.add_to(session, list_);
+    for (const Contour& contour : view_->contours().contours())
+        session.contours.push_back(contour_option_text(contour));
+}
+
+void DockingSystem::restore(const Session& session) {
+    fit_controller_.restore(session);
+    std::vector<ContourOption> contours;
+    for (const std::string& text : session.contours) contours.push_back(read_contour_option(text));
+    if (contours.empty() || !options_.empty()) return;  // those of the command line go first
+    view_->contours().set(contours_of(contours, content_->scale));
+    begin_contours(view_->contours(), content_->scale, panels_.contours);
+    count_contour();
+}
+
 void DockingSystem::finish(const SystemContext& context) {
     static_cast<void>(context);
     fit_controller_.finish_saving(std::chrono::seconds(8));  // the launcher allows ten to end

@@ -36,6 +36,8 @@ public:
     void refine() override;
     [[nodiscard]] bool add_to_key(ContentKey& key) const override;
     void drawn(const SystemContext& context) override;
+    void add_to(Session& session) const override;
+    void restore(const Session& session) override;
     void finish(const SystemContext& context) override;
 
 private:

@@ -166,6 +166,33 @@ void FitController::copy(const ShownBody& body, const BodyList& list, std::vecto
     commands.push_back({CommandKind::add_body, 0.0, {}, body.structure, place});
 }
 
+std::vector<PosedBody> FitController::posed(const BodyList& list) {
+    std::vector<PosedBody> bodies;
+    for (const ShownBody& b : list.bodies())
+        bodies.push_back({{b.id, b.structure, b.newest, b.amplitude_m}, (b.flags & kBodyFixed) != 0});
+    return bodies;
+}
+
+void FitController::add_to(Session& session, const BodyList& list) const {
+    session.bodies = bodies_json(posed(list), *content_);
+    for (const std::string& name : history_.snapshots()) {
+        Session::Place& place = session.places.emplace_back();
+        place.name = name;
+        for (const FitHistory::Move& move : history_.places_of(name))
+            place.bodies.push_back({move.id, move.T_model_body});
+    }
+}
+
+void FitController::restore(const Session& session) {
+    for (const Session::Place& place : session.places) {
+        FitHistory::Places places;
+        for (const Session::Body& body : place.bodies) places.push_back({body.id, body.T_model_body});
+        if (!history_.snapshot(place.name, places))
+            report(Grade::watch,
+                   "snapshot \"" + place.name + "\" of the session not kept: too many, or name in use");
+    }
+}
+
 void FitController::save(const BodyList& list) {
     if (!content_ || saving_.running()) return;
     try {
@@ -175,10 +202,7 @@ void FitController::save(const BodyList& list) {
                                "save again in a second");
         const std::string poses = saving_to_ + "/poses.json";
         std::ofstream out(poses);
-        std::vector<PosedBody> bodies;
-        for (const ShownBody& b : list.bodies())
-            bodies.push_back({{b.id, b.structure, b.newest, b.amplitude_m}, (b.flags & kBodyFixed) != 0});
-        out << poses_json(bodies, *content_) << std::flush;
+        out << poses_json(posed(list), *content_) << std::flush;
         if (!out)
             throw StartupError("writing " + poses, "the write failed", "check the free space of the disk");
         char level[48];

@@ -15,7 +15,9 @@
 #include "gui/docking/fit_history.hpp"
 #include "gui/docking/fit_worker.hpp"
 #include "gui/docking/place_finder.hpp"
+#include "gui/docking/poses_json.hpp"
 #include "gui/link/command_sender.hpp"
+#include "ipc/scene/session/session_file.hpp"
 
 namespace tact {
 
@@ -28,6 +30,9 @@ public:
     void follow(const BodyList& list, const BodiesTopic* topic, double contour, bool residues,
                 std::vector<Command>& commands);
     void perform(const FitRequest& request, const BodyList& list, std::vector<Command>& commands);
+    // Bodies and snapshots, to and from a session.
+    void add_to(Session& session, const BodyList& list) const;
+    void restore(const Session& session);
     // At the end: waits for a save in progress, at most this long.
     void finish_saving(Duration patience);
     // Fills the panels' state; takes the user's choice of an objective from it.
@@ -42,6 +47,7 @@ private:
     void keep(const std::string& name, const FitHistory::Places& places);
     void copy(const ShownBody& body, const BodyList& list, std::vector<Command>& commands);
     void save(const BodyList& list);
+    [[nodiscard]] static std::vector<PosedBody> posed(const BodyList& list);
     void place(std::span<const FitHistory::Move> moves, const BodyList& list, std::vector<Command>& commands);
 
     std::shared_ptr<const SceneContent> content_;

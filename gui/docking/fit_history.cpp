@@ -143,6 +143,13 @@ FitHistory::Places FitHistory::restore(const std::string& name) {
     return go(found->places);
 }
 
+const FitHistory::Places& FitHistory::places_of(const std::string& snapshot) const {
+    static const Places kNone;
+    const auto found = std::find_if(snapshots_.begin(), snapshots_.end(),
+                                    [&](const Snapshot& s) { return s.name == snapshot; });
+    return found == snapshots_.end() ? kNone : found->places;
+}
+
 std::vector<std::string> FitHistory::snapshots() const {
     std::vector<std::string> names;
     for (const Snapshot& s : snapshots_) names.push_back(s.name);

@@ -52,6 +52,7 @@ public:
     bool snapshot(const std::string& name) { return snapshot(name, now_); }
     Places restore(const std::string& name);
     [[nodiscard]] std::vector<std::string> snapshots() const;
+    [[nodiscard]] const Places& places_of(const std::string& snapshot) const;  // empty: there is none
 
 private:
     void commit();  // ends the gesture in progress

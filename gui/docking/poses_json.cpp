@@ -7,7 +7,8 @@
 
 namespace tact {
 
-std::string poses_json(std::span<const PosedBody> bodies, const SceneContent& content) {
+namespace {
+nlohmann::ordered_json list_of(std::span<const PosedBody> bodies, const SceneContent& content) {
     nlohmann::ordered_json list = nlohmann::ordered_json::array();
     for (const auto& [body, fixed] : bodies) {
         const Vec3 p_a = body.T_model_body.p_m / kAngstromM;
@@ -22,8 +23,17 @@ std::string poses_json(std::span<const PosedBody> bodies, const SceneContent& co
         nlohmann::ordered_json& bent = list.back()["mode_amplitudes_a"] = nlohmann::ordered_json::array();
         for (const float a : body.amplitude_m) bent.push_back(static_cast<double>(a) / kAngstromM);
     }
-    return nlohmann::ordered_json{{"bodies", list}}.dump(2, ' ', false,
-                                                         nlohmann::ordered_json::error_handler_t::replace) +
+    return list;
+}
+}  // namespace
+
+std::string bodies_json(std::span<const PosedBody> bodies, const SceneContent& content) {
+    return list_of(bodies, content).dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
+}
+
+std::string poses_json(std::span<const PosedBody> bodies, const SceneContent& content) {
+    return nlohmann::ordered_json{{"bodies", list_of(bodies, content)}}.dump(
+               2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) +
            "\n";
 }
 

@@ -14,6 +14,8 @@ struct PosedBody {
 };
 
 // The structures must be those of the content, which has a docking scene.
+[[nodiscard]] std::string bodies_json(std::span<const PosedBody> bodies,
+                                      const SceneContent& content);  // the list alone
 [[nodiscard]] std::string poses_json(std::span<const PosedBody> bodies, const SceneContent& content);
 
 }  // namespace tact

@@ -39,6 +39,7 @@ constexpr std::array<const char*, static_cast<std::size_t>(KeyAction::count)> kA
     "screenshot",
     "mark",
     "record",
+    "save_session",
     "play",
     "step_back",
     "step_on",

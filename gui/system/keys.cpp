@@ -69,6 +69,8 @@ constexpr auto kKeyRows = [] {
         {typed_key('p'), 0, always, KeyAction::screenshot, "P", "save a picture of the window"},
         {control_key('r'), 0, controller, KeyAction::record, "Ctrl+R",
          "record the run, or end the recording"},
+        {KeyStroke{KeyCode::character, 's', true, true}, 0, controller, KeyAction::save_session,
+         "Ctrl+Shift+S", "save the session, to go on later"},
         {typed_key('m'), 0, controller, KeyAction::mark, "M", "mark this moment for the flight recorder"},
         {typed_key('?'), 0, always, KeyAction::help, "?", "this table"},
     });

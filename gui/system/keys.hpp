@@ -56,6 +56,7 @@ enum class KeyAction : std::uint8_t {
     screenshot,
     mark,
     record,
+    save_session,
     play,
     step_back,
     step_on,

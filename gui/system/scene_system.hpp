@@ -21,6 +21,7 @@
 #include "gui/render/scene_view.hpp"
 #include "gui/system/keys.hpp"
 #include "gui/system/system_panels.hpp"
+#include "ipc/scene/session/session_file.hpp"
 
 namespace tact {
 
@@ -101,6 +102,9 @@ public:
     virtual void drawn(const SystemContext& context) { static_cast<void>(context); }
     virtual void ended(double work_s) { static_cast<void>(work_s); }
     virtual void add_to(LoadTopic& load) const { static_cast<void>(load); }
+    // To and from a session of this scene; restore() after use().
+    virtual void add_to(Session& session) const { static_cast<void>(session); }
+    virtual void restore(const Session& session) { static_cast<void>(session); }
     // The window closes. Throws StartupError if a report cannot be written.
     virtual void finish(const SystemContext& context) { static_cast<void>(context); }
 };

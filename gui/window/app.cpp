@@ -31,7 +31,7 @@ GuiApp::GuiApp(const GuiOptions& options)
         state_.toggles.style = static_cast<int>(SurfaceStyle::solid);
         state_.toggles.shading = false;
     }
-    if (!options.window_state_file.empty()) {
+    if (as_left_wanted_) {
         state_.toggles = options.window_state.toggles;
         state_.toggles.style = SceneToggles{}.style;  // of the scene
         state_.span_choice = options.window_state.span_choice;
@@ -91,6 +91,7 @@ void GuiApp::frame(Instant now, bool take_picture) {
     follow_scene();
     if (const auto dropped = window_.take_dropped(); !dropped.empty()) browser_.drop(dropped, state_.browser);
     browser_.follow(state_.browser);
+    follow_session();
     system().follow(context());
     if (panels_due_) handle_input();
     {

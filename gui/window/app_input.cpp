@@ -84,6 +84,9 @@ void GuiApp::perform(KeyAction what, std::size_t place) {
         case KeyAction::record:
             state_.record_wanted = true;
             return;
+        case KeyAction::save_session:
+            state_.browser.session_wanted = true;
+            return;
         case KeyAction::play:
             return state_.replay.requests.push_back({TimelineAction::play, 0.0});
         case KeyAction::step_back:

@@ -2,6 +2,7 @@
 //
 // app.cpp      the frame, the controller, panels, the published load
 // app_scene    the scene shown, its levels, its bodies
+// app_session  saves and continues sessions
 // app_draw     the frame around the 3D view, and both eyes of a stage
 // app_view     the 3D view: its resolution, and its full detail at rest
 // app_picture  pictures of any size
@@ -36,6 +37,7 @@
 #include "gui/window/scene_loader.hpp"
 #include "gui/window/screenshots.hpp"
 #include "gui/window/second_hand.hpp"
+#include "gui/window/session_saver.hpp"
 #include "gui/window/still_view.hpp"
 #include "gui/window/systems.hpp"
 #include "gui/window/timeline_sender.hpp"
@@ -65,7 +67,9 @@ private:
     void use_scene(std::unique_ptr<SceneStart> start);
     void home_view();
     void begin_as_left();
+    [[nodiscard]] WindowState window_state() const;
     void keep_window_state() const;
+    void follow_session();
     [[nodiscard]] SystemContext context();
     [[nodiscard]] SceneSystem& system() { return *systems_[shown_]; }
     void handle_input();
@@ -138,7 +142,9 @@ private:
     std::uint32_t views_until_measured_ = kFirstMeasured;
     double resolution_saves_s_ = 0.0;  // per unit of the level; 0: nothing, or not measured
     BrowserController browser_{options_.scene_switch};
-    bool as_left_wanted_ = !options_.window_state_file.empty();  // for the first scene shown
+    // For the first scene shown.
+    bool as_left_wanted_ = !options_.window_state_file.empty() || options_.session_opened.has_value();
+    SessionSaver session_saver_{options_.session};
     SecondHand second_hand_;
     std::int64_t marked_at_ns_ = std::numeric_limits<std::int64_t>::min() / 2;  // by an instructor
     RingCursor traces_place_;                                                   // in the trace ring

@@ -87,9 +87,10 @@ void GuiApp::home_view() {
 // Restores style and view of the last run, if the scene is the same.
 void GuiApp::begin_as_left() {
     const WindowState& window_state = options_.window_state;
-    if (!std::exchange(as_left_wanted_, false) || window_state.scene != content_->checksum ||
-        window_state.distance_a <= 0.0)
-        return;
+    if (!std::exchange(as_left_wanted_, false)) return;
+    if (options_.session_opened && options_.session_opened->scene_checksum == content_->checksum)
+        system().restore(*options_.session_opened);
+    if (window_state.scene != content_->checksum || window_state.distance_a <= 0.0) return;
     state_.toggles.style = window_state.toggles.style;
     state_.toggles.molecule = window_state.toggles.molecule;
     state_.toggles.colouring = window_state.toggles.colouring;
@@ -97,8 +98,7 @@ void GuiApp::begin_as_left() {
                   static_cast<float>(window_state.distance_a));
 }
 
-void GuiApp::keep_window_state() const {
-    if (options_.window_state_file.empty()) return;
+WindowState GuiApp::window_state() const {
     WindowState window_state;
     const Window::Size size = window_.size();
     window_state.width_px = size.width;
@@ -113,8 +113,13 @@ void GuiApp::keep_window_state() const {
         window_state.q_eye_scene = camera_.orientation().cast<double>();
         window_state.distance_a = static_cast<double>(camera_.distance_a());
     }
+    return window_state;
+}
+
+void GuiApp::keep_window_state() const {
+    if (options_.window_state_file.empty()) return;
     try {
-        write_window_state_file(options_.window_state_file, window_state);
+        write_window_state_file(options_.window_state_file, window_state());
     } catch (const StartupError& e) {
         spdlog::error("{}", e.what());
     }

@@ -48,6 +48,10 @@ void BrowserController::used(const std::filesystem::path& scene, BrowserState& s
     const auto path = std::filesystem::absolute(scene).lexically_normal();
     current_ = path.string();
     if (state.folder.empty()) state.folder = path.parent_path().string();
+    remember(path);
+}
+
+void BrowserController::remember(const std::filesystem::path& path) {
     const auto folder = state_folder();
     if (scene_switch_.empty() || folder.empty() || keeping_.valid()) return;
     keeping_ = std::async(std::launch::async, [folder, path]() -> std::string {

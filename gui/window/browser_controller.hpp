@@ -23,6 +23,8 @@ public:
     explicit BrowserController(std::filesystem::path scene_switch) : scene_switch_(std::move(scene_switch)) {}
     // A scene is shown: adds it to the list if a launcher runs the window.
     void used(const std::filesystem::path& scene, BrowserState& state);
+    // Puts a file in front of the recent ones.
+    void remember(const std::filesystem::path& file);
     // Reads the list of recent scenes, and the folder, again.
     void refresh(const BrowserState& state) {
         if (!reading_.valid()) read(state);

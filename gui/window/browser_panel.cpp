@@ -118,6 +118,13 @@ void draw_browser(const Theme& theme, BrowserState& browser, const PixelRect& vi
     static constexpr std::array<const char*, 3> kTabs{"Recently used", "Folder", "Drilled bone"};
     ImGui::SameLine(0.0F, theme.px(18.0F));
     choose(theme, kTabs, browser.tab);
+    if (browser.can_save) {
+        ImGui::SameLine(width - theme.px(168.0F));
+        if (ImGui::SmallButton("Save session")) browser.session_wanted = true;
+        if (ImGui::IsItemHovered())
+            ImGui::SetTooltip(
+                "saves scene, bodies, bone, contours, snapshots and view into your Tact folder");
+    }
     ImGui::SameLine(width - theme.px(64.0F));
     if (ImGui::SmallButton("Close")) browser.open = false;
     if (!browser.message.empty()) {

@@ -36,12 +36,13 @@ struct BrowserState {
     std::string
         marks_text;  // result of importing the marked rows, or why nothing can be imported; empty: no mark
     bool marks_import = false;
+    bool can_save = false;           // there is a session to save
     std::optional<ImportForm> form;  // drawn in place of the rows until it is answered or cancelled
     std::string message;
     Grade message_grade = Grade::unknown;
     // The user's choices; emptied by the application.
     std::string scene_wanted, folder_wanted, mark_wanted;
-    bool import_wanted = false, clear_wanted = false;
+    bool import_wanted = false, clear_wanted = false, session_wanted = false;
 };
 
 // Over the centre of the view.

@@ -6,6 +6,7 @@
 
 #include "ipc/base/printable.hpp"
 #include "ipc/scene/file/scene_kinds.hpp"
+#include "ipc/scene/session/session_file.hpp"
 
 namespace tact {
 namespace {
@@ -15,13 +16,13 @@ struct RawKind {
     std::size_t type = 0;                  // in system->raw
 };
 
-// A scene, or bone that was drilled in the one that is shown.
+// A scene, a session, or bone that was drilled in the one that is shown.
 bool is_scene(const std::string& file) {
     std::error_code ignored;
     if (std::filesystem::is_directory(file, ignored)) return false;
     std::string ending = std::filesystem::path(file).extension().string();
     for (char& c : ending) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-    return ending == ".tact" || ending == ".bone";
+    return ending == ".tact" || ending == ".bone" || ending == kSessionEnding;
 }
 
 template <class Fits>
@@ -69,7 +70,9 @@ std::string shown_name(const std::string& file) {
 
 const std::string& dropped_kinds_text() {
     static const std::string text = [] {
-        std::string all = "Files to drop: a scene (.tact); drilled bone of the scene that is shown (.bone)";
+        std::string all =
+            "Files to drop: a scene (.tact) or a session (.tact-session); drilled bone of the scene that is "
+            "shown (.bone)";
         for (const SceneKindRow& system : scene_kinds()) {
             for (const RawFileType& type : system.raw) {
                 all +=

@@ -18,6 +18,16 @@ namespace tact {
 namespace {
 constexpr const char* kKeysFix =
     "tact-gui --keys lists all actions with their keys, in the form of this file";
+
+// Contours are checked here, so that a session never fails later.
+void open_session(const std::string& file, GuiOptions& options) {
+    options.session_opened = read_session(file);
+    for (const std::string& contour : options.session_opened->contours)
+        static_cast<void>(read_contour_option(contour));
+    if (options.session_opened->window.empty()) return;
+    options.window_state = read_window_state_text(options.session_opened->window, file);
+    options.traces = options.traces || options.window_state.traces;
+}
 }  // namespace
 
 bool parse_gui_options(int argc, const char* const* argv, GuiOptions& options, int& exit_code) {
@@ -70,6 +80,11 @@ bool parse_gui_options(int argc, const char* const* argv, GuiOptions& options, i
                    "TOML file of the window's settings: read at the start if it exists, written at "
                    "the end")
         ->type_name("FILE.toml");
+    std::string session_file;
+    app.add_option("--open-session", session_file,
+                   "Session that continues: contours, snapshots and view; set by tact")
+        ->type_name("FILE.tact-session")
+        ->check(CLI::ExistingFile);
     bool list_keys = false;
     std::string key_file;
     app.add_option(
@@ -175,6 +190,7 @@ bool parse_gui_options(int argc, const char* const* argv, GuiOptions& options, i
                 options.height_px = options.window_state.height_px;
             }
         }
+        if (!session_file.empty()) open_session(session_file, options);
         if (!stereo.empty()) static_cast<void>(read_stereo_mode(stereo, options.stage.mode));
         if (swap_eyes) options.stage.eyes.swapped = !options.stage.eyes.swapped;
     } catch (const CLI::ParseError& e) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -11,6 +12,7 @@
 #include "gui/stereo/stage_file.hpp"
 #include "gui/system/keys.hpp"
 #include "gui/window/window_state.hpp"
+#include "ipc/scene/session/session_file.hpp"
 
 namespace tact {
 
@@ -19,8 +21,9 @@ struct GuiOptions {
     std::string session = "default";
     std::string
         window_state_file;     // settings of the window: read at the start, written at the end; empty: none
-    WindowState window_state;  // as read
-    KeyTable keys;             // with the person's own
+    WindowState window_state;  // as read, or that of the session
+    std::optional<Session> session_opened;  // continues in this window
+    KeyTable keys;                          // with the person's own
     std::string scene_switch;  // the launcher's folder for requests of another scene; empty: none
     std::string screenshot;    // empty: none
     std::string report;        // drilling report, JSON, at the end; empty: none

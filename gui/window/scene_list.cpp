@@ -13,6 +13,7 @@
 #include "ipc/base/error.hpp"
 #include "ipc/scene/bone/drilled_bone.hpp"
 #include "ipc/scene/file/scene_peek.hpp"
+#include "ipc/scene/session/session_file.hpp"
 
 namespace tact {
 namespace {
@@ -95,6 +96,11 @@ SceneRow scene_row_of(const std::filesystem::path& path, std::int64_t used_unix_
     row.size = size_text(static_cast<std::uint64_t>(info.st_size));
     row.when = ago_text(used_unix_s != 0 ? used_unix_s : info.st_mtime, now_unix_s);
     try {
+        if (is_session(path)) {
+            static_cast<void>(read_session(path));
+            row.kind = "session";
+            return row;
+        }
         const SceneMeta meta = peek_scene(path);
         row.kind = scene_kind_text(meta.kind);
         row.title = meta.title;
@@ -164,7 +170,7 @@ FolderRows folder_rows(const std::filesystem::path& folder, std::int64_t now_uni
         std::error_code ignored;
         if (it->is_directory(ignored)) {
             folders.push_back(path);
-        } else if (path.extension() == ".tact") {
+        } else if (path.extension() == ".tact" || is_session(path)) {
             scenes.push_back(path);
         } else if (it->is_regular_file(ignored)) {
             if (raw_file_text(name)[0] != '\0')

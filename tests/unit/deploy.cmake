@@ -45,7 +45,8 @@ if(TACT_GUI)
             ${CMAKE_BINARY_DIR}/window_states 1280x720 WORKING_DIRECTORY ${CMAKE_SOURCE_DIR})
         add_test(NAME figures_test COMMAND tests/e2e/figures_test.py $<TARGET_FILE_DIR:tact> WORKING_DIRECTORY ${CMAKE_SOURCE_DIR})
         add_test(NAME start_page_test COMMAND tests/e2e/start_page_test.py $<TARGET_FILE_DIR:tact> WORKING_DIRECTORY ${CMAKE_SOURCE_DIR})
-        set_tests_properties(operate_test labels_test window_states_test figures_test start_page_test
+        add_test(NAME session_test COMMAND tests/e2e/session_test.py $<TARGET_FILE_DIR:tact> WORKING_DIRECTORY ${CMAKE_SOURCE_DIR})
+        set_tests_properties(operate_test labels_test window_states_test figures_test start_page_test session_test
             PROPERTIES LABELS e2e TIMEOUT 900 SKIP_RETURN_CODE 77 RUN_SERIAL TRUE)
     endif()
 endif()

@@ -272,6 +272,15 @@ TEST(ContourOption, gives_level_colour_opacity_and_style) {
     EXPECT_EQ(o.opacity, 0.25F);
     EXPECT_EQ(o.style, SurfaceStyle::wire);
     EXPECT_EQ(read_contour_option("-0.5").value, -0.5);
+    for (const Contour& c : {Contour{1.0 / 3.0, {1.0F, 0.5F, 0.0F}, 0.3F, SurfaceStyle::wire, true},
+                             Contour{-2e-7, {0.0F, 0.0F, 1.0F}, 1.0F, std::nullopt, false}}) {
+        const ContourOption again = read_contour_option(contour_option_text(c));
+        EXPECT_EQ(again.value, c.level);
+        EXPECT_LT((*again.colour - c.colour).norm(), 0.005F);
+        EXPECT_EQ(again.opacity, c.opacity);
+        EXPECT_EQ(again.style, c.style);
+        EXPECT_EQ(again.shown, c.shown);
+    }
     EXPECT_EQ(read_contour_option("8%").value, 0.08);
     for (const char* bad : {"", "x", "1:2", "1:red", "1:", "nan", "infs", "1:-0.5", "1:ff80001"})
         EXPECT_THROW((void)read_contour_option(bad), CLI::ValidationError) << bad;
