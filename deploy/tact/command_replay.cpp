@@ -12,12 +12,13 @@
 #include "deploy/tact/replay_continue.hpp"
 #include "deploy/tact/signals.hpp"
 #include "deploy/tact/x_server.hpp"
+#include "ipc/scene/file/scene_switch.hpp"
 
 namespace tact::launch {
 namespace {
 
 struct ReplayOptions {
-    std::string file, scene, bone, session = "replay", size = "1280x800", screenshot, texts;
+    std::string file, scene, bone, session = "replay", size = "1280x800", screenshot, texts, into;
     bool show = false, json = false, headless = false;
     double from_s = 0.0, speed = 1.0, seconds = 0.0;
 };
@@ -61,14 +62,14 @@ int show(const ReplayOptions& o) {
     Child replay("tact-replay", find_program("tact-replay"), replaying);
     Child window("tact-gui", find_program("tact-gui"), drawing);
     Observer observer(o.session);
-    std::optional<ReplayMoment> moment;
+    std::filesystem::path moment;
     std::uint64_t runs = 0;
     while (!replay.poll() || !window.poll()) {
         if (signals.wait(20) != 0 || window.poll()) replay.stop();
         if (replay.poll()) window.stop();
         observer.poll();
         const auto shown = observer.seen() ? newest(observer.region().replay) : std::nullopt;
-        if (!shown || shown->runs == runs || moment) continue;
+        if (!shown || shown->runs == runs || !moment.empty()) continue;
         runs = shown->runs;
         try {
             moment = keep_moment(observer.region(), *shown, o.session);
@@ -77,14 +78,18 @@ int show(const ReplayOptions& o) {
             std::fprintf(stderr, "tact: %s\n", e.what());
         }
     }
-    if (moment) {
-        std::vector<std::string> live = run_words(*moment);
+    if (!moment.empty() && !o.into.empty()) {
+        ask_for_scene(o.into, moment);
+        return 0;
+    }
+    if (!moment.empty()) {
+        std::vector<std::string> live{"run", moment.string(), "--disarmed"};
         if (o.headless) live.emplace_back("--headless");
         live.insert(live.end(), {"--size", o.size});
         if (!o.texts.empty()) live.insert(live.end(), {"--texts", o.texts});
         std::string line = "tact";
         for (const std::string& word : live) line += " " + word;
-        std::fprintf(stderr, "live from %.3f s of the recording: %s\n", moment->at_s, line.c_str());
+        std::fprintf(stderr, "live from this moment of the recording: %s\n", line.c_str());
         screen.reset();
         exec_program("tact", live);
     }
@@ -118,7 +123,12 @@ void add_replay(CLI::App& app, int& exit_code) {
     const auto number = [&](const char* name, double& value, double low, double high, const char* help) {
         command->add_option(name, value, help)->type_name("X")->check(CLI::Range(low, high))->needs(shown);
     };
-    number("--from", o->from_s, 0.0, 1e7, "Time in the recording at which the display starts (s)");
+    number("--from", o->from_s, -1e7, 1e7,
+           "Time in the recording at which the display starts (s); negative: before its end");
+    command->add_option("--into", o->into, "Folder of a run that goes on from the moment chosen; set by tact")
+        ->type_name("DIR")
+        ->check(CLI::ExistingDirectory)
+        ->needs(shown);
     number("--speed", o->speed, 0.01, 100.0, "Speed of the display relative to the recording");
     number("--seconds", o->seconds, 0.0, 1e7,
            "Time after which the window closes (s); default: at the end of the recording");

@@ -10,6 +10,7 @@
 #include "deploy/tact/systems.hpp"
 #include "ipc/base/error.hpp"
 #include "ipc/base/state_folder.hpp"
+#include "ipc/scene/session/session_file.hpp"
 
 namespace tact::launch {
 namespace {
@@ -25,7 +26,7 @@ fs::path free_stem(const fs::path& folder, const ReplayTopic& replay) {
         fs::path(field_text(replay.name, sizeof replay.name)).stem().filename().string() + at;
     for (int i = 1;; ++i) {
         fs::path stem = folder / (i == 1 ? name : name + "-" + std::to_string(i));
-        if (!fs::exists(stem.string() + ".json") && !fs::exists(stem.string() + ".bone")) return stem;
+        if (!fs::exists(stem.string() + kSessionEnding) && !fs::exists(stem.string() + ".bone")) return stem;
     }
 }
 
@@ -48,7 +49,7 @@ fs::path keep_changes(SystemRun& run, const fs::path& file, const std::string& s
 
 }  // namespace
 
-ReplayMoment keep_moment(const RtRegion& region, const ReplayTopic& replay, const std::string& session) {
+fs::path keep_moment(const RtRegion& region, const ReplayTopic& replay, const std::string& session) {
     const fs::path folder = state_folder();
     if (folder.empty())
         throw StartupError("continuing from a replay", "neither XDG_STATE_HOME nor HOME is set",
@@ -59,27 +60,18 @@ ReplayMoment keep_moment(const RtRegion& region, const ReplayTopic& replay, cons
         throw StartupError("creating the folder " + (folder / "from-replay").string(), error.message(),
                            "make its parent folder writable");
     const fs::path stem = free_stem(folder / "from-replay", replay);
-    ReplayMoment moment{.at_s = replay.at_s,
-                        .scene = field_text(region.scene_path, sizeof region.scene_path),
-                        .poses = {},
-                        .bone = {}};
+    Session moment;
+    moment.scene = field_text(region.scene_path, sizeof region.scene_path);
     const SceneFile scene = SceneFile::open(moment.scene);
+    moment.scene_checksum = scene.checksum();
     nlohmann::json report = nlohmann::json::object();
     const std::unique_ptr<SystemRun> run = system_of(scene).open_run(scene);
     run->report(region, report);
-    if (report.contains("bodies") && !report["bodies"].empty()) {
-        moment.poses = stem.string() + ".json";
-        write_whole(moment.poses, nlohmann::json{{"bodies", report["bodies"]}}.dump(2) + "\n");
-    }
+    if (report.contains("bodies") && !report["bodies"].empty()) moment.bodies = report["bodies"].dump();
     moment.bone = keep_changes(*run, stem.string() + ".bone", session);
-    return moment;
-}
-
-std::vector<std::string> run_words(const ReplayMoment& moment) {
-    std::vector<std::string> words{"run", moment.scene.string(), "--disarmed"};
-    if (!moment.poses.empty()) words.insert(words.end(), {"--poses", moment.poses.string()});
-    if (!moment.bone.empty()) words.insert(words.end(), {"--resume", moment.bone.string()});
-    return words;
+    fs::path file = stem.string() + kSessionEnding;
+    write_whole(file, session_text(moment, file));
+    return file;
 }
 
 }  // namespace tact::launch

@@ -13,6 +13,7 @@
 
 #include "deploy/tact/child.hpp"
 #include "deploy/tact/files.hpp"
+#include "deploy/tact/look_back.hpp"
 #include "deploy/tact/observer.hpp"
 #include "deploy/tact/run_children.hpp"
 #include "deploy/tact/run_record.hpp"
@@ -23,6 +24,7 @@
 #include "deploy/tact/systems.hpp"
 #include "deploy/tact/x_server.hpp"
 #include "ipc/base/error.hpp"
+#include "ipc/scene/file/scene_switch.hpp"
 
 namespace tact::launch {
 namespace {
@@ -33,6 +35,7 @@ constexpr auto kSampleEvery = std::chrono::milliseconds(100);
 constexpr auto kLineEvery = std::chrono::seconds(1);
 constexpr auto kLeaveCoreEvery = std::chrono::seconds(1);
 constexpr int kHeaderEvery = 20;
+constexpr const char* kOwnFlightsKept = "8";  // some 14 MB each
 
 class OneRun {
 public:
@@ -82,6 +85,9 @@ private:
             options_.drop_controller_option("--resume");
             if (asked_.bodies) options_.drop_controller_option("--poses");
         }
+        if (asked_.bodies)  // the bodies are where the session has them
+            for (const char* const moved : {"--start-offset-a", "--start-rotation-deg", "--copies"})
+                options_.drop_controller_option(moved);
         const auto begin_with = [this](bool wanted, const char* option, const std::filesystem::path& file) {
             if (wanted && !options_.has_controller_option(option))
                 options_.controller.insert(options_.controller.end(), {option, file.string()});
@@ -113,6 +119,8 @@ private:
         if (!options_.flight.empty()) {
             ChildSettings flight;
             flight.arguments = {"--flight", options_.flight.string(), "--session", options_.session};
+            if (!options_.flight_typed)
+                flight.arguments.insert(flight.arguments.end(), {"--keep", kOwnFlightsKept});
             flight.grace = options_.grace;
             flight_.emplace("tact-record", find_program("tact-record", options_.programs), flight);
         }
@@ -161,11 +169,27 @@ private:
         judge(now);
         if (scene_switch_ != nullptr && !ending_ && now >= asked_due_) {
             asked_due_ = now + kSampleEvery;
+            look_back();
             if ((next_ = scene_switch_->poll(file_))) {
                 end(true, next_->bone.empty() ? "another scene was requested: " + next_->scene.string()
                                               : "drilled bone was requested: " + next_->bone.string());
                 rt_->stop();  // at once: the force ends before the window closes
             }
+        }
+    }
+
+    void look_back() {
+        if (!past_) past_.emplace(options_, scene_switch_->folder(), facts_.scene);
+        try {
+            if (const auto ago_s = take_asked_past(scene_switch_->folder())) {
+                if (!flight_ || flight_->poll())
+                    throw StartupError("looking back", "this run has no flight recorder",
+                                       "start it again without --no-flight");
+                past_->begin(*ago_s, flight_->pid());
+            }
+            past_->poll();
+        } catch (const StartupError& e) {
+            scene_switch_->refuse(e.what());
         }
     }
 
@@ -235,6 +259,7 @@ private:
     [[nodiscard]] bool over() { return ending_ && rt_->poll() && (!gui_ || gui_->poll()); }
 
     int finish() {
+        if (past_) past_->stop();
         for (std::optional<Child>* const recorder :
              {&record_, &flight_, &keeper_}) {  // they end by themselves after the controller
             if (!*recorder) continue;
@@ -305,6 +330,7 @@ private:
     std::optional<XServer> x_;
     std::vector<std::pair<std::string, std::string>> display_;
     std::optional<Child> rt_, gui_, record_, flight_, keeper_;
+    std::optional<LookBack> past_;
     bool ending_ = false;
     int lines_ = 0;
     Instant started_{}, sample_due_{}, line_due_{}, core_due_{}, asked_due_{};

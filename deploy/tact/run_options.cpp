@@ -7,6 +7,7 @@
 #include "deploy/tact/probe.hpp"
 #include "deploy/tact/systems.hpp"
 #include "ipc/base/error.hpp"
+#include "ipc/base/state_folder.hpp"
 
 namespace tact::launch {
 namespace {
@@ -126,6 +127,10 @@ void RunOptions::settle() {
         throw StartupError("reading the options", "--training needs a window, and --no-gui starts none",
                            "remove one of the two; --headless draws without a screen");
     if (!json.empty()) json = std::filesystem::absolute(json);
+    flight_typed = !flight.empty();
+    // A person in front of a window can look back.
+    if (const auto state = state_folder(); flight.empty() && gui && !headless && !no_flight && !state.empty())
+        flight = state / "flight";
     if (!flight.empty()) flight = std::filesystem::absolute(flight);
     if (!record.empty()) record = std::filesystem::absolute(record);
     if (!record.empty() && std::filesystem::exists(record))
@@ -166,8 +171,11 @@ void add_run_options(CLI::App& app, RunOptions& options) {
         ->type_name("FILE.h5");
     app.add_option(
            "--flight", options.flight,
-           "Folder for recordings of the last 30 s, saved at an overrun, a fault or the key M in the window")
+           "Folder for recordings of the last 30 s, saved at an overrun, a fault or the key M in the window; "
+           "default with a window: in $XDG_STATE_HOME/tact/flight")
         ->type_name("DIR");
+    app.add_flag("--no-flight", options.no_flight, "Do not keep the last 30 s, also with a window")
+        ->excludes("--flight");
     app.add_option("--keep", options.keep,
                    "New file for the drilled bone, written while it is drilled; default: in "
                    "$XDG_STATE_HOME/tact/drilled; continue with it by --resume")

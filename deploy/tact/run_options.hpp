@@ -22,6 +22,8 @@ struct RunOptions {
     std::filesystem::path record;  // every cycle of the run, HDF5
     std::filesystem::path keep;    // what the run changes in its scene; empty: a new file in the state folder
     std::filesystem::path flight;  // folder for recordings of the last seconds, saved at an event
+    bool no_flight = false;        // a window has a flight recorder otherwise
+    bool flight_typed = false;     // its folder was chosen
     std::string session = "default";
     std::string size = "1280x800";   // of the window
     bool size_given = false;         // given on the command line

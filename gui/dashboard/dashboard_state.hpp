@@ -71,6 +71,7 @@ struct DashboardState {
     bool attached = false;
     bool watching = false;  // an instructor's window: it changes nothing
     ReplayState replay;
+    PastState past;
     // What the user asks for reaches a running controller.
     [[nodiscard]] bool commands() const { return attached && !watching && !replay.shown; }
     std::string link_text;

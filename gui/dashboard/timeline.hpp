@@ -1,4 +1,5 @@
-// The timeline of a replay: a strip between the 3D view and the plots, with play, pause, step, speed, and marks at events.
+// The timeline, a strip between the 3D view and the plots: of a replay, with play, pause, step, speed, and marks at events; of a live run, the last
+// seconds, which its flight recorder keeps, to look back.
 //
 // Thread   frame thread, inside an ImGui frame
 #pragma once
@@ -8,6 +9,7 @@
 #include <vector>
 
 #include "gui/dashboard/pixel_rect.hpp"
+#include "gui/dashboard/status_text.hpp"
 #include "gui/dashboard/theme.hpp"
 #include "ipc/topics/replay.hpp"
 
@@ -34,10 +36,24 @@ struct ReplayState {
     std::vector<TimelineRequest> requests;  // emptied by the application
 };
 
-inline constexpr float kTimelineHeight = 66.0F;  // at scale 1
+// The last seconds of a live run.
+struct PastState {
+    static constexpr double kLengthS = 30.0;  // that a flight recorder keeps
+    bool shown = false;
+    struct Mark {
+        double ago_s = 0.0;
+        Grade grade = Grade::unknown;
+        std::string text;
+    };
+    std::vector<Mark> marks;
+    double wanted_ago_s = -1.0;  // the moment that the person wants to see; below 0: none
+};
+
+inline constexpr float kTimelineHeight = 66.0F, kPastHeight = 38.0F;  // at scale 1
 
 // "paused at 12.340 s of 130.0 s", "playing at 0.5 x, 12.3 s of 130.0 s", "looking for 40.0 s: 43 %".
 [[nodiscard]] std::string replay_text(const ReplayTopic& replay);
 void draw_timeline(const Theme& theme, ReplayState& state, const PixelRect& card);
+void draw_past(const Theme& theme, PastState& state, const PixelRect& card);
 
 }  // namespace tact

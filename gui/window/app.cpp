@@ -167,6 +167,7 @@ void GuiApp::follow_controller(std::int64_t now_ns) {
     show_controller(controller_, commands_, state_);
     follow_replay();
     follow_recorder();
+    follow_past();
 }
 
 // All times are those of the run that was recorded, and its events come again.

@@ -61,6 +61,7 @@ private:
     void begin_replay();
     void follow_replay();
     void follow_recorder();
+    void follow_past();
     void tell(const StatusText& what);
     void start_loading(const std::string& path);
     void follow_scene();

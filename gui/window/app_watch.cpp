@@ -1,10 +1,14 @@
-// What the window itself has to tell: an instructor's marks, and the recording that it started.
+// What the window itself has to tell: an instructor's marks, the recording that it started, and the past that a person looks back to.
 #include <imgui.h>
 
+#include <algorithm>
 #include <utility>
 
+#include "gui/dashboard/widgets.hpp"
 #include "gui/window/app_parts.hpp"
+#include "ipc/base/error.hpp"
 #include "ipc/base/units.hpp"
+#include "ipc/scene/file/scene_switch.hpp"
 
 namespace tact {
 namespace {
@@ -23,6 +27,27 @@ void GuiApp::follow_recorder() {
     if (std::exchange(state_.record_wanted, false)) tell(recorder_.toggle());
     if (const auto ended = recorder_.poll()) tell(*ended);
     state_.own_recording = recorder_.running();
+}
+
+// The launcher shows the past; without it, or without a flight recorder, there is none to show.
+void GuiApp::follow_past() {
+    PastState& past = state_.past;
+    past.shown = !options_.scene_switch.empty() && state_.flights > 0 && controller_.attached() &&
+                 !controller_.watches();
+    past.marks.clear();
+    for (const EventLine& e : state_.events) {
+        const double ago_s = 1e-9 * static_cast<double>(state_.now_ns - e.taken_at_ns);
+        if (ago_s > PastState::kLengthS) break;
+        past.marks.push_back({std::max(ago_s, 0.0), e.grade, e.text});
+    }
+    const double wanted_s = std::exchange(past.wanted_ago_s, -1.0);
+    if (wanted_s < 0.0) return;
+    try {
+        ask_for_past(options_.scene_switch, wanted_s);
+        tell({Grade::unknown, format("looking back %.1f s: a window opens", wanted_s)});
+    } catch (const StartupError& e) {
+        tell({Grade::bad, e.what()});
+    }
 }
 
 void GuiApp::mark_under_pointer() {

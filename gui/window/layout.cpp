@@ -13,7 +13,9 @@ MiddleCard middle_card(const PanelState& state, const SystemPanels& system) {
     return {system.card_size(), false};
 }
 
-Strip strip_of(const PanelState& state) { return {state.strip == 1, state.replay.shown}; }
+Strip strip_of(const PanelState& state) {
+    return {state.strip == 1, state.replay.shown, state.past.shown && !state.replay.shown};
+}
 
 Layout layout_for(const Theme& theme, float width_px, float height_px, const MiddleCard& middle,
                   Strip strip) {
@@ -22,8 +24,10 @@ Layout layout_for(const Theme& theme, float width_px, float height_px, const Mid
     const float plots = strip.traces
                             ? std::round(std::clamp(0.5F * height_px, theme.px(196.0F), theme.px(420.0F)))
                             : std::round(std::min(theme.px(196.0F), 0.45F * height_px));
-    const float timeline =
-        strip.timeline ? std::round(std::min(theme.px(kTimelineHeight), 0.15F * height_px)) : 0.0F;
+    const float timeline = strip.timeline || strip.past
+                               ? std::round(std::min(theme.px(strip.timeline ? kTimelineHeight : kPastHeight),
+                                                     0.15F * height_px))
+                               : 0.0F;
     const float below = plots + timeline;
     const auto at_least_one = [](float v) { return std::max(v, 1.0F); };
     Layout l;
@@ -67,7 +71,10 @@ void draw_dashboard(const Theme& theme, PanelState& state, SystemPanels& system,
     if (!middle.calibration) draw_health(theme, state, layout.health);
     if (middle.size.height > 0.0F) system.draw_card(theme, layout.middle, state);
     if (!middle.calibration) draw_scene(theme, state, system, layout.scene);
-    if (state.replay.shown) draw_timeline(theme, state.replay, layout.timeline);
+    if (state.replay.shown)
+        draw_timeline(theme, state.replay, layout.timeline);
+    else if (state.past.shown)
+        draw_past(theme, state.past, layout.timeline);
     draw_plots(theme, state, layout.plots);
     draw_events(theme, state, layout.events);
     const auto button = [&](const char* window, const char* text, KeyAction key, float top) {

@@ -17,7 +17,7 @@ namespace tact {
 // areas through its font texture, which takes several milliseconds in software rendering.
 struct Layout {
     PixelRect view, health, middle, scene, plots, events;
-    PixelRect timeline{};  // of a replay
+    PixelRect timeline{};
 
     [[nodiscard]] std::array<PixelRect, 6> cards() const {
         return {health, middle, scene, timeline, plots, events};
@@ -31,9 +31,9 @@ struct MiddleCard {
     bool calibration = false;
 };
 [[nodiscard]] MiddleCard middle_card(const PanelState& state, const SystemPanels& system);
-// What the strip below the view holds: traces need more height than plots, and a replay has a timeline.
+// What the strip below the view holds: traces need more height than plots; a replay has a timeline, and a live run that can look back a lower one.
 struct Strip {
-    bool traces = false, timeline = false;
+    bool traces = false, timeline = false, past = false;
 };
 [[nodiscard]] Strip strip_of(const PanelState& state);
 [[nodiscard]] Layout layout_for(const Theme& theme, float width_px, float height_px, const MiddleCard& middle,

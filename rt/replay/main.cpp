@@ -143,8 +143,9 @@ int main(int argc, char** argv) {
         ->type_name("NAME")
         ->capture_default_str()
         ->needs(show);
-    app.add_option("--from", w.from_s, "Time in the recording at which the display starts (s)")
-        ->check(CLI::Range(0.0, 1e7))
+    app.add_option("--from", w.from_s,
+                   "Time in the recording at which the display starts (s); negative: before its end")
+        ->check(CLI::Range(-1e7, 1e7))
         ->needs(show);
     app.add_option("--speed", w.speed, "Speed of the display relative to the recording")
         ->check(CLI::Range(0.01, 100.0))

@@ -50,7 +50,9 @@ void ReplayPlayer::run(const std::function<bool()>& stopped) {
     shift_ = Monotonic::now() -
              instant_from_ns(std::clamp<std::int64_t>(shown_->recording().about().begin_ns, 0, kMostNs));
     shown_->shift_by(shift_);
-    seek({settings_.from_s, 0});
+    const RecordingReader::About& about = shown_->recording().about();
+    const double length_s = std::clamp(seconds_since(about.begin_ns, about.end_ns), 0.0, kMostS);
+    seek({settings_.from_s < 0.0 ? std::max(length_s + settings_.from_s, 0.0) : settings_.from_s, 0});
     while (!stopped()) {
         const bool waits = act_ == ReplayAct::paused || act_ == ReplayAct::ended;
         if (waits || Monotonic::now() - served_ > kServeEvery) attend(waits ? 10 : 0);

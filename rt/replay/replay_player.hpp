@@ -24,9 +24,9 @@ public:
     struct Settings {
         ReplaySettings replay;
         std::string session;
-        double speed = 1.0, from_s = 0.0;
-        double wait_s = 30.0;  // for a window
-        bool can_run = false;  // as ReplayTopic::can_run
+        double speed = 1.0, from_s = 0.0;  // from_s below 0: before the end
+        double wait_s = 30.0;              // for a window
+        bool can_run = false;              // as ReplayTopic::can_run
     };
     // first: at its first step.
     ReplayPlayer(Settings settings, std::unique_ptr<Replay> first);

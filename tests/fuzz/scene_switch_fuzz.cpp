@@ -54,6 +54,17 @@ void judge_demo(const Folder& folder, std::string_view text) {
     require(!take_asked_demo(folder.path));
 }
 
+void judge_past(const Folder& folder, std::string_view text) {
+    folder.put("past", text);
+    try {
+        const auto ago_s = take_asked_past(folder.path);
+        require(ago_s.has_value() && *ago_s >= 0.0 && *ago_s <= kPastMostS);
+    } catch (const StartupError& error) {
+        require(std::strstr(error.what(), "fix:") != nullptr);
+    }
+    require(!take_asked_past(folder.path));
+}
+
 }  // namespace
 
 bool run(std::span<const std::byte> input) {
@@ -61,6 +72,7 @@ bool run(std::span<const std::byte> input) {
     const std::string_view text(reinterpret_cast<const char*>(input.data()), input.size());
     judge_refusal(folder, text);
     judge_demo(folder, text);
+    judge_past(folder, text);
     folder.put("open", text);
     std::optional<std::filesystem::path> asked;
     try {
@@ -82,8 +94,8 @@ bool run(std::span<const std::byte> input) {
 std::vector<Input> seeds() {
     std::vector<Input> all;
     for (const std::string& text :
-         {std::string("dock\n"), std::string("/data/a b.tact\n"), std::string("/a/../\u00fc/./b//c.tact\n"),
-          "/" + std::string(kAskedPathMost - 2, 'x') + "\n"})
+         {std::string("dock\n"), std::string("12.5\n"), std::string("/data/a b.tact\n"),
+          std::string("/a/../\u00fc/./b//c.tact\n"), "/" + std::string(kAskedPathMost - 2, 'x') + "\n"})
         all.emplace_back(std::as_bytes(std::span(text)).begin(), std::as_bytes(std::span(text)).end());
     return all;
 }

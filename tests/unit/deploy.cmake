@@ -17,7 +17,7 @@ tact_tests(drill_command_tests SOURCES
 tact_test(unit/deploy_info_test.cpp USES launch force scene reference SYSTEM nlohmann_json::nlohmann_json)
 tact_test(unit/deploy_run_test.cpp USES launch shm topics scene base)
 tact_test(unit/deploy_run_save_test.cpp USES launch shm topics scene base)
-tact_test(unit/deploy_scene_switch_test.cpp USES launch shm topics scene base)
+tact_test(unit/deploy_scene_switch_test.cpp USES launch shm topics scene scene_session base)
 add_test(NAME deploy_run_script_test COMMAND tests/unit/deploy_run_script_test.sh WORKING_DIRECTORY ${CMAKE_SOURCE_DIR})
 if(TACT_GUI AND NOT TACT_SANITIZE)
     add_test(NAME deploy_install_test COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/unit/deploy_install_test.sh ${CMAKE_BINARY_DIR} ${CMAKE_SOURCE_DIR})
@@ -46,7 +46,8 @@ if(TACT_GUI)
         add_test(NAME figures_test COMMAND tests/e2e/figures_test.py $<TARGET_FILE_DIR:tact> WORKING_DIRECTORY ${CMAKE_SOURCE_DIR})
         add_test(NAME start_page_test COMMAND tests/e2e/start_page_test.py $<TARGET_FILE_DIR:tact> WORKING_DIRECTORY ${CMAKE_SOURCE_DIR})
         add_test(NAME session_test COMMAND tests/e2e/session_test.py $<TARGET_FILE_DIR:tact> WORKING_DIRECTORY ${CMAKE_SOURCE_DIR})
-        set_tests_properties(operate_test labels_test window_states_test figures_test start_page_test session_test
+        add_test(NAME look_back_test COMMAND tests/e2e/look_back_test.py $<TARGET_FILE_DIR:tact> WORKING_DIRECTORY ${CMAKE_SOURCE_DIR})
+        set_tests_properties(operate_test labels_test window_states_test figures_test start_page_test session_test look_back_test
             PROPERTIES LABELS e2e TIMEOUT 900 SKIP_RETURN_CODE 77 RUN_SERIAL TRUE)
     endif()
 endif()

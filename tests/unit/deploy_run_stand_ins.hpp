@@ -188,6 +188,7 @@ protected:
         scene_ = scratch_.path() / "sample.tact";
         sample::scene().write(scene_);
         options_.programs = scratch_.path();
+        options_.no_flight = true;  // there is no substitute for tact-record
         options_.json = scratch_.path() / "out" / "run.json";
         options_.seconds = 0.3;
         options_.grace = std::chrono::minutes(1);  // a busy machine must not look like a hang

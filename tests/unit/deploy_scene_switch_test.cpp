@@ -4,6 +4,7 @@
 
 #include "deploy/tact/scene_switch.hpp"
 #include "ipc/scene/bone/drilled_bone.hpp"
+#include "ipc/scene/session/session_file.hpp"
 #include "tests/unit/deploy_run_stand_ins.hpp"
 
 namespace tact::launch {
@@ -161,6 +162,56 @@ TEST_F(OtherScene, a_requested_demo_is_one_word_and_is_removed_when_read) {
         std::ofstream(folder / "demo", std::ios::binary) << bad;
         EXPECT_THROW((void)take_asked_demo(folder), StartupError) << bad;
         EXPECT_FALSE(std::filesystem::exists(folder / "demo"));
+    }
+}
+
+TEST_F(OtherScene, a_session_starts_its_scene_with_its_bodies_and_the_window_with_the_rest) {
+    const std::filesystem::path file = scratch_.path() / "a.tact-session";
+    Session session;
+    session.scene = other_;
+    session.scene_checksum = SceneFile::open(other_).checksum();
+    session.bodies = R"([{"id":1}])";
+    write_whole(file, session_text(session, file));
+    options_.controller = {"--rate", "500", "--start-offset-a", "15"};
+    unsetenv("ASKS_FOR");
+    options_.seconds = 0.3;
+    scene_ = file;
+    ASSERT_EQ(run(), 0) << said_;
+    EXPECT_EQ(
+        lines("controllers"),
+        (std::vector<std::string>{other_.string() + " --session default --arm-with-gui --rate 500 --poses " +
+                                  file.string()}));
+    ASSERT_EQ(lines("windows").size(), 1U);
+    EXPECT_NE(lines("windows")[0].find("--open-session " + file.string()), std::string::npos);
+}
+
+TEST_F(OtherScene, a_run_in_a_window_has_a_flight_recorder_unless_it_is_refused) {
+    setenv("XDG_STATE_HOME", scratch_.path().c_str(), 1);
+    RunOptions in_window, alone, headless, refused, chosen;
+    alone.gui = false;
+    headless.headless = true;
+    refused.no_flight = true;
+    chosen.flight = "/data/flights";
+    for (RunOptions* const o : {&in_window, &alone, &headless, &refused, &chosen}) o->settle();
+    EXPECT_EQ(in_window.flight, scratch_.path() / "tact/flight");
+    EXPECT_TRUE(alone.flight.empty() && headless.flight.empty() && refused.flight.empty());
+    EXPECT_EQ(chosen.flight, "/data/flights");
+    EXPECT_TRUE(chosen.flight_typed && !in_window.flight_typed);
+    unsetenv("XDG_STATE_HOME");
+}
+
+TEST_F(OtherScene, a_moment_to_look_back_to_is_a_time_that_passed) {
+    const auto folder = scratch_.path();
+    EXPECT_EQ(take_asked_past(folder), std::nullopt);
+    ask_for_past(folder, 12.5);
+    EXPECT_EQ(take_asked_past(folder), 12.5);
+    EXPECT_EQ(take_asked_past(folder), std::nullopt);
+    for (const std::string& bad :
+         {std::string(), std::string("\n"), std::string("-1\n"), std::string("nan\n"), std::string("inf\n"),
+          std::string("601\n"), std::string("1"), std::string("1 \n"), std::string(40, '1') + "\n"}) {
+        std::ofstream(folder / "past", std::ios::binary) << bad;
+        EXPECT_THROW((void)take_asked_past(folder), StartupError) << bad;
+        EXPECT_FALSE(std::filesystem::exists(folder / "past"));
     }
 }
 

@@ -73,6 +73,41 @@ TEST_F(Timeline, lies_between_the_view_and_the_plots_and_covers_neither) {
     EXPECT_EQ(layout().timeline.height, 0.0F);
 }
 
+// The place on the line is a time; a mark under the mouse is a moment of its own.
+TEST_F(Timeline, of_a_live_run_a_click_looks_back) {
+    DashboardState& s = dashboard_.state;
+    s.replay.shown = false;
+    s.past.shown = true;
+    s.past.marks = {{10.0, Grade::watch, "overrun"}};
+    dashboard_.frame();
+    const Layout l = layout();
+    EXPECT_GT(l.timeline.height, 25.0F);
+    EXPECT_LE(l.timeline.y + l.timeline.height, l.plots.y);
+    ImGuiWindow* const window = ImGui::FindWindowByName("Timeline");
+    ASSERT_NE(window, nullptr);
+    const ImVec2 somewhere = dashboard_.find("Timeline", "##past");
+    const ImGuiID line = window->GetID("##past");
+    float left = 1e9F, right = 0.0F;
+    for (float x = l.timeline.x; x < l.timeline.x + l.timeline.width; x += 1.0F) {
+        dashboard_.move({x, somewhere.y});
+        if (ImGui::GetCurrentContext()->HoveredId != line) continue;
+        left = std::min(left, x);
+        right = std::max(right, x);
+    }
+    ASSERT_GT(right, left + 300.0F);
+    for (const double ago_s : {25.0, 10.05, 2.0}) {
+        const float x = right - (right - left) * static_cast<float>(ago_s / PastState::kLengthS);
+        dashboard_.click({x, somewhere.y});
+        EXPECT_NEAR(s.past.wanted_ago_s, ago_s, 0.15);
+        if (ago_s == 10.05) {
+            EXPECT_EQ(s.past.wanted_ago_s, 10.0) << "the mark is at 10 s";
+        }
+        s.past.wanted_ago_s = -1.0;
+    }
+    s.past.shown = false;
+    EXPECT_EQ(layout().timeline.height, 0.0F);
+}
+
 TEST_F(Timeline, its_buttons_play_step_and_run) {
     for (const auto& [label, action, value] :
          {std::tuple{"|<", TimelineAction::seek, 0.0}, std::tuple{"<", TimelineAction::step, -1.0},

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <charconv>
 
 #include "ipc/base/error.hpp"
 #include "ipc/base/whole_file.hpp"
@@ -15,6 +16,8 @@ namespace {
 
 constexpr const char* kAsked = "open";
 constexpr const char* kDemo = "demo";
+constexpr const char* kPast = "past";
+constexpr std::size_t kPastTextMost = 32;
 constexpr const char* kRefused = "refused";
 
 // Reads and removes a small file; nothing: it does not exist. A file of more than `most` bytes, or not a
@@ -72,6 +75,23 @@ std::optional<std::string> take_asked_demo(const std::filesystem::path& folder) 
         throw StartupError("starting a demo", "the request contains no name of lower-case letters",
                            "choose the demo again, or use tact demo");
     return text;
+}
+
+void ask_for_past(const std::filesystem::path& folder, double ago_s) {
+    char text[kPastTextMost];
+    std::snprintf(text, sizeof text, "%.3f\n", ago_s);
+    write_whole_file(folder / kPast, text);
+}
+
+std::optional<double> take_asked_past(const std::filesystem::path& folder) {
+    const auto text = take_small(folder / kPast, kPastTextMost);
+    if (!text) return std::nullopt;
+    double ago_s = 0.0;
+    const auto [end, error] = std::from_chars(text->data(), text->data() + text->size(), ago_s);
+    if (error != std::errc() || std::string_view(end, text->data() + text->size()) != "\n" ||
+        !(ago_s >= 0.0) || ago_s > kPastMostS)
+        throw StartupError("looking back", "the request contains no time", "choose the moment again");
+    return ago_s;
 }
 
 void refuse_scene(const std::filesystem::path& folder, const std::string& why) {
