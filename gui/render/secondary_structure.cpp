@@ -47,6 +47,8 @@ bool fits(const Chain& c, std::size_t i, const Geometry& g, bool with_2) {
     const bool far = i + 3 < c.size() && g.to_3.has((c[i + 2] - c[i - 1]).norm()) &&
                      g.to_4.has((c[i + 3] - c[i - 1]).norm()) &&
                      (!with_2 || g.to_2.has((c[i + 1] - c[i - 1]).norm()));
+    // Distances are the same in a mirror.
+    if (far && !with_2 && dihedral_at(c, i) < 0.0F) return false;
     return far || (g.angle.has_angle(angle_at(c, i)) && g.dihedral.has_angle(dihedral_at(c, i)));
 }
 

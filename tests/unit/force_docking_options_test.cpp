@@ -307,6 +307,36 @@ TEST(DockingOptions, places_found_pull_their_own_body_gently_and_begin_smoothly)
     EXPECT_EQ(force_at(*model, other).force_n, force_at(*plain, other).force_n);
 }
 
+// Far from any other change, which would fade too.
+TEST(DockingOptions, places_that_come_and_go_change_the_force_smoothly) {
+    const auto model = make_model();
+    ToolState tool;
+    model->reset(tool);
+    const Pose here = model->bodies().T_model_body[0];
+    Vec3 before = Vec3::Zero();
+    const auto steps = [&] {
+        double most = 0.0;
+        for (int i = 0; i < 4 * ForceFade::ramp_steps(1e-3); ++i) {
+            const Vec3 f = model->step(tool, Budget{}).wrench_world.force_n;
+            most = std::max(most, (f - before).norm());
+            before = f;
+        }
+        return most;
+    };
+    ASSERT_TRUE(set_option(*model, kDockingPull, true));
+    (void)steps();
+    const Vec3 without = force_at(*model, here).force_n;
+    ASSERT_TRUE(add_place(*model, 1, beside_home(30.0)));
+    EXPECT_GT((force_at(*model, here).force_n - without).norm(), 0.3);
+    EXPECT_LT(steps(), 0.06);
+    ModelOrder clear;
+    clear.command = static_cast<std::uint8_t>(CommandKind::clear_found_places);
+    clear.kind = ModelOrder::Kind::setting;
+    ASSERT_TRUE(model->order(clear));
+    EXPECT_LT(steps(), 0.06);
+    EXPECT_LT((before - without).norm(), 1e-6);
+}
+
 TEST(DockingOptions, impossible_places_are_refused) {
     const auto model = make_model();
     EXPECT_FALSE(add_place(*model, 9, beside_home(0.0)));
