@@ -68,6 +68,17 @@ inline const Scene& plane() {
     return *made;
 }
 
+// The same, turned so that no coordinate of its vertices is exact.
+inline Quat tilt() { return quat_from_rotation_vector(Vec3(0.31, -0.72, 0.53)); }
+inline const Scene& tilted_plane() {
+    static const auto made = [] {
+        TriangleMesh mesh;
+        add_square(mesh, tilt() * Vec3::UnitX(), tilt() * Vec3::UnitY(), 57);
+        return scene(std::move(mesh));
+    }();
+    return *made;
+}
+
 // Three squares that intersect at the origin and form eight corners.
 inline const Scene& crossing() {
     static const auto made = [] {

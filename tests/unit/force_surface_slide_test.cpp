@@ -96,6 +96,29 @@ TEST(Surface, on_a_plate_of_many_triangles_the_force_stays_in_the_friction_cone_
     }
 }
 
+// Where rounding puts the ball a little below its plane, the edge of the next triangle must not hold it.
+TEST(Surface, on_a_tilted_plate_no_edge_holds_the_ball) {
+    const Vec3 up = tilt() * Vec3::UnitY();
+    for (const double radius_m : {0.0, 0.003}) {
+        const auto place = [&](double t_s) {
+            const double angle = 10.0 * t_s;
+            return Vec3(tilt() *
+                        Vec3(0.02 * std::sin(angle), radius_m - 0.002, 0.015 * std::sin(1.3 * angle)));
+        };
+        Hand hand(tilted_plane(), plain(radius_m), place(0.0) + 0.006 * up);
+        (void)hand.lead(place(0.0));
+        std::uint64_t moves = 0;
+        for (int i = 0; i < 3000; ++i) {
+            const Vec3 force_n = hand.step(place(1e-3 * i));
+            moves += hand.model->contact().moves;
+
+            const double along_n = (force_n - force_n.dot(up) * up).norm();
+            ASSERT_LE(along_n, 0.002 * force_n.dot(up)) << "radius " << radius_m << ", step " << i;
+        }
+        EXPECT_LE(moves, 3010U) << "a step takes one move, because no edge stands in its way";
+    }
+}
+
 // Friction may hold a proxy that lagged once where it is: the bound may not fade with the way of the tool.
 TEST(Surface, after_a_lag_the_error_bounds_the_difference_for_as_long_as_the_tool_touches) {
     int late_differences = 0;
