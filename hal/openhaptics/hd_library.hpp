@@ -8,22 +8,19 @@
 #include <string>
 
 #include "hal/openhaptics/hd_api.hpp"
+#include "hal/vendor/shared_library.hpp"
 
 namespace tact::hd {
 
 class Library {
 public:
     explicit Library(const std::string& path);  // empty: searches the places used by the vendor's installers
-    ~Library();
-    Library(const Library&) = delete;
-    Library& operator=(const Library&) = delete;
 
     [[nodiscard]] const Api& api() const noexcept { return api_; }
-    [[nodiscard]] const std::string& path() const noexcept { return path_; }
+    [[nodiscard]] const std::string& path() const noexcept { return library_.path(); }
 
 private:
-    void* handle_ = nullptr;
-    std::string path_;
+    vendor::SharedLibrary library_;
     Api api_;
 };
 

@@ -25,7 +25,7 @@ bool rotation(const Eigen::Matrix3d& r) noexcept {
 }  // namespace
 
 Pump::Pump(const Api& api, Handle device)
-    : api_(&api), device_(device), mailbox_(std::make_unique<Mailbox>()) {}
+    : api_(&api), device_(device), published_(std::make_unique<Latest<Counts>>()) {}
 
 Enum Pump::tick(Instant now) noexcept {
     if (ended_) return kCallbackDone;
@@ -69,8 +69,8 @@ void Pump::take_sample(Instant now) noexcept {
         sample_.angular_rad_s[i] = turn_rad_s[i];
     }
     for (int i = 0; i < 4; ++i) sample_.quat_xyzw[i] = q.coeffs()[i];
-    if (answered_ns_ != 0) sample_.delay_ns = to_ns(now) - answered_ns_ + settings_.transport.count();
-    answered_ns_ = 0;
+    if (const std::int64_t answered_ns = gate_.take_answered(); answered_ns != 0)
+        sample_.delay_ns = to_ns(now) - answered_ns + settings_.transport.count();
     sample_.buttons = static_cast<std::uint32_t>(buttons);
     sample_.hand_present = inkwell_ ? 0 : 1;
     sample_.taken_at_ns = to_ns(now);
@@ -92,15 +92,15 @@ bool Pump::confirmed(Instant now) noexcept {
 void Pump::calibrate(Instant now) noexcept {
     const bool before = calibrated_;
     const bool confirm = confirmed(now);
-    if (before && (state_ == DeviceState::powered || counts_.ticks % kCalibrationEvery != 0) &&
-        !(inkwell_ && state_ == DeviceState::ready))
+    if (before && (gate_.state() == DeviceState::powered || counts_.ticks % kCalibrationEvery != 0) &&
+        !(inkwell_ && gate_.state() == DeviceState::ready))
         return;
     const Enum status = api_->hdCheckCalibration();
     if (status == kCalibrationOk) {
         calibrated_ = true;
         return;
     }
-    if (state_ == DeviceState::powered) return;  // the position must not jump under a force
+    if (gate_.state() == DeviceState::powered) return;  // the position must not jump under a force
     int style = 0;
     if ((settings_.styles & kStyleAutomatic) != 0 && status == kCalibrationNeedsUpdate)
         style = kStyleAutomatic;
@@ -130,8 +130,7 @@ void Pump::take_errors(Instant now) noexcept {
 void Pump::fail(FaultKind kind, bool ends, Instant now) noexcept {
     ++counts_.faults[static_cast<std::size_t>(kind)];
     counts_.last_kind = kind;
-    state_ = DeviceState::fault;
-    failed_at_ = now;
+    gate_.fail(now);
     ended_ = ended_ || ends;
     // The next frame carries zero force; the output is off at once.
     if (output_on_) api_->hdDisable(kForceOutput);
@@ -139,38 +138,14 @@ void Pump::fail(FaultKind kind, bool ends, Instant now) noexcept {
 }
 
 void Pump::apply(Instant now) noexcept {
-    if (!mailbox_->command.read(command_)) {
-        if (mailbox_->command.count() == 0) return;  // lapped: the last command and its watchdog stay
-    }
-    if (command_.heartbeat != heartbeat_) {
-        heartbeat_ = command_.heartbeat;
-        heard_at_ = now;
-        answered_ns_ = command_.answers_ns;
-    }
-    const bool on = command_.enable != 0;
-    const bool edge = on && command_.edge != edge_;
-    const bool relaxed = command_.relaxed != relaxed_;
-    // Before calibration, an edge is kept until calibration completes, unless enable falls again.
-    if (calibrated_ || relaxed || state_ == DeviceState::fault) edge_ = command_.edge;
-    relaxed_ = command_.relaxed;
-    if (state_ == DeviceState::fault) {
-        if (!on && now - failed_at_ >= kQuiet && !ended_) state_ = DeviceState::ready;
-        return;
-    }
-    if (!on || (relaxed && !edge)) {
-        state_ = DeviceState::ready;
-    } else if (edge && calibrated_) {
-        state_ = DeviceState::powered;
-    }
-    if (state_ == DeviceState::powered && now - heard_at_ > settings_.watchdog) {
-        state_ = DeviceState::watchdog_tripped;
-        ++counts_.watchdog_trips;
-    }
+    if (!mail_.fetch(command_)) return;
+    gate_.apply(command_, now, calibrated_, ended_);
+    counts_.watchdog_trips = gate_.trips();
 }
 
 void Pump::show() noexcept {
     Vec3 force_n = Vec3::Zero(), torque_mn_m = Vec3::Zero();
-    const bool on = state_ == DeviceState::powered;
+    const bool on = gate_.state() == DeviceState::powered;
     if (on) {
         const Vec3 f = Eigen::Map<const Vec3>(command_.force_n),
                    t = Eigen::Map<const Vec3>(command_.torque_n_m);
@@ -204,78 +179,25 @@ void Pump::publish() noexcept {
         sample_.quat_xyzw[3] = 1.0;
         sample_.hand_present = 0;
     }
-    sample_.state = static_cast<std::uint8_t>(state_);
+    sample_.state = static_cast<std::uint8_t>(gate_.state());
     sample_.ended = ended_ ? 1 : 0;
-    const DeviceNotice notice = state_ == DeviceState::fault              ? meaning(counts_.last_kind).notice
-                                : state_ == DeviceState::watchdog_tripped ? DeviceNotice::watchdog_tripped
-                                                                          : asked();
+    const DeviceNotice notice = gate_.state() == DeviceState::fault ? meaning(counts_.last_kind).notice
+                                : gate_.state() == DeviceState::watchdog_tripped
+                                    ? DeviceNotice::watchdog_tripped
+                                    : asked();
     sample_.notice = static_cast<std::uint8_t>(notice);
     const auto failed = [this](FaultKind kind) { return counts_.faults[static_cast<std::size_t>(kind)]; };
     sample_.bus.packets = saturated(sample_.sequence);
     sample_.bus.refused = saturated(counts_.refused_samples);
     sample_.bus.transfers_failed = saturated(failed(FaultKind::link) + failed(FaultKind::frame));
     sample_.bus.commands_refused = saturated(failed(FaultKind::refused));
-    if (sample_.sequence > 0) mailbox_->sample.publish(sample_);
-    mailbox_->counts.publish(counts_);
-}
-
-IoStatus Pump::read(DeviceSample& newest, Instant now) noexcept {
-    SampleWords w;
-    if (!mailbox_->sample.read(w))
-        return status_ = mailbox_->sample.count() == 0 ? IoStatus::lost : IoStatus::stale;
-    taken_at_ns_ = w.taken_at_ns;
-    newest.taken_at = std::min(instant_from_ns(w.taken_at_ns), now);
-    newest.delay = Duration(w.delay_ns);
-    newest.sequence = w.sequence;
-    newest.T_dev_tool.p_m = Eigen::Map<const Vec3>(w.pos_m);
-    newest.T_dev_tool.q = Quat(w.quat_xyzw[3], w.quat_xyzw[0], w.quat_xyzw[1], w.quat_xyzw[2]);
-    newest.twist_dev = {Eigen::Map<const Vec3>(w.linear_m_s), Eigen::Map<const Vec3>(w.angular_rad_s)};
-    newest.buttons = w.buttons;
-    newest.hand_present = w.hand_present != 0;
-    newest.state = static_cast<DeviceState>(w.state);
-    newest.notice = static_cast<DeviceNotice>(w.notice);
-    newest.bus = w.bus;
-    const bool fresh = w.sequence != sequence_;
-    sequence_ = w.sequence;
-    if (w.ended != 0 || now - newest.taken_at > kLostAfter) return status_ = IoStatus::lost;
-    if (newest.state == DeviceState::fault) return status_ = IoStatus::fault;
-    return status_ = fresh ? IoStatus::ok : IoStatus::stale;
-}
-
-IoStatus Pump::write(const DeviceCommand& command) noexcept {
-    if (!command.enable) low_seen_ = true;
-    if (command.enable && low_seen_) {
-        low_seen_ = false;
-        ++edges_sent_;
-    }
-    CommandWords w{};
-    for (int i = 0; i < 3; ++i) {
-        w.force_n[i] = command.wrench_dev.force_n[i];
-        w.torque_n_m[i] = command.wrench_dev.torque_n_m[i];
-    }
-    w.enable = command.enable ? 1 : 0;
-    w.edge = edges_sent_;
-    w.relaxed = relaxed_sent_;
-    w.heartbeat = heartbeat_sent_ = command.heartbeat;
-    w.answers_ns = taken_at_ns_;
-    mailbox_->command.publish(w);
-    return status_ == IoStatus::lost || status_ == IoStatus::fault ? status_ : IoStatus::ok;
-}
-
-void Pump::relax() noexcept {
-    low_seen_ = false;  // an enable that is still high is no edge
-    ++relaxed_sent_;
-    CommandWords w{};
-    // A heartbeat outside the servo loop's range, so that relax() does not count as silence.
-    w.heartbeat = ++heartbeat_sent_ | 1ULL << 63U;
-    w.edge = edges_sent_;
-    w.relaxed = relaxed_sent_;
-    mailbox_->command.publish(w);
+    if (sample_.sequence > 0) mail_.publish(sample_);
+    published_->publish(counts_);
 }
 
 Counts Pump::counts() const noexcept {
     Counts c;
-    static_cast<void>(mailbox_->counts.read(c));
+    static_cast<void>(published_->read(c));
     return c;
 }
 

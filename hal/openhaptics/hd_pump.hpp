@@ -22,7 +22,7 @@
 
 #include "hal/api/haptic_device.hpp"
 #include "hal/openhaptics/hd_faults.hpp"
-#include "ipc/shm/latest.hpp"
+#include "hal/vendor/output_gate.hpp"
 
 namespace tact::hd {
 
@@ -42,7 +42,6 @@ struct PumpSettings {
     double force_n_max = 0.0, torque_n_m_max = 0.0;
     int styles = 0;         // calibration styles
     Duration transport{0};  // of counts to the library and of force to the motors, not measurable in a tick
-    Duration watchdog = std::chrono::milliseconds(10);
 };
 
 class Pump {
@@ -54,40 +53,15 @@ public:
 
     Enum tick(Instant now) noexcept;  // the return value of the callback
 
-    IoStatus read(DeviceSample& newest, Instant now) noexcept TACT_RT;
-    IoStatus write(const DeviceCommand& command) noexcept TACT_RT;
-    void relax() noexcept;
+    IoStatus read(DeviceSample& newest, Instant now) noexcept TACT_RT { return mail_.read(newest, now); }
+    IoStatus write(const DeviceCommand& command) noexcept TACT_RT { return mail_.write(command); }
+    void relax() noexcept { mail_.relax(); }
     [[nodiscard]] Counts counts() const noexcept;
 
-    static constexpr Duration kQuiet = std::chrono::milliseconds(100);  // without errors, to end a fault
-    static constexpr Duration kLostAfter = std::chrono::milliseconds(100);
     static constexpr Duration kHold = std::chrono::milliseconds(500);  // still in the reset pose
     static constexpr double kStillMm = 1.0;
 
 private:
-    // Trivially copyable sample and command, for Latest.
-    struct SampleWords {
-        std::int64_t taken_at_ns, delay_ns;
-        std::uint64_t sequence;
-        double pos_m[3], quat_xyzw[4], linear_m_s[3], angular_rad_s[3];
-        std::uint32_t buttons;
-        std::uint8_t hand_present, state, ended, notice;
-        BusCounts bus;
-    };
-    struct CommandWords {
-        double force_n[3], torque_n_m[3];
-        std::uint64_t heartbeat;
-        std::int64_t answers_ns;  // taken_at_ns of the sample that it answers; 0: none
-        std::uint64_t edge;       // enable edges so far; only the newest counts
-        std::uint32_t enable;
-        std::uint32_t relaxed;  // calls of relax(); each one removes the force
-    };
-    struct Mailbox {
-        Latest<SampleWords> sample;
-        Latest<CommandWords> command;
-        Latest<Counts> counts;
-    };
-
     void take_sample(Instant now) noexcept;
     void calibrate(Instant now) noexcept;
     [[nodiscard]] bool confirmed(Instant now) noexcept;
@@ -101,27 +75,18 @@ private:
     const Api* api_;
     Handle device_;
     PumpSettings settings_;
-    std::unique_ptr<Mailbox> mailbox_;
+    vendor::ServoMail mail_;
+    std::unique_ptr<Latest<Counts>> published_;
 
     // Used on the vendor's thread.
-    SampleWords sample_{};
-    CommandWords command_{};
+    vendor::SampleWords sample_{};
+    vendor::CommandWords command_{};
+    vendor::OutputGate gate_;
     Counts counts_;
-    DeviceState state_ = DeviceState::ready;
-    std::uint64_t heartbeat_ = 0, edge_ = 0;
-    std::uint32_t relaxed_ = 0;
-    std::int64_t answered_ns_ = 0;  // by the command in the last frame; 0: no new command
-    Instant heard_at_{}, failed_at_{}, held_since_{};
+    Instant held_since_{};
     Vec3 position_mm_ = Vec3::Zero(), held_mm_ = Vec3::Zero();
     bool ended_ = false, inkwell_ = false, output_on_ = false, calibrated_ = false;
     bool button_before_ = true;  // a button that is already down at the start is no confirmation
-
-    // Used on the servo thread.
-    std::uint64_t sequence_ = 0, heartbeat_sent_ = 0, edges_sent_ = 0;
-    std::int64_t taken_at_ns_ = 0;  // of the newest sample read
-    std::uint32_t relaxed_sent_ = 0;
-    bool low_seen_ = true;  // enable was low since the last edge
-    IoStatus status_ = IoStatus::ok;
 };
 
 }  // namespace tact::hd
