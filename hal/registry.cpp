@@ -4,6 +4,7 @@
 #include <array>
 
 #include "hal/falcon/falcon.hpp"
+#include "hal/forcedimension/force_dimension.hpp"
 #include "hal/openhaptics/open_haptics.hpp"
 #include "hal/phantom/phantom_usb.hpp"
 #include "hal/polhem/hidraw_port.hpp"
@@ -38,6 +39,17 @@ std::unique_ptr<HapticDevice> make_open_haptics(const DeviceSettings& s) {
     return std::make_unique<OpenHaptics>(settings);
 }
 
+std::unique_ptr<HapticDevice> make_force_dimension(const DeviceSettings& s) {
+    ForceDimensionSettings settings;
+    settings.library = s.fd_library;
+    settings.serial = s.serial;
+    settings.initialize = s.fd_initialize;
+    settings.gravity = s.fd_gravity;
+    settings.pump_priority = s.pump_priority;
+    settings.say = s.say;
+    return std::make_unique<ForceDimension>(settings);
+}
+
 std::unique_ptr<HapticDevice> make_polhem(const DeviceSettings& s) {
     return std::make_unique<PhantomUsb>(
         PhantomUsbSettings{.serial = s.serial,
@@ -66,6 +78,11 @@ constexpr std::array kDevices{
                 &make_phantom_usb},
     DeviceEntry{"openhaptics", "Touch, Omni, Desktop or Premium through the manufacturer's library libHD.so",
                 false, &make_open_haptics},
+    DeviceEntry{
+        "forcedimension",
+        "omega, delta, sigma or lambda of Force Dimension, through the manufacturer's library libdrd.so; "
+        "not yet tested on hardware",
+        false, &make_force_dimension},
     DeviceEntry{"polhem", "Haptikfabriken or Polhem arm, over hidraw; see [arm]; not yet tested on hardware",
                 false, &make_polhem},
     DeviceEntry{"falcon", "Novint Falcon, with a firmware file from the user; not yet tested on hardware",

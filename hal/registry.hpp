@@ -20,11 +20,14 @@ struct DeviceSettings {
     Duration state_hold = std::chrono::milliseconds(3);  // validity of a real device's newest state
     int pump_priority = kPumpPriority;  // FIFO, of the thread that owns a real device's bus; 0: ordinary
     void (*say)(const char* text) =
-        nullptr;              // reports progress and reduced operation in open(); null: standard error
-    std::string process_log;  // "sim-process": file for its changes of state; empty: none
-    std::string hd_library;   // "openhaptics": path of libHD.so; empty: searched
-    std::string hd_device;    // "openhaptics": the arm's name in its set-up program; empty: default
-    std::string firmware;     // "falcon": the user's firmware file; empty: the firmware must already run
+        nullptr;                 // reports progress and reduced operation in open(); null: standard error
+    std::string process_log;     // "sim-process": file for its changes of state; empty: none
+    std::string hd_library;      // "openhaptics": path of libHD.so; empty: searched
+    std::string hd_device;       // "openhaptics": the arm's name in its set-up program; empty: default
+    std::string fd_library;      // "forcedimension": path of libdrd.so or libdhd.so; empty: searched
+    bool fd_initialize = false;  // "forcedimension": an arm that is not initialized moves by itself in open()
+    bool fd_gravity = true;      // "forcedimension": the library holds the weight of the arm
+    std::string firmware;        // "falcon": the user's firmware file; empty: the firmware must already run
 };
 
 struct DeviceEntry {

@@ -111,7 +111,8 @@ void add_nodes(const fs::path& root, const fs::path& interface, std::vector<Node
 
 const KnownDevice* known(const UsbDevice& d) {
     for (const KnownDevice& k : kKnownDevices) {
-        const bool by_number = k.interface == 0 && k.vendor == d.vendor && k.product == d.product;
+        const bool by_number =
+            k.interface == 0 && k.vendor == d.vendor && (k.product == kAnyProduct || k.product == d.product);
         const bool by_class =
             k.interface != 0 && std::any_of(d.interfaces.begin(), d.interfaces.end(),
                                             [&](const UsbInterface& i) { return i.triple == k.interface; });

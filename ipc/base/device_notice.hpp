@@ -33,11 +33,14 @@ enum class DeviceNotice : std::uint8_t {
     encoder_jumped,
     // Warnings: operation continues.
     states_refused,
+    // Required action, as the first ones; recordings contain these numbers, so that a new one is the last.
+    not_initialized,
 };
-inline constexpr std::uint8_t kDeviceNotices = 21;
+inline constexpr std::uint8_t kDeviceNotices = 22;
 
 [[nodiscard]] constexpr bool asks(DeviceNotice n) noexcept TACT_RT {
-    return n >= DeviceNotice::hold_reset_pose && n <= DeviceNotice::move_about;
+    return (n >= DeviceNotice::hold_reset_pose && n <= DeviceNotice::move_about) ||
+           n == DeviceNotice::not_initialized;
 }
 
 [[nodiscard]] constexpr const char* device_notice_text(DeviceNotice n) noexcept {
@@ -85,6 +88,9 @@ inline constexpr std::uint8_t kDeviceNotices = 21;
             return "an encoder moved faster than the arm can move";
         case DeviceNotice::states_refused:
             return "more than 5 % of the device's packets are bad or lost";
+        case DeviceNotice::not_initialized:
+            return "initialize the arm with the manufacturer's program (HapticInit), or start again with "
+                   "device.fd_initialize = true";
     }
     return "unknown";
 }

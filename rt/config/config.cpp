@@ -66,6 +66,9 @@ std::vector<ConfigKey> keys_of(RtConfig& c) {
         {"device.firmware", &c.device.firmware, 0, 0, {}},
         {"device.hd_library", &c.device.hd_library, 0, 0, {}},
         {"device.hd_device", &c.device.hd_device, 0, 0, {}},
+        {"device.fd_library", &c.device.fd_library, 0, 0, {}},
+        {"device.fd_initialize", &c.device.fd_initialize, 0, 0, {}},
+        {"device.fd_gravity", &c.device.fd_gravity, 0, 0, {}},
         {"device2.driver", &c.device2.driver, 0, 0, device_names("none")},
         {"device2.serial", &c.device2.serial, 0, 0, {}},
         {"device2.hand", &c.device2.hand, 0, 0, sim_hand_names(kAsDevice)},
@@ -289,6 +292,9 @@ DeviceSettings device_settings_from(const RtConfig& c) {
     d.firmware = c.device.firmware;
     d.hd_library = c.device.hd_library;
     d.hd_device = c.device.hd_device;
+    d.fd_library = c.device.fd_library;
+    d.fd_initialize = c.device.fd_initialize;
+    d.fd_gravity = c.device.fd_gravity;
     d.arm = c.arm;
     d.serial = c.device.serial;
     d.pump_priority = static_cast<int>(c.device.pump_priority);

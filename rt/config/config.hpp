@@ -45,9 +45,12 @@ struct RtConfig {
         std::string process_log;                     // sim-process: file that records its state changes
         std::string serial;                          // real devices; empty: the only one
         std::int64_t pump_priority = kPumpPriority;  // FIFO priority of the bus thread; 0: ordinary
-        std::string firmware;    // falcon: firmware file of its owner; empty: firmware already runs
-        std::string hd_library;  // openhaptics: path of libHD.so; empty: search for it
-        std::string hd_device;   // openhaptics: name of the arm; empty: the default one
+        std::string firmware;        // falcon: firmware file of its owner; empty: firmware already runs
+        std::string hd_library;      // openhaptics: path of libHD.so; empty: search for it
+        std::string hd_device;       // openhaptics: name of the arm; empty: the default one
+        std::string fd_library;      // forcedimension: path of libdrd.so; empty: search for it
+        bool fd_initialize = false;  // forcedimension: an uninitialized arm moves by itself at the start
+        bool fd_gravity = true;      // forcedimension: the library holds the weight of the arm
     } device;
     struct Device2 {  // of the second hand: the suction tube in drilling scenes, else a pointer
         std::string driver = "none";

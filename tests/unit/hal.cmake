@@ -22,6 +22,17 @@ tact_test(unit/hal_openhaptics_test.cpp USES base openhaptics hal_api LABELS tsa
 add_dependencies(hal_openhaptics_test fake_hd fake_hd_old)
 target_compile_definitions(hal_openhaptics_test PRIVATE TACT_FAKE_HD="$<TARGET_FILE:fake_hd>"
     TACT_FAKE_HD_OLD="$<TARGET_FILE:fake_hd_old>")
+tact_plugin(fake_fd SOURCES support/fake_fd_library.cpp USES forcedimension)
+tact_plugin(fake_fd_dhd SOURCES support/fake_fd_library.cpp USES forcedimension)  # libdhd alone, without libdrd
+target_compile_definitions(fake_fd_dhd PRIVATE TACT_FAKE_FD_WITHOUT_DRD)
+tact_plugin(fake_fd_old SOURCES support/fake_fd_old.cpp)
+tact_test(unit/hal_forcedimension_test.cpp USES base forcedimension hal_api LABELS tsan)
+tact_test(unit/hal_forcedimension_faults_test.cpp USES base forcedimension hal_api)
+foreach(test hal_forcedimension_test hal_forcedimension_faults_test)
+    add_dependencies(${test} fake_fd fake_fd_dhd fake_fd_old)
+    target_compile_definitions(${test} PRIVATE TACT_FAKE_FD="$<TARGET_FILE:fake_fd>"
+        TACT_FAKE_FD_DHD="$<TARGET_FILE:fake_fd_dhd>" TACT_FAKE_FD_OLD="$<TARGET_FILE:fake_fd_old>")
+endforeach()
 tact_test(unit/hal_polhem_test.cpp USES base arm phantom phantom_usb polhem probe hal_api emu_board SYSTEM rapidcheck)
 tact_tests(hal_boards_tests SOURCES
         unit/hal_phantom_packets_test.cpp unit/hal_falcon_boot_test.cpp unit/hal_falcon_kinematics_test.cpp
