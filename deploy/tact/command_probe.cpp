@@ -49,7 +49,7 @@ int run_probe(const std::string& config, const std::string& root, bool as_json) 
     const DeviceRequest request = asked.empty() ? DeviceRequest{} : read_device_request(asked);
     const probe::Buses buses = probe::read_buses(root);
     std::vector<Finding> findings =
-        judge_devices(buses, request, read_person(), find_hd_library(root, request.hd_library));
+        judge_devices(buses, request, read_person(), find_libraries(root, request));
     for (Finding& f : judge(read_machine(root))) {
         for (const char* const name : kMachineRows) {
             if (f.name == name) findings.push_back(std::move(f));

@@ -46,7 +46,10 @@ std::string refusal(const probe::Node& n) {
 
 // The node that the driver opens: hidraw for a driver that reads reports, else the device's own node.
 probe::Node node_of(const UsbDevice& d) {
-    if (d.known == nullptr || d.known->driver != std::string("polhem")) return d.node;
+    const std::string driver = d.known == nullptr ? "" : d.known->driver;
+    if (driver == "openhaptics" && !d.nodes.empty())
+        return d.nodes.front();  // hidraw or ttyACM, by the model
+    if (driver != "polhem") return d.node;
     const auto raw = std::find_if(d.nodes.begin(), d.nodes.end(), [](const probe::Node& n) {
         return n.path.find("hidraw") != std::string::npos;
     });
@@ -74,7 +77,8 @@ void known_devices(const Buses& b, const DeviceRequest& request, std::vector<Fin
         const bool arm = d.known->use == probe::Use::arm;
         const std::string driver = d.known->driver;
         const auto asked = [&](const std::string& by, const std::string& serial) {
-            return by == driver && (serial.empty() || serial == d.serial);
+            // USB does not tell the serial number of an arm of Force Dimension.
+            return by == driver && (serial.empty() || d.serial.empty() || serial == d.serial);
         };
         const bool wanted =
             arm && (asked(request.driver, request.serial) || asked(request.driver2, request.serial2));
@@ -94,6 +98,10 @@ void known_devices(const Buses& b, const DeviceRequest& request, std::vector<Fin
                       (!no.empty()                   ? "; " + no
                        : f.level == FindingLevel::ok ? ", accessible"
                                                      : ", at only " + d.speed_mbit + " Mbit/s");
+            if (driver == "openhaptics" && d.product == probe::kTouchHid)
+                f.says +=
+                    "; it needs the manufacturer's TouchDriver of 2023 or newer, and once its "
+                    "Touch_HeadlessSetup";
         }
         out.push_back(std::move(f));
     }
@@ -101,24 +109,29 @@ void known_devices(const Buses& b, const DeviceRequest& request, std::vector<Fin
 
 // section: "device" or "device2".
 Finding driver_arm(const Buses& b, const std::string& section, const std::string& driver,
-                   const std::string& serial, const std::string& hd_library) {
+                   const std::string& serial, const VendorLibraries& libraries) {
     const std::string what = section + ".driver = \"" + driver + "\": ";
     if (driver == "sim" || driver == "sim-process")
         return {section, FindingLevel::ok, what + "emulated, needs no device", ""};
     if (driver == "openhaptics") {
-        if (hd_library.empty())
+        if (libraries.hd.empty())
             return {section, FindingLevel::fail, what + "the manufacturer's library libHD.so was not found",
                     "install the manufacturer's OpenHaptics and device driver, or set device.hd_library to "
                     "the file"};
         return {section, FindingLevel::ok,
-                what + hd_library + "; its devices are known only when tact-rt opens the library", ""};
+                what + libraries.hd + "; its devices are known only when tact-rt opens the library", ""};
     }
+    const bool by_library = driver == "forcedimension";
+    if (by_library && libraries.fd.empty())
+        return {section, FindingLevel::fail, what + "the manufacturer's library libdrd.so was not found",
+                "install the Force Dimension SDK for 64-bit Linux (forcedimension.com, Support, Downloads), "
+                "and set device.fd_library to its lib/release/lin-x86_64-gcc/libdrd.so"};
     std::vector<std::string> serials;
     bool known = false;
     for (const auto& k : probe::kKnownDevices) known = known || driver == k.driver;
     for (const UsbDevice& d : b.usb.entries) {
         if (d.known != nullptr && d.known->use == probe::Use::arm && driver == d.known->driver &&
-            (serial.empty() || serial == d.serial))
+            (serial.empty() || by_library || serial == d.serial))
             serials.push_back(d.serial.empty() ? "without serial" : d.serial);
     }
     if (!known)
@@ -131,6 +144,12 @@ Finding driver_arm(const Buses& b, const std::string& section, const std::string
                                       : "USB is not visible here, so that the device cannot be detected"),
                 "plug the device in and switch it on, or set " + section +
                     ".driver = \"sim\"; lsusb lists the bus"};
+    // The library, not USB, knows the serial numbers of these arms.
+    if (by_library && (serials.size() == 1 || !serial.empty()))
+        return {section, FindingLevel::ok,
+                what + number_of(serials.size(), false, "device", "devices") + " on USB, library " +
+                    libraries.fd + "; model and initialization are known only when tact-rt opens it",
+                ""};
     if (serials.size() > 1)
         return {section, FindingLevel::fail, what + "several devices match: " + joined(serials),
                 "select one with " + section + ".serial"};
@@ -226,18 +245,23 @@ Finding groups(const Person& p) {
 }  // namespace
 
 std::vector<Finding> judge_devices(const Buses& buses, const DeviceRequest& request, const Person& person,
-                                   const std::string& hd_library) {
+                                   const VendorLibraries& libraries) {
     std::vector<Finding> out = request.problems;
-    out.push_back(driver_arm(buses, "device", request.driver, request.serial, hd_library));
+    out.push_back(driver_arm(buses, "device", request.driver, request.serial, libraries));
     if (request.driver2 != "none")
-        out.push_back(driver_arm(buses, "device2", request.driver2, request.serial2, hd_library));
+        out.push_back(driver_arm(buses, "device2", request.driver2, request.serial2, libraries));
     out.push_back(usb(buses));
     known_devices(buses, request, out);
     if (request.driver == "falcon" || request.driver2 == "falcon") out.push_back(falcon_firmware(request));
     if (request.driver != "openhaptics" && request.driver2 != "openhaptics")
         out.push_back({"openhaptics", FindingLevel::ok,
-                       hd_library.empty() ? "the manufacturer's library libHD.so was not found"
-                                          : "manufacturer's library: " + hd_library,
+                       libraries.hd.empty() ? "the manufacturer's library libHD.so was not found"
+                                            : "manufacturer's library: " + libraries.hd,
+                       ""});
+    if (request.driver != "forcedimension" && request.driver2 != "forcedimension")
+        out.push_back({"forcedimension", FindingLevel::ok,
+                       libraries.fd.empty() ? "the manufacturer's library libdrd.so was not found"
+                                            : "manufacturer's library: " + libraries.fd,
                        ""});
     out.push_back(can(buses, request));
     out.push_back(gpio(buses, request));

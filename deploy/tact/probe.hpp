@@ -17,7 +17,7 @@ namespace tact::launch {
 
 // The device settings of tact-rt's configuration; the defaults are those of tact-rt.
 struct DeviceRequest {
-    std::string driver = "sim", serial, hd_library, firmware;
+    std::string driver = "sim", serial, hd_library, fd_library, firmware;
     std::string driver2 = "none", serial2;  // second hand
     std::int64_t firmware_bytes = -1;       // size of that file on this machine; -1: not readable
     std::string tracker = "none", tracker_interface = "can0", tracker_format = "classic";
@@ -30,10 +30,13 @@ struct DeviceRequest {
 // Parses the output of tact-rt --check-config FILE --json. Also reads the size of the firmware file.
 [[nodiscard]] DeviceRequest device_request_from(const nlohmann::json& answer);
 
-// The library of driver openhaptics: the path of the first file that exists, else "".
-[[nodiscard]] std::string find_hd_library(const std::filesystem::path& root, const std::string& configured);
+// Manufacturers' libraries: of each the path of the first file that exists, else "".
+struct VendorLibraries {
+    std::string hd, fd;  // of the drivers openhaptics and forcedimension
+};
+[[nodiscard]] VendorLibraries find_libraries(const std::filesystem::path& root, const DeviceRequest& request);
 
 [[nodiscard]] std::vector<Finding> judge_devices(const probe::Buses& buses, const DeviceRequest& request,
-                                                 const Person& person, const std::string& hd_library);
+                                                 const Person& person, const VendorLibraries& libraries);
 
 }  // namespace tact::launch

@@ -4,6 +4,7 @@
 #include <array>
 #include <filesystem>
 #include <fstream>
+#include <span>
 
 #include "deploy/tact/child.hpp"
 #include "deploy/tact/files.hpp"
@@ -27,7 +28,8 @@ DeviceRequest device_request_from(const nlohmann::json& answer) {
     for (const auto& [key, target] :
          {std::pair{"device.driver", &request.driver}, std::pair{"device.serial", &request.serial},
           std::pair{"device.firmware", &request.firmware},
-          std::pair{"device.hd_library", &request.hd_library}, std::pair{"device2.driver", &request.driver2},
+          std::pair{"device.hd_library", &request.hd_library},
+          std::pair{"device.fd_library", &request.fd_library}, std::pair{"device2.driver", &request.driver2},
           std::pair{"device2.serial", &request.serial2}, std::pair{"tracker.driver", &request.tracker},
           std::pair{"tracker.interface", &request.tracker_interface},
           std::pair{"tracker.format", &request.tracker_format}, std::pair{"lines.driver", &request.lines},
@@ -73,14 +75,25 @@ DeviceRequest read_device_request(const std::string& path) {
     return request;
 }
 
-std::string find_hd_library(const std::filesystem::path& root, const std::string& configured) {
+namespace {
+
+// "" if the file configured, or every place, is missing.
+std::string find_library(const std::filesystem::path& root, const std::string& configured,
+                         std::span<const char* const> places) {
     std::error_code error;
     if (!configured.empty()) return std::filesystem::exists(configured, error) ? configured : "";
-    for (std::string place : probe::kHdPlaces) {
+    for (std::string place : places) {
         if (!place.starts_with("/")) continue;  // the loader searches names without a path
         if (std::filesystem::exists(root / place.substr(1), error)) return place;
     }
     return "";
+}
+
+}  // namespace
+
+VendorLibraries find_libraries(const std::filesystem::path& root, const DeviceRequest& request) {
+    return {.hd = find_library(root, request.hd_library, probe::kHdPlaces),
+            .fd = find_library(root, request.fd_library, probe::kFdPlaces)};
 }
 
 }  // namespace tact::launch

@@ -12,6 +12,9 @@ enum class Use : std::uint8_t { arm, lines, tracker_bus };
 // Of a maker whose devices are all of one kind, with a number per model.
 inline constexpr std::uint16_t kAnyProduct = 0;
 
+// The Touch sold since 2023; its driver and its set-up differ from those of the serial model.
+inline constexpr std::uint16_t kTouchHid = 0x0304;
+
 struct KnownDevice {
     Use use;
     const char* driver;  // driver name in hal/registry.cpp; "": none yet
@@ -27,6 +30,8 @@ inline constexpr std::uint32_t kPhantomInterface = 0xFF5401;
 inline constexpr std::array kKnownDevices{
     KnownDevice{Use::arm, "phantom-usb", "Phantom arm on an amplifier board", 0, 0, kPhantomInterface},
     KnownDevice{Use::arm, "polhem", "Haptikfabriken or Polhem arm", 0x16c0, 0x0486},
+    KnownDevice{Use::arm, "openhaptics", "3D Systems Touch, serial model", 0x2988, 0x0302},
+    KnownDevice{Use::arm, "openhaptics", "3D Systems Touch, HID model", 0x2988, kTouchHid},
     KnownDevice{Use::arm, "forcedimension", "Force Dimension arm", 0x1451, kAnyProduct},
     KnownDevice{Use::arm, "falcon", "Novint Falcon", 0x0403, 0xcb48},
     KnownDevice{Use::lines, "gpio", "CP2112, 8 lines", 0x10c4, 0xea90},

@@ -86,8 +86,8 @@ struct Answer {
 };
 
 Answer ask(const Tree& tree, const DeviceRequest& request, const Person& person = kMember) {
-    return {judge_devices(probe::read_buses(tree.root()), request, person,
-                          find_hd_library(tree.root(), request.hd_library))};
+    return {
+        judge_devices(probe::read_buses(tree.root()), request, person, find_libraries(tree.root(), request))};
 }
 
 DeviceRequest phantom_request() {
@@ -153,11 +153,11 @@ TEST(Probe, a_node_without_rights_fails_for_the_configured_arm_and_warns_for_ano
     node.usable = false;
     node.group = "root";
     node.mode = 0664;
-    const Answer wanted{judge_devices(buses, phantom_request(), kMember, "")};
+    const Answer wanted{judge_devices(buses, phantom_request(), kMember, {})};
     EXPECT_EQ(wanted.one("arm").level, FindingLevel::fail);
     EXPECT_TRUE(says(wanted.one("arm").says, {"no permission to open", "group root, mode 664"}));
     EXPECT_TRUE(says(wanted.one("arm").fix, {"deploy/install.sh --rights"}));
-    const Answer other{judge_devices(buses, {}, kMember, "")};
+    const Answer other{judge_devices(buses, {}, kMember, {})};
     EXPECT_EQ(other.one("arm").level, FindingLevel::warn);
     fs::remove(tree.root() / "dev/bus/usb/001/004");
     EXPECT_TRUE(says(ask(tree, phantom_request()).one("arm").says, {"does not exist", "container"}));
@@ -299,6 +299,69 @@ TEST(Probe, the_vendors_library_is_found_in_its_place_or_by_path) {
     EXPECT_TRUE(ask(tree, request).fails());
 }
 
+TEST(Probe, both_models_of_a_touch_are_known_and_the_newer_is_reported_with_its_set_up) {
+    const Tree tree;
+    tree.usb("1-3", "2988", "0304", "", 7);
+    tree.interface("1-3:1.0", "03\n", "00\n", "00\n");
+    fs::create_directories(tree.root() / "sys/bus/usb/devices/1-3:1.0/0003:2988:0304.0001/hidraw/hidraw2");
+    tree.file("usr/lib/libHD.so", "");
+    DeviceRequest request;
+    request.driver = "openhaptics";
+    EXPECT_TRUE(says(ask(tree, request).one("arm").says, {"HID model", "hidraw2 does not exist"}));
+    EXPECT_EQ(ask(tree, request).one("arm").level, FindingLevel::fail);
+    tree.file("dev/hidraw2", "");
+    const Answer a = ask(tree, request);
+    EXPECT_FALSE(a.fails());
+    EXPECT_TRUE(says(a.one("arm").says,
+                     {"driver openhaptics, accessible", "TouchDriver of 2023", "Touch_HeadlessSetup"}));
+    const Tree older;
+    older.usb("1-3", "2988", "0302", "", 7);
+    older.file("usr/lib/libHD.so", "");
+    const std::string text = ask(older, request).one("arm").says;
+    EXPECT_TRUE(says(text, {"serial model", "accessible"}));
+    EXPECT_EQ(text.find("Touch_HeadlessSetup"), std::string::npos);
+}
+
+TEST(Probe, an_arm_of_force_dimension_needs_its_library_and_is_found_by_the_vendor_alone) {
+    const Tree tree;
+    tree.usb("usb1", "1d6b", "0002", "0000:00", 1);
+    DeviceRequest request;
+    EXPECT_TRUE(says(ask(tree, request).one("forcedimension").says, {"libdrd.so", "not found"}));
+    request.driver = "forcedimension";
+    EXPECT_EQ(ask(tree, request).one("device").level, FindingLevel::fail);
+    EXPECT_TRUE(says(ask(tree, request).one("device").says, {"libdrd.so was not found"}));
+    EXPECT_TRUE(says(ask(tree, request).one("device").fix, {"forcedimension.com", "device.fd_library"}));
+    tree.file("usr/local/lib/libdrd.so", "");
+    EXPECT_TRUE(says(ask(tree, request).one("device").says, {"no such device", "on USB"}));
+    EXPECT_TRUE(ask(tree, request).fails());
+    tree.usb("1-1", "1451", "0402", "", 4);
+    Answer a = ask(tree, request);
+    EXPECT_FALSE(a.fails());
+    EXPECT_TRUE(
+        says(a.one("device").says, {"1 device on USB", "/usr/local/lib/libdrd.so", "known only when"}));
+    EXPECT_TRUE(
+        says(a.one("arm").says, {"Force Dimension arm (1451:0402", "driver forcedimension, accessible"}));
+    request.serial = "1001";  // USB does not tell it
+    EXPECT_FALSE(ask(tree, request).fails());
+    tree.usb("1-2", "1451", "040c", "", 5);
+    EXPECT_FALSE(ask(tree, request).fails());
+    request.serial = "";
+    a = ask(tree, request);
+    EXPECT_TRUE(a.fails());
+    EXPECT_TRUE(says(a.one("device").says, {"several devices"}));
+    EXPECT_TRUE(says(a.one("device").fix, {"device.serial"}));
+    request.serial = "1001";
+    probe::Buses buses = probe::read_buses(tree.root());
+    for (probe::UsbDevice& d : buses.usb.entries) d.node.usable = false;
+    const Answer refused{judge_devices(buses, request, kMember, find_libraries(tree.root(), request))};
+    EXPECT_EQ(refused.one("arm").level, FindingLevel::fail);
+    EXPECT_TRUE(says(refused.one("arm").fix, {"deploy/install.sh --rights"}));
+    request.fd_library = "/nowhere/libdrd.so";
+    EXPECT_TRUE(ask(tree, request).fails());
+    EXPECT_EQ(device_request_from({{"values", {{"device.fd_library", "/x/libdrd.so"}}}}).fd_library,
+              "/x/libdrd.so");
+}
+
 TEST(Probe, groups_are_reported_by_purpose) {
     const Tree tree;
     EXPECT_EQ(ask(tree, {}, kMember).one("groups").level, FindingLevel::ok);
@@ -366,7 +429,7 @@ TEST(Probe, the_second_device_is_probed_too) {
     // The second arm's node counts as configured.
     probe::Buses buses = probe::read_buses(tree.root());
     for (probe::UsbDevice& d : buses.usb.entries) d.node.usable = d.serial != "RIGHT";
-    const Answer refused{judge_devices(buses, request, kMember, "")};
+    const Answer refused{judge_devices(buses, request, kMember, {})};
     EXPECT_TRUE(refused.fails());
     request.driver2 = "falcon";
     EXPECT_EQ(ask(tree, request).one("firmware").level, FindingLevel::warn);

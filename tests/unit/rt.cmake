@@ -53,8 +53,10 @@ tact_tests(system_scenario_tests SOURCES
     USES base topics hal force servo threads config start scene govern)
 
 # The servo path uses neither heap nor mutex: the test includes the interposers of tact-rt.
-tact_program(rt_safe_test SOURCES rt_safe/rt_safe_test.cpp ${CMAKE_SOURCE_DIR}/rt/servo/interpose.cpp
-    USES base topics scene arm phantom phantom_usb hal emu_board force servo threads config start SYSTEM GTest::gtest GTest::gtest_main)
+tact_program(rt_safe_test SOURCES rt_safe/rt_safe_test.cpp rt_safe/vendor_rt_safe_test.cpp ${CMAKE_SOURCE_DIR}/rt/servo/interpose.cpp
+    USES base topics scene arm phantom phantom_usb forcedimension hal emu_board force servo threads config start SYSTEM GTest::gtest GTest::gtest_main)
+add_dependencies(rt_safe_test fake_fd)
+target_compile_definitions(rt_safe_test PRIVATE TACT_FAKE_FD="$<TARGET_FILE:fake_fd>")
 set_target_properties(rt_safe_test PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/tests)
 add_test(NAME rt_safe_test COMMAND rt_safe_test WORKING_DIRECTORY ${CMAKE_SOURCE_DIR})
 set_tests_properties(rt_safe_test PROPERTIES TIMEOUT 300)
