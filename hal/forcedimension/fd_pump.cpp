@@ -70,7 +70,6 @@ void Pump::fail(FaultKind kind, Instant now) noexcept {
 }
 
 void Pump::reopen(Instant now) noexcept {
-    gate_.fail(now);  // a lost device is a fault for as long as it is lost
     if (now < retry_at_) return;
     retry_at_ = now + kReopenEvery;
     const OpenResult result = session_->open(false);

@@ -22,6 +22,7 @@ struct FakeFdArm {
     int auto_init_result = 0;
     std::atomic<bool> initialized{true}, plugged{true};
     std::atomic<bool> force{false}, brakes{false}, open{false};
+    std::atomic<bool> regulated{false};  // the library's own control of the position runs
     std::atomic<int> force_off_cause{0}, controller_error{0};
     std::array<std::atomic<double>, 3> position_m{}, velocity_m_s{}, angular_rad_s{};
     std::array<std::array<double, 3>, 3> turn{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};

@@ -75,7 +75,7 @@ void reset_arm(FakeFdArm& a, unsigned short serial) {
     a.wrist = a.torque = a.gripper = a.left = a.busy = a.no_watchdog = false;
     a.auto_init_result = 0;
     a.initialized = a.plugged = a.gravity = true;
-    a.force = a.brakes = a.open = false;
+    a.force = a.brakes = a.open = a.regulated = false;
     a.force_off_cause = a.controller_error = a.watchdog_eighths = a.silent_ms = 0;
     a.turn = {{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
     for (std::size_t i = 0; i < 3; ++i)
@@ -322,7 +322,7 @@ int drdAutoInit(char id) {
     FakeFdArm* const a = arm_of(id);
     if (a == nullptr) return -1;
     ++a->auto_inits;
-    a->force = true;  // its own control moves the arm
+    a->force = a->regulated = true;  // its own control moves the arm
     if (a->auto_init_result < 0) return failed(kErrorTimeout);
     a->initialized = true;
     return 0;
@@ -330,6 +330,7 @@ int drdAutoInit(char id) {
 int drdStop(bool force, char id) {
     FakeFdArm* const a = arm_of(id);
     if (a == nullptr) return -1;
+    a->regulated = false;
     if (!force) off(*a, kForceOffSoftware);
     return 0;
 }

@@ -2,6 +2,8 @@
 // messages of a start that fails.
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <limits>
 #include <random>
 
 #include "tests/unit/hal_forcedimension.hpp"
@@ -101,13 +103,14 @@ TEST_F(ForceDimensionTest, an_arm_that_is_not_initialized_never_moves_unasked) {
     EXPECT_EQ(arm().auto_inits.load(), 1U);
     EXPECT_TRUE(says(said(), {"moves by itself", "let go"})) << said();
     EXPECT_FALSE(arm().force.load());  // the library's own control has ended
+    EXPECT_FALSE(arm().regulated.load());
     power();
     open();
     EXPECT_EQ(arm().auto_inits.load(), 1U);  // it is initialized already
     arm().initialized = false;
     arm().auto_init_result = -1;
     EXPECT_TRUE(says(refusal(), {"the initialization failed", "error 7", "fix:", "let go"}));
-    EXPECT_FALSE(arm().force.load());
+    EXPECT_FALSE(arm().force.load() || arm().regulated.load());
 }
 
 TEST_F(ForceDimensionTest, libdhd_alone_knows_the_initialization_and_cannot_do_it) {
@@ -216,6 +219,21 @@ TEST_F(ForceDimensionTest, a_refused_enable_and_a_controller_error_are_faults) {
     EXPECT_EQ(device->counts().last_kind, fd::FaultKind::device);
 }
 
+TEST_F(ForceDimensionTest, a_wrench_that_is_not_finite_is_refused_and_counted) {
+    open();
+    power();
+    for (const double value : {std::nan(""), std::numeric_limits<double>::infinity()}) {
+        const std::uint64_t before = device->counts().refused_commands;
+        command.wrench_dev.torque_n_m = Vec3::Zero();
+        cycle(Vec3(1.0, value, 0.0), true);
+        EXPECT_EQ(shown(), Vec3::Zero());
+        command.wrench_dev.torque_n_m = Vec3(0.0, 0.0, value);
+        cycle(Vec3(1.0, 0.0, 0.0), true);
+        EXPECT_EQ(shown(), Vec3::Zero());
+        EXPECT_EQ(device->counts().refused_commands, before + 2);
+    }
+}
+
 TEST_F(ForceDimensionTest, after_relax_a_new_enable_edge_is_required) {
     open();
     power();
@@ -266,6 +284,21 @@ TEST_F(ForceDimensionTest, unplugged_at_random_instants_it_is_lost_at_once_and_n
         EXPECT_EQ(device->counts().reopened, 1U);
         EXPECT_EQ(sample.bus.reconnects, 1U);
     }
+}
+
+TEST_F(ForceDimensionTest, an_enable_edge_while_it_is_lost_powers_nothing_when_it_is_found) {
+    open();
+    power();
+    arm().plugged = false;
+    cycles(300, Vec3::Zero(), false);
+    cycles(100, Vec3(1.0, 0.0, 0.0), true);
+    arm().plugged = true;
+    cycles(800, Vec3(1.0, 0.0, 0.0), true);
+    EXPECT_EQ(device->counts().reopened, 1U);
+    EXPECT_EQ(shown(), Vec3::Zero());
+    EXPECT_FALSE(arm().force.load());
+    cycles(200, Vec3::Zero(), false);
+    power();
 }
 
 TEST_F(ForceDimensionTest, an_initialization_lost_under_force_is_zero_force_and_an_action) {

@@ -118,7 +118,10 @@ TEST_F(ForceDimensionTest, it_is_set_up_with_watchdog_short_velocity_windows_and
     EXPECT_TRUE(arm().brakes.load());
     EXPECT_FALSE(arm().force.load());
     power();
+    const unsigned stops = arm().stops.load();
+    clock.device = nullptr;
     device.reset();
+    EXPECT_EQ(arm().stops.load(), stops + 1);  // the library's own stop, before it is closed
     EXPECT_TRUE(arm().brakes.load());
     EXPECT_FALSE(arm().force.load());
     EXPECT_FALSE(arm().open.load());
