@@ -5,6 +5,7 @@
 
 #include "hal/falcon/falcon.hpp"
 #include "hal/forcedimension/force_dimension.hpp"
+#include "hal/haply/inverse3.hpp"
 #include "hal/openhaptics/open_haptics.hpp"
 #include "hal/phantom/phantom_usb.hpp"
 #include "hal/polhem/hidraw_port.hpp"
@@ -50,6 +51,15 @@ std::unique_ptr<HapticDevice> make_force_dimension(const DeviceSettings& s) {
     return std::make_unique<ForceDimension>(settings);
 }
 
+std::unique_ptr<HapticDevice> make_inverse3(const DeviceSettings& s) {
+    Inverse3Settings settings;
+    settings.serial = s.serial;
+    settings.port = s.inverse_port;
+    settings.pump_priority = s.pump_priority;
+    settings.say = s.say;
+    return std::make_unique<Inverse3>(settings);
+}
+
 std::unique_ptr<HapticDevice> make_polhem(const DeviceSettings& s) {
     return std::make_unique<PhantomUsb>(
         PhantomUsbSettings{.serial = s.serial,
@@ -83,6 +93,9 @@ constexpr std::array kDevices{
         "omega, delta, sigma or lambda of Force Dimension, through the manufacturer's library libdrd.so; "
         "not yet tested on hardware",
         false, &make_force_dimension},
+    DeviceEntry{"inverse3",
+                "Inverse3 or Minverse of Haply, through its Inverse Service; not yet tested on hardware",
+                false, &make_inverse3},
     DeviceEntry{"polhem", "Haptikfabriken or Polhem arm, over hidraw; see [arm]; not yet tested on hardware",
                 false, &make_polhem},
     DeviceEntry{"falcon", "Novint Falcon, with a firmware file from the user; not yet tested on hardware",

@@ -107,6 +107,23 @@ void known_devices(const Buses& b, const DeviceRequest& request, std::vector<Fin
     }
 }
 
+// Of driver inverse3: its service, not Tact, talks to the arm.
+Finding inverse_service(const std::string& section, const std::string& what, const std::string& folder) {
+    if (folder.empty())
+        return {
+            section, FindingLevel::warn,
+            what +
+                "no configuration of Haply's Inverse Service is on this machine (/etc/haply-inverse-service)",
+            "install the service 3.5 or newer (haply.co: Haply Hub, or the .deb package) and run sudo "
+            "systemctl "
+            "enable --now haply-inverse-service; Haply Hub may also run it without this folder"};
+    return {section, FindingLevel::ok,
+            what + "the Inverse Service is installed (" + folder +
+                "); its arms are known only when tact-rt "
+                "connects to it",
+            ""};
+}
+
 // section: "device" or "device2".
 Finding driver_arm(const Buses& b, const std::string& section, const std::string& driver,
                    const std::string& serial, const VendorLibraries& libraries) {
@@ -121,6 +138,7 @@ Finding driver_arm(const Buses& b, const std::string& section, const std::string
         return {section, FindingLevel::ok,
                 what + libraries.hd + "; its devices are known only when tact-rt opens the library", ""};
     }
+    if (driver == "inverse3") return inverse_service(section, what, libraries.inverse_service);
     const bool by_library = driver == "forcedimension";
     if (by_library && libraries.fd.empty())
         return {section, FindingLevel::fail, what + "the manufacturer's library libdrd.so was not found",

@@ -30,9 +30,10 @@ struct DeviceRequest {
 // Parses the output of tact-rt --check-config FILE --json. Also reads the size of the firmware file.
 [[nodiscard]] DeviceRequest device_request_from(const nlohmann::json& answer);
 
-// Manufacturers' libraries: of each the path of the first file that exists, else "".
+// Manufacturers' libraries and services: of each the first path that exists, else "".
 struct VendorLibraries {
-    std::string hd, fd;  // of the drivers openhaptics and forcedimension
+    std::string hd, fd;           // of the drivers openhaptics and forcedimension
+    std::string inverse_service;  // of the driver inverse3: configuration folder of its service
 };
 [[nodiscard]] VendorLibraries find_libraries(const std::filesystem::path& root, const DeviceRequest& request);
 

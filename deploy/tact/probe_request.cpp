@@ -92,8 +92,10 @@ std::string find_library(const std::filesystem::path& root, const std::string& c
 }  // namespace
 
 VendorLibraries find_libraries(const std::filesystem::path& root, const DeviceRequest& request) {
+    constexpr std::array kInverseService{"/etc/haply-inverse-service"};
     return {.hd = find_library(root, request.hd_library, probe::kHdPlaces),
-            .fd = find_library(root, request.fd_library, probe::kFdPlaces)};
+            .fd = find_library(root, request.fd_library, probe::kFdPlaces),
+            .inverse_service = find_library(root, "", kInverseService)};
 }
 
 }  // namespace tact::launch

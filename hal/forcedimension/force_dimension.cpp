@@ -65,7 +65,7 @@ DeviceInfo ForceDimension::open() {
     if (!session_->own_watchdog())
         say("the device has no watchdog of its own: only Tact's watchdog of 10 ms removes the force");
     pump_ = std::make_unique<fd::Pump>(library_->api(), *session_);
-    const DeviceInfo info = describe();
+    DeviceInfo info = describe();
     try {
         wait_for_first_sample();
         if (settings_.thread) {

@@ -69,6 +69,7 @@ std::vector<ConfigKey> keys_of(RtConfig& c) {
         {"device.fd_library", &c.device.fd_library, 0, 0, {}},
         {"device.fd_initialize", &c.device.fd_initialize, 0, 0, {}},
         {"device.fd_gravity", &c.device.fd_gravity, 0, 0, {}},
+        {"device.inverse_port", &c.device.inverse_port, 1, 65535, {}},
         {"device2.driver", &c.device2.driver, 0, 0, device_names("none")},
         {"device2.serial", &c.device2.serial, 0, 0, {}},
         {"device2.hand", &c.device2.hand, 0, 0, sim_hand_names(kAsDevice)},
@@ -295,6 +296,7 @@ DeviceSettings device_settings_from(const RtConfig& c) {
     d.fd_library = c.device.fd_library;
     d.fd_initialize = c.device.fd_initialize;
     d.fd_gravity = c.device.fd_gravity;
+    d.inverse_port = static_cast<std::uint16_t>(c.device.inverse_port);
     d.arm = c.arm;
     d.serial = c.device.serial;
     d.pump_priority = static_cast<int>(c.device.pump_priority);

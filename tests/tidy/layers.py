@@ -102,8 +102,8 @@ WRAPPED = [
     (r"CLI/", ["ipc/manual", "ipc/recorder/main", "rt/main", "rt/start/start_options", "rt/replay", "gui", "prep", "deploy", "tests"]),
     (r"toml\+\+|spdlog/", ["rt/main", "rt/start", "rt/replay", "rt/threads", "rt/config", "gui", "prep", "deploy", "hal/sim", "tests"]),
     (r"httplib\.h", ["deploy/tact/metrics_server", "tests"]),
-    (r"nlohmann/", ["deploy", "prep", "gui", "rt/config/check_config", "rt/start/start_bodies", "rt/replay", "ipc/topics/frames_json",
-                    "ipc/recorder/main", "ipc/scene/session/session_file", "ipc/station/station_report", "tests"]),
+    (r"nlohmann/", ["hal/haply/inverse_messages", "deploy", "prep", "gui", "rt/config/check_config", "rt/start/start_bodies", "rt/replay",
+                    "ipc/topics/frames_json", "ipc/recorder/main", "ipc/scene/session/session_file", "ipc/station/station_report", "tests"]),
 ]
 # Names that only these files of a folder may use: the tables of its systems.
 NAMED = [("gui/", re.compile(r"\bSceneKind::"), ["gui/window/systems.cpp"]),

@@ -299,6 +299,19 @@ TEST(Probe, the_vendors_library_is_found_in_its_place_or_by_path) {
     EXPECT_TRUE(ask(tree, request).fails());
 }
 
+TEST(Probe, an_inverse3_needs_its_service) {
+    const Tree tree;
+    DeviceRequest request;
+    request.driver = "inverse3";
+    Finding f = ask(tree, request).one("device");
+    EXPECT_EQ(f.level, FindingLevel::warn);
+    EXPECT_TRUE(says(f.fix, {"haply-inverse-service", "3.5"}));
+    tree.file("etc/haply-inverse-service/haply-inverse-service-config.json", "{}");
+    f = ask(tree, request).one("device");
+    EXPECT_EQ(f.level, FindingLevel::ok);
+    EXPECT_TRUE(says(f.says, {"Inverse Service is installed", "known only when"}));
+}
+
 TEST(Probe, both_models_of_a_touch_are_known_and_the_newer_is_reported_with_its_set_up) {
     const Tree tree;
     tree.usb("1-3", "2988", "0304", "", 7);

@@ -33,6 +33,8 @@ foreach(test hal_forcedimension_test hal_forcedimension_faults_test)
     target_compile_definitions(${test} PRIVATE TACT_FAKE_FD="$<TARGET_FILE:fake_fd>"
         TACT_FAKE_FD_DHD="$<TARGET_FILE:fake_fd_dhd>" TACT_FAKE_FD_OLD="$<TARGET_FILE:fake_fd_old>")
 endforeach()
+tact_test(unit/hal_haply_test.cpp USES base haply hal_api SYSTEM nlohmann_json::nlohmann_json)
+tact_test(unit/hal_haply_link_test.cpp USES base haply hal_api SYSTEM nlohmann_json::nlohmann_json LABELS tsan)
 tact_test(unit/hal_polhem_test.cpp USES base arm phantom phantom_usb polhem probe hal_api emu_board SYSTEM rapidcheck)
 tact_tests(hal_boards_tests SOURCES
         unit/hal_phantom_packets_test.cpp unit/hal_falcon_boot_test.cpp unit/hal_falcon_kinematics_test.cpp
