@@ -159,7 +159,9 @@ void InversePump::publish() noexcept {
 
 void InversePump::finish() noexcept {
     try {
-        if (open_) static_cast<void>(channel_->send(probe_message(id_)));  // no force from this message on
+        // No force from this message on. The answer is awaited: the service has then taken the message.
+        InverseState state;
+        if (open_) static_cast<void>(ask(probe_message(id_), state));
     } catch (const std::exception&) {
         counts_.last = Loss::broken;
     }

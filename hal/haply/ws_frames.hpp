@@ -15,8 +15,8 @@ namespace tact::haply {
 enum class Opcode : std::uint8_t { continuation = 0, text = 1, binary = 2, close = 8, ping = 9, pong = 10 };
 enum class ReadResult : std::uint8_t { message, need_more, broken };
 
-inline constexpr std::size_t kHandshakeMax = 4096;      // bytes of the answer
-inline constexpr std::size_t kMessageMax = 256 * 1024;  // bytes of a message
+inline constexpr std::size_t kHandshakeMax = 4096;                   // bytes of the answer
+inline constexpr std::size_t kMessageMax = std::size_t{256} * 1024;  // bytes of a message
 
 [[nodiscard]] std::string handshake_request(std::string_view host, std::uint16_t port);
 // `message`: accepted, and `used` bytes belong to the answer; the rest are frames.

@@ -8,6 +8,7 @@
 #include <functional>
 #include <thread>
 
+#include "hal/haply/inverse3.hpp"
 #include "hal/haply/inverse_link.hpp"
 #include "hal/haply/inverse_messages.hpp"
 #include "tests/support/fake_inverse.hpp"
@@ -180,6 +181,67 @@ TEST(InverseLink, talks_to_a_server_and_notices_its_end) {
     EXPECT_TRUE(says(request, {"Upgrade: websocket"}));
     ASSERT_EQ(frame.size(), 11U);
     EXPECT_EQ(frame[6] ^ frame[2], 'h');
+}
+
+// The text of a masked frame; "" at the end of the connection.
+std::string client_text(int connection) {
+    const auto exactly = [connection](std::size_t n) {
+        std::string bytes(n, '\0');
+        const ssize_t got = ::recv(connection, bytes.data(), n, MSG_WAITALL);
+        return got == static_cast<ssize_t>(n) ? bytes : std::string();
+    };
+    const std::string head = exactly(2);
+    if (head.empty()) return "";
+    std::size_t size = static_cast<std::uint8_t>(head[1]) & 0x7FU;
+    if (size == 126) {
+        const std::string two = exactly(2);
+        if (two.empty()) return "";
+        size = static_cast<std::size_t>(static_cast<std::uint8_t>(two[0])) << 8U |
+               static_cast<std::uint8_t>(two[1]);
+    }
+    const std::string mask = exactly(4);
+    std::string text = exactly(size);
+    if (mask.empty()) return "";
+    for (std::size_t i = 0; i < text.size(); ++i) text[i] = static_cast<char>(text[i] ^ mask[i % 4]);
+    return text;
+}
+
+// Servo, pump and service in a thread each, over a socket, as in reality.
+TEST(InverseLink, samples_and_forces_pass_between_servo_pump_and_service) {
+    FakeInverse service;
+    bool moved = false;
+    {
+        Server server([&](int connection) {
+            static_cast<void>(Server::read(connection, "\r\n\r\n"));
+            Server::write(connection, kAccepted + server_frame(Opcode::text, service.state(true)));
+            for (std::string text = client_text(connection); !text.empty(); text = client_text(connection)) {
+                Server::write(connection, server_frame(Opcode::text, service.answer(text)));
+                service.tick();
+            }
+        });
+        Inverse3Settings settings;
+        settings.port = server.port;
+        settings.pump_priority = 0;
+        Inverse3 device(settings);
+        EXPECT_EQ(device.open().serial, "049D");
+        DeviceSample sample;
+        DeviceCommand command;
+        const Instant end = Monotonic::now() + std::chrono::minutes(1);
+        for (bool enable = false; !moved && Monotonic::now() < end;) {
+            static_cast<void>(device.read(sample, Monotonic::now()));
+            if (sample.state == DeviceState::watchdog_tripped || sample.state == DeviceState::fault)
+                enable = false;
+            command.enable = enable;
+            command.wrench_dev.force_n = Vec3(1.0, 0.0, 0.0);
+            ++command.heartbeat;
+            static_cast<void>(device.write(command, Monotonic::now()));
+            if (sample.state == DeviceState::ready) enable = true;
+            moved = sample.state == DeviceState::powered && sample.twist_dev.linear_m_s.x() > 0.0;
+            std::this_thread::sleep_for(std::chrono::milliseconds(1));
+        }
+    }
+    EXPECT_TRUE(moved);
+    EXPECT_EQ(service.force_n, (std::array<double, 3>{}));  // the last message had no force
 }
 
 TEST(InverseLink, a_closed_port_and_another_kind_of_server_are_reported) {
