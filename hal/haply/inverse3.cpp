@@ -26,7 +26,9 @@ constexpr const char* kServiceFix =
     const std::string listed = text.empty() ? "" : "; it lists: " + text;
     switch (loss) {
         case haply::Loss::no_service:
-            throw StartupError(what, text, kServiceFix);
+            throw StartupError(what, text,
+                               std::string(kServiceFix) +
+                                   "; the systemd unit tact-rt@ denies IP: deploy/units/README.md allows it");
         case haply::Loss::no_arm:
             throw StartupError(
                 what, "the service does not list this arm" + listed,

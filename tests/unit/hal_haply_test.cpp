@@ -174,7 +174,7 @@ TEST_F(Inverse3Test, a_force_that_is_not_finite_is_zero_and_counted) {
 TEST_F(Inverse3Test, open_errors_are_reported_with_a_fix) {
     service.running = false;
     EXPECT_TRUE(says(refusal(), {"127.0.0.1:10001", "Connection refused", "fix:", "haply-inverse-service",
-                                 "device.inverse_port"}));
+                                 "device.inverse_port", "deploy/units"}));
     service = {};
     service.plugged = false;
     EXPECT_TRUE(says(refusal(), {"does not list this arm", "fix:", "Haply Hub"}));
