@@ -88,7 +88,7 @@ TEST(VendorRtSafe, an_arm_of_force_dimension_and_its_faults_touch_neither_heap_n
             case 2:
                 arm.force = false;
                 arm.force_off_cause = fd::kForceOffButton;
-                expected = DeviceNotice::amplifier_off;
+                expected = DeviceNotice::safety_open;
                 most = 8;
                 break;
             default:
