@@ -9,13 +9,17 @@
 #include <string>
 
 #include "hal/sim/sim_tracker.hpp"
+#include "hal/tracker/igtl_reader.hpp"
 
 namespace tact {
 
 struct TrackerSettings {
     std::string driver = "none";
     std::string interface = "can0";
-    SimHeadSettings sim;  // its member `can` applies to every CAN driver
+    SimHeadSettings sim;             // its member `can` applies to every CAN driver
+    std::string host = "127.0.0.1";  // of an OpenIGTLink server
+    int port = kIgtlPort;
+    IgtlTrackerSettings igtl;
 };
 
 struct TrackerEntry {

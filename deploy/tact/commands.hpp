@@ -15,6 +15,7 @@ void add_config(CLI::App& app);
 void add_record(CLI::App& app);
 void add_replay(CLI::App& app, int& exit_code);
 void add_metrics(CLI::App& app, int& exit_code);
+void add_igtl(CLI::App& app, int& exit_code);
 void add_status(CLI::App& app, int& exit_code);
 void add_doctor(CLI::App& app, int& exit_code);
 void add_probe(CLI::App& app, int& exit_code);

@@ -37,6 +37,7 @@ int main(int argc, char** argv) {
     add_replay(app, exit_code);
     add_status(app, exit_code);
     add_metrics(app, exit_code);
+    add_igtl(app, exit_code);
     add_doctor(app, exit_code);
     add_station(app, exit_code);
     add_probe(app, exit_code);

@@ -40,12 +40,11 @@ CanReader::CanReader(const CanTrackerSettings& settings, CanSource& source, Cloc
       clock_(clock),
       assembler_(settings.fix),
       clocks_{TrackerClock(period(settings)), TrackerClock(period(settings)), TrackerClock(period(settings)),
-              TrackerClock(period(settings))},
-      mailbox_(std::make_unique<Mailbox>()) {}
+              TrackerClock(period(settings))} {}
 
 void CanReader::opened() noexcept {
     health_.link = TrackerLink::up;
-    mailbox_->health.publish(health_);
+    mailbox_.publish(health_);
 }
 
 void CanReader::link_is(TrackerLink link) noexcept {
@@ -56,15 +55,14 @@ void CanReader::link_is(TrackerLink link) noexcept {
 }
 
 void CanReader::publish(const TrackerFix& fix, Instant taken_at) noexcept {
-    SampleWords w{};
     taken_at_[fix.sensor] = taken_at;
-    w.taken_at_ns = to_ns(taken_at - settings_.latency);
-    w.sequence = ++sequence_[fix.sensor];
-    for (int i = 0; i < 3; ++i) w.pos_m[i] = fix.T_tracker_sensor.p_m[i];
-    for (int i = 0; i < 4; ++i) w.quat_xyzw[i] = fix.T_tracker_sensor.q.coeffs()[i];
-    w.quality = fix.quality;
-    w.distortion = fix.distortion;
-    mailbox_->samples[fix.sensor].publish(w);
+    TrackerSample sample;
+    sample.taken_at = taken_at - settings_.latency;
+    sample.sensor = fix.sensor;
+    sample.T_tracker_sensor = fix.T_tracker_sensor;
+    sample.quality = fix.quality;
+    sample.distortion = fix.distortion;
+    mailbox_.publish(sample);
     ++health_.samples;
 }
 
@@ -125,33 +123,16 @@ void CanReader::round(Duration patience) noexcept {
     if (flood) ++health_.floods;
     health_.missed = assembler_.missed();
     health_.refused = assembler_.refused().total();
-    mailbox_->health.publish(health_);
+    mailbox_.publish(health_);
     // During a flood, leaves the processor to other threads between the rounds.
     if (flood) clock_.wait_until(clock_.now() + kFloodPause);
 }
 
 TrackerState CanReader::read(unsigned sensor, TrackerSample& newest, Instant now) const noexcept {
-    SampleWords w;
-    if (sensor >= settings_.fix.sensors) return newest.state = TrackerState::lost;
-    // If the writer lapped every attempt, the caller keeps its old value and its age.
-    if (mailbox_->samples[sensor].read(w)) {
-        newest.taken_at = std::min(instant_from_ns(w.taken_at_ns), now);
-        newest.sequence = w.sequence;
-        newest.sensor = static_cast<std::uint8_t>(sensor);
-        newest.T_tracker_sensor.p_m = Vec3(w.pos_m[0], w.pos_m[1], w.pos_m[2]);
-        newest.T_tracker_sensor.q = Quat(w.quat_xyzw[3], w.quat_xyzw[0], w.quat_xyzw[1], w.quat_xyzw[2]);
-        newest.quality = w.quality;
-        newest.distortion = w.distortion;
-    }
-    newest.state = newest.sequence == 0 ? TrackerState::lost : tracker_state(now - newest.taken_at);
-    return newest.state;
+    return mailbox_.read(sensor, settings_.fix.sensors, newest, now);
 }
 
-TrackerHealth CanReader::health() const noexcept {
-    TrackerHealth h;
-    static_cast<void>(mailbox_->health.read(h));
-    return h;
-}
+TrackerHealth CanReader::health() const noexcept { return mailbox_.health(); }
 
 CanReaderCounts CanReader::counts() const noexcept {
     CanReaderCounts c = counts_;

@@ -4,18 +4,16 @@
 //           are then old, refused as stale and counted until the newest is reached
 // Link      down: continues automatically; gone: reopened every kReopenEvery; bus off: flagged until a good
 //           frame or the controller's "restarted". After each, counters restart.
-// Mailbox   samples and counters go out through Latest<>: readers never wait and get whole values
 // Thread    round() on its own thread; read() and health() on another
 #pragma once
 
 #include <array>
-#include <memory>
 
 #include "hal/api/tracker.hpp"
 #include "hal/tracker/can_source.hpp"
 #include "hal/tracker/fix_assembler.hpp"
 #include "hal/tracker/tracker_clock.hpp"
-#include "ipc/shm/latest.hpp"
+#include "hal/tracker/tracker_mailbox.hpp"
 
 namespace tact {
 
@@ -51,17 +49,6 @@ public:
     [[nodiscard]] CanReaderCounts counts() const noexcept;  // on the thread of round() only
 
 private:
-    struct SampleWords {
-        std::int64_t taken_at_ns;
-        std::uint64_t sequence;
-        double pos_m[3], quat_xyzw[4];
-        double quality, distortion;
-    };
-    struct Mailbox {
-        std::array<Latest<SampleWords>, kTrackerSensorsMax> samples;
-        Latest<TrackerHealth> health;
-    };
-
     void take(const CanFrame& frame, Instant arrived) noexcept;
     void take_error(const CanFrame& frame) noexcept;
     void link_is(TrackerLink link) noexcept;
@@ -75,10 +62,9 @@ private:
     std::array<CanFrame, kCanBatch> frames_;
     TrackerHealth health_;
     CanReaderCounts counts_;
-    std::array<std::uint64_t, kTrackerSensorsMax> sequence_{};
     std::array<Instant, kTrackerSensorsMax> taken_at_{};  // of the newest sample
     Instant retry_at_{};
-    std::unique_ptr<Mailbox> mailbox_;
+    TrackerMailbox mailbox_;
 };
 
 }  // namespace tact

@@ -76,6 +76,9 @@ std::vector<ConfigKey> keys_of(RtConfig& c) {
         {"device2.hand_seed", &c.device2.hand_seed, 0, 9e15, {}},
         {"tracker.driver", &c.tracker.driver, 0, 0, tracker_names()},
         {"tracker.interface", &c.tracker.interface, 0, 0, {}},
+        {"tracker.host", &c.tracker.host, 0, 0, {}},
+        {"tracker.port", &c.tracker.port, 1, 65535, {}},
+        {"tracker.devices", &c.tracker.devices, 0, 0, {}},
         {"tracker.format", &c.tracker.format, 0, 0, {"classic", "fd"}},
         {"tracker.sensors", &c.tracker.sensors, 1, kTrackerSensorsMax, {}},
         {"tracker.head_sensor", &c.tracker.head_sensor, 0, kTrackerSensorsMax - 1, {}},
@@ -325,6 +328,12 @@ TrackerSettings tracker_settings_from(const RtConfig& c) {
     t.sim.can.fix.reach_m = c.tracker.reach_m;
     t.sim.can.rate_hz = c.tracker.rate_hz;
     t.sim.can.latency = duration_us(c.tracker.latency_ms * 1e3);
+    t.host = c.tracker.host;
+    t.port = static_cast<int>(c.tracker.port);
+    t.igtl.names = igtl_names(c.tracker.devices);
+    t.igtl.reach_m = c.tracker.reach_m;
+    t.igtl.rate_hz = c.tracker.rate_hz;
+    t.igtl.latency = t.sim.can.latency;
     return t;
 }
 

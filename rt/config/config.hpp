@@ -62,6 +62,9 @@ struct RtConfig {
     struct Tracker {
         std::string driver = "none";
         std::string interface = "can0";
+        std::string host = "127.0.0.1";  // of an OpenIGTLink server
+        std::int64_t port = kIgtlPort;
+        std::string devices;             // its names of the sensors, with commas between them
         std::string format = "classic";  // or "fd"
         std::int64_t sensors = 1;        // on the bus
         std::int64_t head_sensor = 0;    // index of the sensor on the glasses

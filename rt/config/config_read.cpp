@@ -109,6 +109,22 @@ void check_pedals(const RtConfig& config, const std::string& where, ConfigErrors
     }
 }
 
+void check_igtl_names(const RtConfig& config, const std::string& where, ConfigErrors& errors) {
+    if (config.tracker.driver != "openigtlink") return;
+    const std::vector<std::string> names = igtl_names(config.tracker.devices);
+    if (static_cast<std::int64_t>(names.size()) != config.tracker.sensors)
+        errors.emplace_back(where, "tracker.devices",
+                            std::to_string(names.size()) + " names for " +
+                                std::to_string(config.tracker.sensors) + " sensors (tracker.sensors)",
+                            "name every sensor as the server does, with commas between the names; tact probe "
+                            "--config FILE lists what the server sends");
+    for (const std::string& name : names)
+        if (name.size() > kIgtlNameMax || std::count(names.begin(), names.end(), name) > 1)
+            errors.emplace_back(
+                where, "tracker.devices", "the name \"" + name + "\" is too long or given twice",
+                "a name of OpenIGTLink has at most " + std::to_string(kIgtlNameMax) + " letters");
+}
+
 // Checks all values, whether from file or command line.
 ConfigErrors check_all(const RtConfig& config, const std::string& where) {
     ConfigErrors errors;
@@ -132,6 +148,7 @@ ConfigErrors check_all(const RtConfig& config, const std::string& where) {
                             "choose at most " + number_text(model_us_most) + ", or 0 to follow the period");
     }
     check_pedals(config, where, errors);
+    check_igtl_names(config, where, errors);
     const auto drivers = device_drivers();
     const bool real = std::any_of(drivers.begin(), drivers.end(), [&](const DeviceEntry& d) {
         return config.device.driver == d.name && !d.emulated;

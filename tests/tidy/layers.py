@@ -23,6 +23,7 @@ LAUNCHER = ["deploy/tact/baked_run", "deploy/tact/child", "deploy/tact/exec", "d
 # Folder -> folders that it may include; the longest matching prefix decides. The folder itself is always allowed.
 BELOW = {
     "ipc/base": [],
+    "ipc/igtl": ["ipc/base"],
     "ipc/image": ["ipc/base"],
     "ipc/version": [],
     "ipc/manual": ["ipc/base"],
@@ -38,7 +39,7 @@ BELOW = {
     "ipc/record": ["ipc/base", "ipc/shm", "ipc/topics"],
     "ipc/recorder": ["ipc/base", "ipc/version", "ipc/manual", "ipc/shm", "ipc/topics", "ipc/record", "ipc/scene/bone", "ipc/scene/file"],
     "ipc/station": ["ipc/base"],
-    "hal": ["ipc/base", "ipc/shm", "ipc/version"],  # shm: mailboxes between a bus pump and the servo
+    "hal": ["ipc/base", "ipc/igtl", "ipc/shm", "ipc/version"],  # shm: mailboxes between a bus pump and the servo
     "rt/force": ["ipc/base", "ipc/scene"],
     # Force models do not include each other. Each includes the topic that it publishes and the commands that it accepts.
     "rt/force/docking": ["ipc/base", "ipc/scene", "ipc/shm/latest", "ipc/topics/bodies", "ipc/topics/command", "ipc/topics/shapes",
@@ -91,6 +92,7 @@ BELOW = {
 WRAPPED = [
     (r"libusb", ["hal/usb"]),
     (r"gpiod", ["hal/io"]),
+    (r"igtl[A-Z_]", ["ipc/igtl", "tests"]),
     (r"gemmi/", ["prep", "tests"]),
     (r"fftw3", ["prep/map", "tests"]),
     (r"gdcm", ["prep/volume/dicom_files", "tests/unit/prep_dicom_packed_test"]),
