@@ -155,16 +155,19 @@ void IgtlReader::round(Duration patience) noexcept {
         ++health_.reopened;
         health_.link = TrackerLink::up;
     }
-    bool flood = true;
-    for (std::size_t n = 0; n < kReadsMax && flood && health_.link == TrackerLink::up; ++n) {
+    std::size_t bytes = 0, reads = 0;
+    bool more = true;
+    while (more && bytes < kRoundBytes && reads < kReadsMax && health_.link == TrackerLink::up) {
         const std::span<std::byte> room = stream_.room();
-        const IgtlBatch batch = source_.receive(room, n == 0 ? patience : Duration{0});
-        stream_.add(std::min(batch.bytes, room.size()));
-        flood = batch.bytes >= room.size();
+        const IgtlBatch batch = source_.receive(room, reads == 0 ? patience : Duration{0});
+        ++reads;
+        bytes += batch.bytes;
+        more = batch.bytes > 0;
+        stream_.add(batch.bytes);
         drain(clock_.now());
         if (batch.gone && health_.link == TrackerLink::up) lose_link();
     }
-    flood = flood && health_.link == TrackerLink::up;
+    const bool flood = more && health_.link == TrackerLink::up;
     if (flood) ++health_.floods;
     health_.refused = refused_.total();
     mailbox_.publish(health_);

@@ -2,7 +2,7 @@
 //
 // Sensors   by name: the device of a TRANSFORM, or an element of a TDATA. Other messages are ignored
 // Time      the sender's time stamps, converted as those of the CAN tracker (tracker_clock.hpp); without one, the arrival
-// Round     at most kReadsMax reads: a flood costs a bounded time, and kFloodPause between two rounds
+// Round     at most kRoundBytes and kReadsMax reads: a flood costs a bounded time, and kFloodPause between two rounds
 // Link      gone: the server closed the connection, is unreachable or sends something else; connects again every
 //           kReopenEvery
 // Thread    round() on its own thread; read() and health() on another
@@ -35,7 +35,7 @@ const IgtlTrackerSettings& checked(const IgtlTrackerSettings& settings);
 
 class IgtlReader {
 public:
-    static constexpr std::size_t kReadsMax = 4;
+    static constexpr std::size_t kRoundBytes = 64 * 1024, kReadsMax = 64;
     static constexpr Duration kReopenEvery = std::chrono::milliseconds(500);
     static constexpr Duration kFloodPause = std::chrono::milliseconds(2);
     static constexpr Duration kGapMost = std::chrono::seconds(1);  // a longer one is no loss, but a pause

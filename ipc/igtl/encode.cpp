@@ -6,7 +6,6 @@
 #include <igtlTrackingDataMessage.h>
 #include <igtlTransformMessage.h>
 #include <igtlUnit.h>
-#include <igtl_util.h>
 
 #include <algorithm>
 
@@ -21,8 +20,9 @@ typename Message::Pointer igtl_message(std::string_view device, std::int64_t tim
     typename Message::Pointer m = Message::New();
     m->SetDeviceName(igtl_name(device).c_str());
     const auto ns = static_cast<std::uint64_t>(std::max<std::int64_t>(time_ns, 0));
-    m->SetTimeStamp(static_cast<unsigned>(ns / 1'000'000'000U),
-                    igtl_nanosec_to_frac(static_cast<igtl_uint32>(ns % 1'000'000'000U)));
+    // Rounded up, so that the decoder's rounding down gives the same nanosecond; the library's own function is 1 ns off.
+    const std::uint64_t fraction = (((ns % 1'000'000'000U) << 32U) + 999'999'999U) / 1'000'000'000U;
+    m->SetTimeStamp(static_cast<unsigned>(ns / 1'000'000'000U), static_cast<unsigned>(fraction));
     return m;
 }
 

@@ -1,5 +1,7 @@
 # Fuzz targets of hal.
 tact_fuzz(tracker_fuzz SOURCES fuzz/tracker_fuzz.cpp USES base tracker)
+tact_fuzz(igtl_fuzz SOURCES fuzz/igtl_fuzz.cpp USES base igtl tracker hal_api)
+target_include_directories(tact_igtl_fuzz_target SYSTEM PRIVATE ${TACT_IGTL_INCLUDE})
 tact_fuzz(phantom_fuzz SOURCES fuzz/phantom_fuzz.cpp USES phantom)
 tact_fuzz(emu_script_fuzz SOURCES fuzz/emu_script_fuzz.cpp USES base emu_script)
 tact_fuzz(phantom_usb_fuzz SOURCES fuzz/phantom_usb_fuzz.cpp USES base arm phantom phantom_usb hal_api)

@@ -7,10 +7,11 @@ tact_tests(hal_shared_tests SOURCES
         unit/hal_socket_can_test.cpp unit/hal_phantom_thread_test.cpp
     USES base tracker hal arm phantom phantom_usb hal_api emu_board LABELS tsan)
 tact_test(unit/hal_tracker_contract_test.cpp USES base tracker hal LABELS tsan)
+tact_test(unit/hal_igtl_contract_test.cpp USES base igtl tracker hal LABELS tsan)
 tact_tests(hal_tracker_tests SOURCES
-        unit/hal_sim_hold_test.cpp unit/hal_tracker_dbc_test.cpp unit/hal_tracker_filter_test.cpp
+        unit/hal_igtl_reader_test.cpp        unit/hal_sim_hold_test.cpp unit/hal_tracker_dbc_test.cpp unit/hal_tracker_filter_test.cpp
         unit/hal_tracker_frames_test.cpp unit/hal_tracker_reader_test.cpp
-    USES base tracker hal SYSTEM rapidcheck)
+    USES base igtl tracker hal SYSTEM rapidcheck)
 # Parts and faults are read without kernel interfaces; wrong usage and failed starts have different exit codes.
 add_test(NAME hal_emu_usage COMMAND sh -c "emu='$<TARGET_FILE:tact-emu>'; \"$emu\" --arm A --arm B --tracker can0:fd:240:4 --check || exit 1
     \"$emu\" --nonsense 2>&1; test $? = 2 || exit 1; \"$emu\" --arm A --arm A; test $? = 1 || exit 1; \"$emu\"; test $? = 1")
