@@ -108,6 +108,10 @@ void IgtlServer::drop(Client& client, const std::string& why) {
     news(client.name + " " + why);
 }
 
+void IgtlServer::forget_gone() {
+    std::erase_if(clients_, [](const auto& client) { return client->gone; });
+}
+
 void IgtlServer::accept_clients() {
     for (; accepts_left_ > 0; --accepts_left_) {
         sockaddr_storage address{};
@@ -175,13 +179,14 @@ void IgtlServer::send(std::span<const std::byte> messages) {
         client->queue.insert(client->queue.end(), messages.begin(), messages.end());
         write_to(*client);
     }
+    forget_gone();
 }
 
 void IgtlServer::serve_until(Instant due) {
     accepts_left_ = kAcceptsMost;
     for (const auto& client : clients_) client->read_left = kReadMost;
     for (;;) {
-        std::erase_if(clients_, [](const auto& client) { return client->gone; });
+        forget_gone();
         std::vector<pollfd> wait;
         wait.push_back({.fd = accepts_left_ > 0 ? fd_ : -1, .events = POLLIN, .revents = 0});
         for (const auto& client : clients_) {

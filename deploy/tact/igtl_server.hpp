@@ -30,7 +30,7 @@ struct IgtlServerCounts {
 
 class IgtlServer {
 public:
-    static constexpr std::size_t kClientsMost = 8, kAcceptsMost = 16;  // the latter per period
+    static constexpr std::size_t kClientsMost = 8, kAcceptsMost = 8;  // the latter per period
     static constexpr std::size_t kQueueMost = 64 * 1024, kReadMost = 64 * 1024;
     static constexpr int kKernelQueue = 64 * 1024;
 
@@ -57,6 +57,7 @@ private:
     void read_from(Client& client);
     void write_to(Client& client);
     void drop(Client& client, const std::string& why);
+    void forget_gone();
     void news(std::string text);
 
     int fd_ = -1, port_ = 0;

@@ -8,6 +8,7 @@ tact_tests(station_tests SOURCES
         unit/deploy_monitoring_test.cpp
     USES base launch_station topics station station_metrics version shm launch SYSTEM nlohmann_json::nlohmann_json
         PkgConfig::HTTPLIB)
+tact_test(unit/deploy_igtl_test.cpp USES launch igtl base shm topics scene)
 pkg_check_modules(HTTPLIB REQUIRED IMPORTED_TARGET cpp-httplib)
 add_test(NAME reproduce_draw_test COMMAND /usr/bin/python3 tests/reproduce/draw.py --self-test WORKING_DIRECTORY ${CMAKE_SOURCE_DIR})
 set_tests_properties(reproduce_draw_test PROPERTIES TIMEOUT 120 SKIP_RETURN_CODE 77)
