@@ -1,4 +1,5 @@
 // tact probe: detects devices and checks the rights that a run with them needs.
+#include <algorithm>
 #include <array>
 #include <memory>
 
@@ -13,6 +14,8 @@ namespace {
 
 // Findings of the doctor that matter for a run with a device.
 constexpr std::array kMachineRows{"kernel", "isolation", "rtprio", "memlock", "frequency", "dma_latency"};
+
+constexpr auto kIgtlPatience = std::chrono::milliseconds(1500);
 
 nlohmann::json node_json(const probe::Node& n) {
     return {{"path", n.path}, {"usable", n.usable}, {"group", n.group}, {"mode", n.mode}};
@@ -50,6 +53,12 @@ int run_probe(const std::string& config, const std::string& root, bool as_json) 
     const probe::Buses buses = probe::read_buses(root);
     std::vector<Finding> findings =
         judge_devices(buses, request, read_person(), find_libraries(root, request));
+    if (request.tracker == "openigtlink") {
+        const auto period = Duration(static_cast<std::int64_t>(1e9 / std::max(request.tracker_rate_hz, 1.0)));
+        findings.push_back(judge_igtl(
+            probe::listen_to_igtl(request.tracker_host, request.tracker_port, period, kIgtlPatience),
+            request));
+    }
     for (Finding& f : judge(read_machine(root))) {
         for (const char* const name : kMachineRows) {
             if (f.name == name) findings.push_back(std::move(f));

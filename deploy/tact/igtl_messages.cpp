@@ -65,18 +65,21 @@ std::int64_t IgtlMessages::time_of(std::int64_t taken_at_ns) const {
     return utc_ns_ - (now_ns - taken_at_ns);
 }
 
-void IgtlMessages::transform(IgtlBytes& out, const std::string& name, const Vec3& p_m,
+bool IgtlMessages::transform(IgtlBytes& out, const std::string& name, const Vec3& p_m,
                              const double (&quat_xyzw)[4], std::int64_t taken_at_ns) const {
     const Quat q(quat_xyzw[3], quat_xyzw[0], quat_xyzw[1], quat_xyzw[2]);
-    if (!sendable(p_m) || !(std::abs(q.norm() - 1.0) < 0.01)) return;
+    if (!sendable(p_m) || !(std::abs(q.norm() - 1.0) < 0.01)) return false;
     append_transform(out, name, {p_m, q.normalized()}, time_of(taken_at_ns));
+    return true;
 }
 
 void IgtlMessages::hand(const RtRegion& region, std::size_t hand, IgtlBytes& out) {
     const auto t = newest(region.tool[hand]);
     if (!t || !hand_[hand].renewed(t->cycle)) return;
     const std::string tool = kToolOf[hand];
-    transform(out, tool + "ToWorld", vector_of(t->pos_world_m), t->quat_world_tool_xyzw, t->taken_at_ns);
+    const bool sent =
+        transform(out, tool + "ToWorld", vector_of(t->pos_world_m), t->quat_world_tool_xyzw, t->taken_at_ns);
+    if (sent && hand == 0) ++poses_;
     if (sendable(vector_of(t->force_world_n)))
         append_sensor(out, tool + "Force", t->force_world_n, IgtlUnit::newton, time_of(t->taken_at_ns));
     if (sendable(vector_of(t->torque_world_n_m)))
@@ -130,7 +133,7 @@ void IgtlMessages::status(const RtRegion* region, IgtlBytes& out) {
     if (shown == state_shown_ && now_ - status_at_ < kStatusEvery) return;
     state_shown_ = shown;
     status_at_ = now_;
-    const auto number = static_cast<std::int64_t>(batches_);
+    const auto number = static_cast<std::int64_t>(poses_);
     if (!h) {
         append_status(out, "TactStatus", IgtlStatus::not_present, number, "no controller",
                       "no controller runs", utc_ns_);

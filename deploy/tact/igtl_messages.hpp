@@ -5,7 +5,8 @@
 //   ToolDepth, ...                SENSOR     depth of the tool in surface or bone, mm of the hand's space; 0: free
 //   ToolToPatient, ...            TRANSFORM  drilling a scan that states its orientation: the tool in the patient, RAS, mm
 //   HeadToScreen                  TRANSFORM  the tracked head in the frame of the screen, mm
-//   TactStatus                    STATUS     state and reason; the sub-code is the number of the batch, from 1
+//   TactStatus                    STATUS     state and reason; the sub-code is the number of ToolToWorld sent before it,
+//                                            so that a receiver can count losses
 //   TactState                     STRING     the same for people, with rates
 // Both last ones at every change and once per second.
 //
@@ -57,12 +58,13 @@ private:
     void depths(const RtRegion& region, IgtlBytes& out);
     void head(const RtRegion& region, IgtlBytes& out);
     void status(const RtRegion* region, IgtlBytes& out);
-    void transform(IgtlBytes& out, const std::string& name, const Vec3& p_m, const double (&quat_xyzw)[4],
+    // False: not sent, because it is no pose.
+    bool transform(IgtlBytes& out, const std::string& name, const Vec3& p_m, const double (&quat_xyzw)[4],
                    std::int64_t taken_at_ns) const;
     [[nodiscard]] std::int64_t time_of(std::int64_t taken_at_ns) const;
 
     IgtlScene scene_;
-    std::uint64_t batches_ = 0;
+    std::uint64_t batches_ = 0, poses_ = 0;  // the latter: ToolToWorld
     Instant now_{}, status_at_{};
     std::int64_t utc_ns_ = 0;
     Stamp hand_[kHandsMax], touch_, drill_, head_;

@@ -12,6 +12,7 @@
 #include "deploy/tact/doctor.hpp"
 #include "deploy/tact/rights.hpp"
 #include "hal/probe/buses.hpp"
+#include "hal/probe/igtl_answer.hpp"
 
 namespace tact::launch {
 
@@ -21,6 +22,9 @@ struct DeviceRequest {
     std::string driver2 = "none", serial2;  // second hand
     std::int64_t firmware_bytes = -1;       // size of that file on this machine; -1: not readable
     std::string tracker = "none", tracker_interface = "can0", tracker_format = "classic";
+    std::string tracker_host = "127.0.0.1", tracker_devices;  // of driver "openigtlink"
+    int tracker_port = 18944;
+    double tracker_rate_hz = 240.0;
     std::string lines = "none", lines_chip = "cp2112_gpio";
     std::vector<Finding> problems;  // problems of the file as a whole
 };
@@ -36,6 +40,9 @@ struct VendorLibraries {
     std::string inverse_service;  // of the driver inverse3: configuration folder of its service
 };
 [[nodiscard]] VendorLibraries find_libraries(const std::filesystem::path& root, const DeviceRequest& request);
+
+// What the OpenIGTLink server of the request sends; only for tracker.driver = "openigtlink".
+[[nodiscard]] Finding judge_igtl(const probe::IgtlAnswer& answer, const DeviceRequest& request);
 
 [[nodiscard]] std::vector<Finding> judge_devices(const probe::Buses& buses, const DeviceRequest& request,
                                                  const Person& person, const VendorLibraries& libraries);

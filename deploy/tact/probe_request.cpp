@@ -32,10 +32,16 @@ DeviceRequest device_request_from(const nlohmann::json& answer) {
           std::pair{"device.fd_library", &request.fd_library}, std::pair{"device2.driver", &request.driver2},
           std::pair{"device2.serial", &request.serial2}, std::pair{"tracker.driver", &request.tracker},
           std::pair{"tracker.interface", &request.tracker_interface},
+          std::pair{"tracker.host", &request.tracker_host},
+          std::pair{"tracker.devices", &request.tracker_devices},
           std::pair{"tracker.format", &request.tracker_format}, std::pair{"lines.driver", &request.lines},
           std::pair{"lines.chip", &request.lines_chip}})
         if (const auto at = values.find(key); at != values.end() && at->is_string())
             *target = at->get<std::string>();
+    if (const auto at = values.find("tracker.port"); at != values.end() && at->is_number_integer())
+        request.tracker_port = at->get<int>();
+    if (const auto at = values.find("tracker.rate_hz"); at != values.end() && at->is_number())
+        request.tracker_rate_hz = at->get<double>();
     for (const nlohmann::json& p : answer.value("problems", nlohmann::json::array())) {
         const std::string key = text_at(p, "key");
         request.problems.push_back(

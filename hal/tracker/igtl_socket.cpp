@@ -27,16 +27,13 @@ void IgtlSocket::close() noexcept {
     if (fd_ >= 0) ::close(std::exchange(fd_, -1));
 }
 
-void IgtlSocket::open() {
-    const std::string attempt = "head tracker at " + host_ + ":" + std::to_string(port_);
+std::string IgtlSocket::try_open() {
     addrinfo hints{};
     hints.ai_socktype = SOCK_STREAM;
     addrinfo* found = nullptr;
     if (const int error = getaddrinfo(host_.c_str(), std::to_string(port_).c_str(), &hints, &found);
         error != 0 || found == nullptr)
-        throw StartupError(
-            attempt, std::string("the host is not known: ") + gai_strerror(error),
-            "set tracker.host to the name or address of the machine with the OpenIGTLink server");
+        return std::string("the host is not known: ") + gai_strerror(error);
     // The first address that answers; "localhost" often has one of IPv6 on which nobody listens.
     int error = 0;
     bool connected = false;
@@ -47,10 +44,15 @@ void IgtlSocket::open() {
         connected = error == 0;
     }
     freeaddrinfo(found);
-    if (!connected)
-        throw StartupError(attempt,
-                           error == ECONNREFUSED ? "no OpenIGTLink server listens there"
-                                                 : std::system_category().message(error),
+    if (connected) return "";
+    return error == ECONNREFUSED ? "no OpenIGTLink server listens there"
+                                 : std::system_category().message(error);
+}
+
+void IgtlSocket::open() {
+    const std::string problem = try_open();
+    if (!problem.empty())
+        throw StartupError("head tracker at " + host_ + ":" + std::to_string(port_), problem,
                            "start the server, set tracker.host and tracker.port, or set tracker.driver = "
                            "\"none\"; tact probe shows what a server sends");
 }

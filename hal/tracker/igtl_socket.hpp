@@ -28,6 +28,8 @@ public:
     IgtlSocket& operator=(const IgtlSocket&) = delete;
 
     void open() override;
+    // As open(), but returns the reason; "": connected. Throws nothing but std::bad_alloc.
+    [[nodiscard]] std::string try_open();
     bool reopen() noexcept override;
     void close() noexcept override;
     IgtlBatch receive(std::span<std::byte> into, Duration patience) noexcept override;

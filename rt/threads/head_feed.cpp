@@ -24,7 +24,7 @@ const char* words(TrackerLink link) noexcept {
         case TrackerLink::bus_off:
             return "its bus is off after errors";
         case TrackerLink::gone:
-            return "its interface is gone; retrying twice per second";
+            return "its interface or connection is gone; retrying twice per second";
     }
     return "unknown";
 }

@@ -64,6 +64,9 @@ set_tests_properties(shared_core_test PROPERTIES TIMEOUT 300 SKIP_RETURN_CODE 77
 add_test(NAME monitoring_test COMMAND Python3::Interpreter ${CMAKE_CURRENT_SOURCE_DIR}/e2e/monitoring_test.py $<TARGET_FILE_DIR:tact>
     $<TARGET_FILE:write_small_scene> WORKING_DIRECTORY ${CMAKE_SOURCE_DIR})
 set_tests_properties(monitoring_test PROPERTIES LABELS e2e TIMEOUT 120 SKIP_RETURN_CODE 77)
+add_test(NAME igtl_test COMMAND Python3::Interpreter ${CMAKE_CURRENT_SOURCE_DIR}/e2e/igtl_test.py $<TARGET_FILE_DIR:tact>
+    $<TARGET_FILE:write_small_scene> ${TACT_IGTL_EXAMPLES} WORKING_DIRECTORY ${CMAKE_SOURCE_DIR})
+set_tests_properties(igtl_test PROPERTIES LABELS e2e TIMEOUT 600 SKIP_RETURN_CODE 77 RUN_SERIAL TRUE)
 # h5py comes from the system's packages and is available only in the system's Python.
 find_program(TACT_SYSTEM_PYTHON3 python3 PATHS /usr/bin NO_DEFAULT_PATH)
 if(TACT_SYSTEM_PYTHON3)

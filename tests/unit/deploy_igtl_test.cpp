@@ -129,7 +129,7 @@ TEST_F(IgtlMessagesTest, a_value_is_sent_once) {
     EXPECT_EQ(read_all(batch()).count("ToolToWorld"), 1U);
 }
 
-TEST_F(IgtlMessagesTest, the_status_comes_at_every_change_and_once_per_second_with_the_number_of_the_batch) {
+TEST_F(IgtlMessagesTest, the_status_comes_at_every_change_and_once_per_second_with_the_number_of_poses) {
     const auto status = [&](milliseconds later) {
         now_ += later;
         const auto all = read_all(batch());
@@ -137,11 +137,14 @@ TEST_F(IgtlMessagesTest, the_status_comes_at_every_change_and_once_per_second_wi
     };
     const auto code = [](const std::vector<std::byte>& body) { return std::to_integer<int>(body.at(1)); };
     const auto number = [](const std::vector<std::byte>& body) { return std::to_integer<int>(body.at(9)); };
+    region_->tool[0].publish(tool());
     auto body = status(milliseconds(0));
     EXPECT_EQ(code(body), 1);
-    EXPECT_EQ(number(body), 1);
-    EXPECT_TRUE(status(milliseconds(999)).empty());
-    EXPECT_EQ(number(status(milliseconds(1))), 3);
+    EXPECT_EQ(number(body), 0);
+    EXPECT_TRUE(status(milliseconds(500)).empty());
+    region_->tool[0].publish(tool());
+    EXPECT_TRUE(status(milliseconds(499)).empty());
+    EXPECT_EQ(number(status(milliseconds(1))), 2);
     HealthTopic h{};
     h.state = static_cast<std::uint8_t>(RunState::fault);
     h.reason = static_cast<std::uint8_t>(RunReason::emergency_stop);

@@ -1,0 +1,13 @@
+# Programs of Debian's openigtlink-examples, independent peers for tests. The package has their sources only.
+set(examples /usr/share/doc/openigtlink-examples/examples)
+set(TACT_IGTL_EXAMPLES ${CMAKE_BINARY_DIR}/tests/igtl_examples)
+foreach(example Receiver/ReceiveClient Tracker/TrackerServer TrackingData/TrackingDataServer)
+    get_filename_component(name ${example} NAME)
+    if(EXISTS ${examples}/${example}.cxx)
+        add_executable(igtl_${name} ${examples}/${example}.cxx)
+        target_include_directories(igtl_${name} SYSTEM PRIVATE ${TACT_IGTL_INCLUDE})
+        target_link_libraries(igtl_${name} PRIVATE ${TACT_IGTL_LIBRARY} Threads::Threads)
+        target_compile_options(igtl_${name} PRIVATE -w)
+        set_target_properties(igtl_${name} PROPERTIES OUTPUT_NAME ${name} RUNTIME_OUTPUT_DIRECTORY ${TACT_IGTL_EXAMPLES})
+    endif()
+endforeach()
