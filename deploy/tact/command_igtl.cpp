@@ -3,6 +3,7 @@
 
 #include <cstdio>
 #include <memory>
+#include <utility>
 
 #include "deploy/tact/commands.hpp"
 #include "deploy/tact/igtl_messages.hpp"
@@ -49,6 +50,7 @@ int igtl(const IgtlOptions& o) {
     Pacer pacer(period, Monotonic::now() + period);
     constexpr Duration kNewsEvery = std::chrono::seconds(1);
     Instant news_at{};
+    std::uint64_t greeted = 0;  // clients
     while (signals.wait(0) == 0) {
         server.serve_until(pacer.planned());
         if (observer.poll() == Observer::News::arrived) {
@@ -59,6 +61,7 @@ int igtl(const IgtlOptions& o) {
                              scene.problem.c_str());
             messages.scene(std::move(scene));
         }
+        if (std::exchange(greeted, server.counts().accepted) != server.counts().accepted) messages.greet();
         const bool runs = observer.attached() && observer.seen();
         server.send(messages.batch(runs ? &observer.region() : nullptr, Monotonic::now(), utc_now_ns()));
         if (const Instant now = Monotonic::now(); now - news_at >= kNewsEvery) {

@@ -8,7 +8,7 @@
 //   TactStatus                    STATUS     state and reason; the sub-code is the number of ToolToWorld sent before it,
 //                                            so that a receiver can count losses
 //   TactState                     STRING     the same for people, with rates
-// Both last ones at every change and once per second.
+// Both last ones at every change, for every new client and once per second.
 //
 // Repeats   a value that the controller did not renew is not sent again
 // Time      UTC of the measurement; in a replay the time of sending
@@ -38,6 +38,8 @@ class IgtlMessages {
 public:
     // For a new controller.
     void scene(IgtlScene scene);
+    // The next batch contains the status: a client is new.
+    void greet() { state_shown_ = 0; }
     // The batch of one period. region: null without a controller. utc_ns: the time of day at `now`.
     [[nodiscard]] IgtlBytes batch(const RtRegion* region, Instant now, std::int64_t utc_ns);
     [[nodiscard]] std::uint64_t batches() const { return batches_; }

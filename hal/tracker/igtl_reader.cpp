@@ -78,7 +78,8 @@ Refusal IgtlReader::take(Sensor& s, std::uint8_t index, const IgtlPose& pose, In
     const std::int64_t time_ns = stream_.header.time_ns;
     if (pose.fault == IgtlPoseFault::not_finite) return Refusal::malformed;
     if (pose.fault == IgtlPoseFault::rotation) return Refusal::norm;
-    if (pose.fault == IgtlPoseFault::identity) return Refusal::sensor_status;
+    if (pose.fault == IgtlPoseFault::not_valid || pose.fault == IgtlPoseFault::identity)
+        return Refusal::sensor_status;
     if (pose.T.p_m.norm() > settings_.reach_m) return Refusal::out_of_range;
     if (s.known && time_ns != 0 && time_ns == s.time_ns) return Refusal::repeated;
     Instant taken_at = arrived;

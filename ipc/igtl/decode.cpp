@@ -5,6 +5,7 @@
 #include <igtl_transform.h>
 #include <igtl_util.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 
@@ -59,21 +60,50 @@ void take_matrix(const Matrix& m, IgtlPose& out) noexcept {
     out.T.p_m = 1e-3 * Eigen::Map<const Eigen::Vector3f>(m.data() + 9).cast<double>();
 }
 
-// The content between the extended header and the metadata of a message of version 3; the whole body before.
-IgtlFault content_of(const IgtlHeader& header, std::span<const std::byte>& body) noexcept {
+std::size_t number_at(std::span<const std::byte> bytes, std::size_t at, std::size_t size) noexcept {
+    std::size_t n = 0;
+    for (std::size_t i = 0; i < size; ++i) n = n << 8U | std::to_integer<std::size_t>(bytes[at + i]);
+    return n;
+}
+
+std::string_view text_of(std::span<const std::byte> bytes) noexcept {
+    return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
+}
+
+struct IgtlContent {
+    std::span<const std::byte> content, index, metadata;
+};
+
+// From version 2 on: extended header, content, index of the metadata, metadata. Before, the whole body is the content.
+IgtlFault split(const IgtlHeader& header, std::span<const std::byte> body, IgtlContent& out) noexcept {
     constexpr std::size_t kExtendedLeast = 12;
-    if (header.version < 3) return IgtlFault::none;
+    out = {.content = body, .index = {}, .metadata = {}};
+    if (header.version < 2) return IgtlFault::none;
     if (body.size() < kExtendedLeast) return IgtlFault::length;
-    const auto number = [&](std::size_t at, std::size_t bytes) {
-        std::size_t n = 0;
-        for (std::size_t i = 0; i < bytes; ++i) n = n << 8U | std::to_integer<std::size_t>(body[at + i]);
-        return n;
-    };
-    const std::size_t extended = number(0, 2), metadata = number(2, 2) + number(4, 4);
-    if (extended < kExtendedLeast || extended > body.size() || metadata > body.size() - extended)
+    const std::size_t extended = number_at(body, 0, 2), index = number_at(body, 2, 2),
+                      metadata = number_at(body, 4, 4);
+    if (extended < kExtendedLeast || extended > body.size() || index + metadata > body.size() - extended)
         return IgtlFault::length;
-    body = body.subspan(extended, body.size() - extended - metadata);
+    out.metadata = body.last(metadata);
+    out.index = body.first(body.size() - metadata).last(index);
+    out.content = body.subspan(extended, body.size() - extended - index - metadata);
     return IgtlFault::none;
+}
+
+// The index: a number of entries, and for each the sizes of key and value. Metadata that contradict it state nothing.
+bool status_is_bad(const IgtlContent& c) noexcept {
+    constexpr std::size_t kEntry = 8;
+    if (c.index.size() < 2) return false;
+    const std::size_t entries = std::min(number_at(c.index, 0, 2), (c.index.size() - 2) / kEntry);
+    std::span<const std::byte> rest = c.metadata;
+    for (std::size_t i = 0; i < entries; ++i) {
+        const std::size_t at = 2 + kEntry * i, key = number_at(c.index, at, 2),
+                          value = number_at(c.index, at + 4, 4);
+        if (key > rest.size() || value > rest.size() - key) return false;
+        if (text_of(rest.first(key)) == "TransformStatus") return text_of(rest.subspan(key, value)) != "OK";
+        rest = rest.subspan(key + value);
+    }
+    return false;
 }
 
 }  // namespace
@@ -102,7 +132,9 @@ IgtlFault decode_poses(const IgtlHeader& header, std::span<const std::byte> body
     // The library's function takes a pointer to bytes that it only reads.
     auto* const data = reinterpret_cast<unsigned char*>(const_cast<std::byte*>(body.data()));
     if (crc64(data, body.size(), 0) != header.crc) return IgtlFault::crc;
-    if (const IgtlFault fault = content_of(header, body); fault != IgtlFault::none) return fault;
+    IgtlContent parts;
+    if (const IgtlFault fault = split(header, body, parts); fault != IgtlFault::none) return fault;
+    body = parts.content;
     if (transform) {
         Matrix m;
         if (body.size() != sizeof m) return IgtlFault::length;
@@ -110,6 +142,8 @@ IgtlFault decode_poses(const IgtlHeader& header, std::span<const std::byte> body
         igtl_transform_convert_byte_order(m.data());
         out.pose[0].name = header.device;
         take_matrix(m, out.pose[0]);
+        if (out.pose[0].fault == IgtlPoseFault::none && status_is_bad(parts))
+            out.pose[0] = {.name = header.device, .fault = IgtlPoseFault::not_valid, .T = {}};
         out.count = 1;
         return IgtlFault::none;
     }

@@ -1,7 +1,8 @@
 // Messages of OpenIGTLink, decoded: the header of any message, and the poses of TRANSFORM and TDATA.
 //
 // Frame    the sender's, right-handed. Millimetres in the message, metres here
-// Version  headers of version 1 to 3. The extended header and the metadata of version 3 are skipped
+// Version  headers of version 1 (protocol 1 and 2) to 3. From version 2 on (protocol 3) an extended header precedes the
+//          content, and metadata follow it; of these, TransformStatus of PLUS and 3D Slicer is read
 // Hostile  any bytes: every size is checked against the bytes at hand before it is used; decoded names are printable,
 //          decoded poses finite with a unit quaternion
 // Source   openigtlink.org, protocol version 3; checksum and byte order by libopenigtlink
@@ -65,8 +66,9 @@ enum class IgtlFault : std::uint8_t {
 enum class IgtlPoseFault : std::uint8_t {
     none,
     not_finite,
-    rotation,  // the matrix is no rotation: off by more than kIgtlRotationError
-    identity,  // exactly the identity, which servers send in place of a pose that they do not have
+    rotation,   // the matrix is no rotation: off by more than kIgtlRotationError
+    not_valid,  // by its TransformStatus, which is not "OK"
+    identity,   // exactly the identity, which servers send in place of a pose that they do not have
 };
 inline constexpr double kIgtlRotationError = 0.01;  // of a product of two columns
 

@@ -11,7 +11,6 @@ import json
 import math
 import os
 import re
-import select
 import shutil
 import signal
 import socket
@@ -61,9 +60,10 @@ TABLE = list(table())
 
 class Client:
     """Receives messages; every one must have the right checksum."""
-    def __init__(self, port):
+    def __init__(self, test, port):
         self.socket = socket.create_connection(("127.0.0.1", port), timeout=PATIENCE_S)
         self.bytes = b""
+        test.addCleanup(self.close)
 
     def read(self, size):
         while len(self.bytes) < size:
@@ -189,11 +189,22 @@ class Station(unittest.TestCase):
         return (len(times) - 1) / (times[-1] - times[0])
 
 
+    def servo_is_unaffected(self, before, after, took_s):
+        """The machine's own load may cost a few cycles: the controller of a test has ordinary priority."""
+        cycles = after["armed_cycles"] - before["armed_cycles"]
+        misses = after["deadline_misses"] - before["deadline_misses"]
+        print("servo: %.1f cycles per second, %d deadline misses" % (cycles / took_s, misses))
+        self.assertEqual(after["state"], "active")
+        self.assertGreater(cycles / took_s, 900.0)
+        self.assertLess(misses, 0.01 * cycles)
+        self.assertEqual((after["servo"]["allocations"], after["servo"]["locks"]), (0, 0))
+
+
 class Server(Station):
     def test_no_message_is_lost_at_the_stated_rate(self):
         self.controller()
         server, port = self.serve()
-        client = Client(port)
+        client = Client(self, port)
         rate = self.count_losses(client, SECONDS)
         print("%.1f s: nothing lost, %.2f Hz" % (SECONDS, rate))
         self.assertGreater(rate, 0.8 * RATE_HZ)
@@ -206,7 +217,7 @@ class Server(Station):
     def test_messages_have_the_values_of_the_controller(self):
         controller = self.controller()
         _, port = self.serve("--rate", "100")
-        client = Client(port)
+        client = Client(self, port)
         kinds = {}
         for _ in range(300):
             kind, name, _, body = client.message()
@@ -233,7 +244,7 @@ class Server(Station):
     def test_hostile_clients_cost_neither_the_servo_nor_other_clients(self):
         self.controller()
         server, port = self.serve()
-        client = Client(port)
+        client = Client(self, port)
         before, began = self.status(), time.monotonic()
         stop = threading.Event()
 
@@ -277,11 +288,7 @@ class Server(Station):
         took = time.monotonic() - began
         print("with hostile clients: nothing lost, %.2f Hz" % rate)
         self.assertGreater(rate, 0.8 * RATE_HZ)
-        self.assertEqual(after["state"], "active")
-        cycles = after["rate"]["cycles"] - before["rate"]["cycles"]
-        self.assertGreater(cycles / took, 900.0)
-        for counter in ("allocations", "locks"):
-            self.assertEqual(after["rt"][counter], 0)
+        self.servo_is_unaffected(before, after, took)
         client.close()
         server.send_signal(signal.SIGTERM)
         self.assertEqual(server.wait(PATIENCE_S), 0)
@@ -297,17 +304,18 @@ class Server(Station):
             s.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, 4096)
             s.connect(("127.0.0.1", port))
             self.wait("the client is dropped", lambda: "reads too slowly and was dropped" in self.log("igtl"))
-        client = Client(port)
+        client = Client(self, port)
         client.until("TRANSFORM", "ToolToWorld")
 
     def test_debians_client_prints_the_poses(self):
         program = self.example("ReceiveClient")
         self.controller()
         _, port = self.serve()
-        client = Client(port)
+        client = Client(self, port)
         receiver = self.start("receiver", program, "127.0.0.1", str(port))
         poses = {}
-        self.wait("ReceiveClient prints poses", lambda: self.log("receiver").count("Receiving TRANSFORM") > 30)
+        self.wait("ReceiveClient prints 30 poses and the state", lambda: self.log("receiver").count("Receiving TRANSFORM") > 30
+                  and "Receiving STATUS" in self.log("receiver") and "String: active: " in self.log("receiver"))
         receiver.kill()
         receiver.wait()
         last = float(re.findall(r"Time stamp: (\d+\.\d+)", self.log("receiver"))[-1])
@@ -328,8 +336,6 @@ class Server(Station):
             compared += 1
         print("ReceiveClient printed %d of our poses" % compared)
         self.assertGreater(compared, 20)
-        self.assertIn("Receiving STATUS", self.log("receiver"))
-        self.assertIn("String: active: ", self.log("receiver"))
 
     def test_wrong_usage_exits_with_2_and_a_taken_port_with_1_and_the_fix(self):
         def run(*words):
@@ -381,7 +387,7 @@ class Tracker(Station):
         self.controller(self.CONFIG % port + 'devices = "Tracker"\n')
         self.wait("the head is tracked", lambda: self.metric("tracker_fresh") == 1)
         _, out = self.serve()
-        _, _, _, body = Client(out).until("TRANSFORM", "HeadToScreen")
+        _, _, _, body = Client(self, out).until("TRANSFORM", "HeadToScreen")
         x, y, z = matrix(body)[9:]
         self.assertAlmostEqual(x, z, delta=0.5)  # the server's path: (r cos, r sin, r cos), r = 50 mm
         self.assertLess(math.hypot(x, y), 80.0)
@@ -454,9 +460,7 @@ class Tracker(Station):
         after, took = self.status(), time.monotonic() - began
         stop.set()
         thread.join(PATIENCE_S)
-        self.assertGreater((after["rate"]["cycles"] - before["rate"]["cycles"]) / took, 900.0)
-        self.assertEqual((after["rt"]["allocations"], after["rt"]["locks"]), (0, 0))
-        self.assertEqual(after["state"], "active")
+        self.servo_is_unaffected(before, after, took)
         self.assertGreater(self.metric("tracker_samples_total"), 0)
         self.assertGreaterEqual(self.metric('tracker_errors_total{session="default",kind="link"}'), 2)
 

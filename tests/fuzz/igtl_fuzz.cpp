@@ -96,10 +96,10 @@ std::vector<Input> seeds() {
         }
         all.insert(all.end(), {transforms, tdata, mixed});
     }
-    // Version 3: an extended header of 12 bytes and metadata of 4.
+    // Protocol 3: an extended header of 12 bytes and metadata of 4.
     Input three{static_cast<std::byte>(kFix)};
     append_transform(three, "Head", T, 0);
-    three[2] = std::byte{3};
+    three[2] = std::byte{2};
     three[50] = std::byte{48 + 12 + 4};
     const Input extended = {std::byte{0}, std::byte{12}, std::byte{0}, std::byte{0},
                             std::byte{0}, std::byte{0},  std::byte{0}, std::byte{4},

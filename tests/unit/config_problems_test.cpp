@@ -51,6 +51,26 @@ TEST(CheckConfig, the_servo_core_must_be_online) {
     EXPECT_FALSE(says(keys("[servo]\ncore = 5000\n"), {"no core"}));  // reported only once
 }
 
+TEST(CheckConfig, an_openigtlink_tracker_names_every_sensor) {
+    const Folder folder;
+    const auto keys = [&](const std::string& text) {
+        RtConfig config;
+        std::string all;
+        for (const ConfigError& e :
+             check_config_file(folder.file("t.toml", "[tracker]\ndriver = \"openigtlink\"\n" + text), config,
+                               folder.root()))
+            all += e.key + ": " + e.problem + "; ";
+        return all;
+    };
+    EXPECT_EQ(keys("devices = \"Head\"\n"), "");
+    EXPECT_EQ(keys("devices = \"Head, Channel 0\"\nsensors = 2\n"), "");
+    EXPECT_TRUE(says(keys(""), {"tracker.devices: 0 names for 1 sensors"}));
+    EXPECT_TRUE(says(keys("devices = \"Head, Pen\"\n"), {"tracker.devices: 2 names for 1 sensors"}));
+    EXPECT_TRUE(says(keys("devices = \"Head, Head\"\nsensors = 2\n"), {"tracker.devices", "given twice"}));
+    EXPECT_TRUE(says(keys("devices = \"A name of 21 letters.\"\n"), {"tracker.devices", "too long"}));
+    EXPECT_TRUE(says(keys("devices = \"Head\"\nport = 0\n"), {"tracker.port: 0 is outside"}));
+}
+
 TEST(CheckConfig, the_report_ends_with_the_number_of_problems_and_the_exit_code_is_1_if_any) {
     const Folder folder;
     std::ostringstream out;

@@ -70,6 +70,9 @@ TEST(Config, the_documented_file_has_the_defaults_and_every_key) {
     EXPECT_EQ(config.safety.hand_damping_n_s_m, defaults.safety.hand_damping_n_s_m);
     EXPECT_EQ(config.tracker.driver, defaults.tracker.driver);
     EXPECT_EQ(config.tracker.interface, defaults.tracker.interface);
+    EXPECT_EQ(config.tracker.host, defaults.tracker.host);
+    EXPECT_EQ(config.tracker.port, defaults.tracker.port);
+    EXPECT_EQ(config.tracker.devices, defaults.tracker.devices);
     EXPECT_EQ(config.tracker.format, defaults.tracker.format);
     EXPECT_EQ(config.tracker.sensors, defaults.tracker.sensors);
     EXPECT_EQ(config.tracker.head_sensor, defaults.tracker.head_sensor);

@@ -145,6 +145,9 @@ TEST_F(IgtlMessagesTest, the_status_comes_at_every_change_and_once_per_second_wi
     region_->tool[0].publish(tool());
     EXPECT_TRUE(status(milliseconds(499)).empty());
     EXPECT_EQ(number(status(milliseconds(1))), 2);
+    messages_.greet();
+    EXPECT_EQ(number(status(milliseconds(1))), 2);
+    EXPECT_TRUE(status(milliseconds(1)).empty());
     HealthTopic h{};
     h.state = static_cast<std::uint8_t>(RunState::fault);
     h.reason = static_cast<std::uint8_t>(RunReason::emergency_stop);

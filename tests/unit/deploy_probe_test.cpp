@@ -106,6 +106,34 @@ TEST(Probe, a_machine_without_devices_is_reported_and_an_emulated_run_is_ok) {
     EXPECT_TRUE(says(a.one("gpio").says, {"no GPIO"}));
 }
 
+TEST(Probe, an_openigtlink_server_is_judged_by_the_poses_that_it_sends) {
+    DeviceRequest request;
+    request.tracker = "openigtlink";
+    request.tracker_host = "plus";
+    request.tracker_devices = " Glasses , Channel 0";
+    request.tracker_rate_hz = 60.0;
+    probe::IgtlAnswer answer;
+    answer.problem = "no OpenIGTLink server listens there";
+    const auto level = [&](FindingLevel wanted, std::initializer_list<std::string> texts) {
+        const Finding f = judge_igtl(answer, request);
+        EXPECT_EQ(f.name, "tracker");
+        EXPECT_EQ(f.level, wanted) << f.says;
+        EXPECT_TRUE(says(f.says, texts)) << f.says;
+        EXPECT_EQ(f.fix.empty(), wanted == FindingLevel::ok);
+    };
+    level(FindingLevel::fail, {"plus:18944", "no OpenIGTLink server listens there"});
+    answer = {.listened_s = 2.0, .sent = {{"TRANSFORM", "Glasses", 120, 120}, {"IMAGE", "Channel 0", 60, 0}}};
+    level(FindingLevel::fail, {"no pose \"Channel 0\"", "TRANSFORM \"Glasses\" (60 Hz)"});
+    answer.sent.push_back({"TDATA", "Channel 0", 120, 0});
+    level(FindingLevel::warn, {"no valid pose of \"Channel 0\""});
+    answer.sent.back().valid = 100;
+    level(FindingLevel::ok, {"it sends", "TDATA \"Channel 0\" (60 Hz)"});
+    request.tracker_rate_hz = 240.0;
+    level(FindingLevel::warn, {"arrives at 60 Hz, but tracker.rate_hz is 240"});
+    request.tracker_devices = "";
+    level(FindingLevel::fail, {"tracker.devices names no sensor", "Glasses"});
+}
+
 TEST(Probe, a_configured_but_missing_device_fails_with_a_fix) {
     const Tree tree;
     DeviceRequest request = phantom_request();

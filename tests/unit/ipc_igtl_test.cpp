@@ -81,7 +81,7 @@ TEST(Igtl, reads_the_bytes_of_the_specification) {
     EXPECT_EQ(poses.pose[0].name.view(), "Probe");
 }
 
-TEST(Igtl, reads_version_3_without_its_metadata) {
+TEST(Igtl, reads_a_header_of_version_2_without_extended_header_and_metadata) {
     IgtlBytes body;
     big_endian(body, 12, 2);  // extended header
     big_endian(body, 2, 2);   // header of the metadata
@@ -90,7 +90,7 @@ TEST(Igtl, reads_version_3_without_its_metadata) {
     const IgtlBytes matrix = matrix_turned_about_z();
     body.insert(body.end(), matrix.begin(), matrix.end());
     body.resize(body.size() + 7, std::byte{0xEE});
-    const Message m = message_of(by_specification(3, "TRANSFORM", body));
+    const Message m = message_of(by_specification(2, "TRANSFORM", body));
     IgtlPoses poses;
     ASSERT_EQ(decode_poses(m.header, m.body, poses), IgtlFault::none);
     expect_turned(poses);
@@ -99,10 +99,41 @@ TEST(Igtl, reads_version_3_without_its_metadata) {
         IgtlBytes wrong = body;
         wrong[static_cast<std::size_t>(at)] = static_cast<std::byte>(value);
         if (at == 0 && value == 0) wrong[1] = std::byte{11};
-        const Message w = message_of(by_specification(3, "TRANSFORM", wrong));
+        const Message w = message_of(by_specification(2, "TRANSFORM", wrong));
         EXPECT_EQ(decode_poses(w.header, w.body, poses), IgtlFault::length) << at;
         EXPECT_EQ(poses.count, 0U);
     }
+}
+
+TEST(Igtl, a_transform_that_states_a_bad_status_is_not_valid) {
+    using Pairs = std::vector<std::pair<std::string, std::string>>;
+    const auto fault = [](const Pairs& pairs, std::size_t entries) {
+        IgtlBytes index, metadata;
+        big_endian(index, entries, 2);
+        for (const auto& [key, value] : pairs) {
+            big_endian(index, key.size(), 2);
+            big_endian(index, 3, 2);  // encoding
+            big_endian(index, value.size(), 4);
+            for (const char c : key + value) metadata.push_back(static_cast<std::byte>(c));
+        }
+        IgtlBytes body;
+        big_endian(body, 12, 2);
+        big_endian(body, index.size(), 2);
+        big_endian(body, metadata.size(), 4);
+        big_endian(body, 0, 4);
+        for (const IgtlBytes& part : {matrix_turned_about_z(), index, metadata})
+            body.insert(body.end(), part.begin(), part.end());
+        const Message m = message_of(by_specification(2, "TRANSFORM", body));
+        IgtlPoses poses;
+        EXPECT_EQ(decode_poses(m.header, m.body, poses), IgtlFault::none);
+        return poses.pose[0].fault;
+    };
+    const std::pair<std::string, std::string> other{"Other", "x"};
+    EXPECT_EQ(fault({other, {"TransformStatus", "OK"}}, 2), IgtlPoseFault::none);
+    EXPECT_EQ(fault({other, {"TransformStatus", "MISSING"}}, 2), IgtlPoseFault::not_valid);
+    EXPECT_EQ(fault({other, {"TransformStatus", "MISSING"}}, 1), IgtlPoseFault::none);
+    EXPECT_EQ(fault({other, {"TransformStatus", "MISSING"}}, 0xFFFF), IgtlPoseFault::not_valid);
+    EXPECT_EQ(fault({other}, 0xFFFF), IgtlPoseFault::none);
 }
 
 TEST(Igtl, encodes_the_bytes_of_the_specification) {
