@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """OpenIGTLink with other programs: tact igtl to a client of this test and to Debian's ReceiveClient; Debian's servers to the controller's tracker.
 
-usage: igtl_test.py BIN_DIR WRITE_SMALL_SCENE EXAMPLES_DIR [--seconds S]   (from the root of the project)
+usage: igtl_test.py BIN_DIR WRITE_SMALL_SCENE EXAMPLES_DIR [--seconds S] [options of unittest]   (from the root of the project)
 
 EXAMPLES_DIR contains the programs of openigtlink-examples; tests that need one are skipped without it. Exit code 77: all of them are missing, and
 the rest passed. --seconds: length of the count of losses. Uses only the loopback interface.
@@ -36,7 +36,7 @@ def option(name, default):
 
 SECONDS = option("--seconds", 5.0)
 BIN, WRITER, EXAMPLES = (os.path.abspath(a) for a in sys.argv[1:4])
-del sys.argv[1:]
+del sys.argv[1:4]
 
 
 def crc64(data):

@@ -114,7 +114,7 @@ TEST(Probe, an_openigtlink_server_is_judged_by_the_poses_that_it_sends) {
     request.tracker_rate_hz = 60.0;
     probe::IgtlAnswer answer;
     answer.problem = "no OpenIGTLink server listens there";
-    const auto level = [&](FindingLevel wanted, std::initializer_list<std::string> texts) {
+    const auto level = [&](FindingLevel wanted, std::initializer_list<const char*> texts) {
         const Finding f = judge_igtl(answer, request);
         EXPECT_EQ(f.name, "tracker");
         EXPECT_EQ(f.level, wanted) << f.says;
@@ -122,7 +122,9 @@ TEST(Probe, an_openigtlink_server_is_judged_by_the_poses_that_it_sends) {
         EXPECT_EQ(f.fix.empty(), wanted == FindingLevel::ok);
     };
     level(FindingLevel::fail, {"plus:18944", "no OpenIGTLink server listens there"});
-    answer = {.listened_s = 2.0, .sent = {{"TRANSFORM", "Glasses", 120, 120}, {"IMAGE", "Channel 0", 60, 0}}};
+    answer.problem.clear();
+    answer.listened_s = 2.0;
+    answer.sent = {{"TRANSFORM", "Glasses", 120, 120}, {"IMAGE", "Channel 0", 60, 0}};
     level(FindingLevel::fail, {"no pose \"Channel 0\"", "TRANSFORM \"Glasses\" (60 Hz)"});
     answer.sent.push_back({"TDATA", "Channel 0", 120, 0});
     level(FindingLevel::warn, {"no valid pose of \"Channel 0\""});
