@@ -64,9 +64,15 @@ set_tests_properties(shared_core_test PROPERTIES TIMEOUT 300 SKIP_RETURN_CODE 77
 add_test(NAME monitoring_test COMMAND Python3::Interpreter ${CMAKE_CURRENT_SOURCE_DIR}/e2e/monitoring_test.py $<TARGET_FILE_DIR:tact>
     $<TARGET_FILE:write_small_scene> WORKING_DIRECTORY ${CMAKE_SOURCE_DIR})
 set_tests_properties(monitoring_test PROPERTIES LABELS e2e TIMEOUT 120 SKIP_RETURN_CODE 77)
-add_test(NAME igtl_test COMMAND Python3::Interpreter ${CMAKE_CURRENT_SOURCE_DIR}/e2e/igtl_test.py $<TARGET_FILE_DIR:tact>
-    $<TARGET_FILE:write_small_scene> ${TACT_IGTL_EXAMPLES} WORKING_DIRECTORY ${CMAKE_SOURCE_DIR})
-set_tests_properties(igtl_test PROPERTIES LABELS e2e TIMEOUT 600 SKIP_RETURN_CODE 77 RUN_SERIAL TRUE)
+if(NOT TACT_SANITIZE)  # not with sanitizers, which slow the servo; deploy_igtl_test, hal_igtl_* and igtl_fuzz cover the code
+    set(igtl_test Python3::Interpreter ${CMAKE_CURRENT_SOURCE_DIR}/e2e/igtl_test.py $<TARGET_FILE_DIR:tact>
+        $<TARGET_FILE:write_small_scene> ${TACT_IGTL_EXAMPLES})
+    add_test(NAME igtl_test COMMAND ${igtl_test} WORKING_DIRECTORY ${CMAKE_SOURCE_DIR})
+    set_tests_properties(igtl_test PROPERTIES LABELS e2e TIMEOUT 600 SKIP_RETURN_CODE 77 RUN_SERIAL TRUE)
+    add_test(NAME igtl_minute_test COMMAND ${igtl_test} --seconds 60 Server.test_no_message_is_lost_at_the_stated_rate
+        WORKING_DIRECTORY ${CMAKE_SOURCE_DIR})
+    set_tests_properties(igtl_minute_test PROPERTIES LABELS "e2e;long" TIMEOUT 300)
+endif()
 # h5py comes from the system's packages and is available only in the system's Python.
 find_program(TACT_SYSTEM_PYTHON3 python3 PATHS /usr/bin NO_DEFAULT_PATH)
 if(TACT_SYSTEM_PYTHON3)
