@@ -31,7 +31,7 @@ struct IgtlServerCounts {
 class IgtlServer {
 public:
     static constexpr std::size_t kClientsMost = 8, kAcceptsMost = 8;  // the latter per period
-    static constexpr std::size_t kQueueMost = 64 * 1024, kReadMost = 64 * 1024;
+    static constexpr std::size_t kQueueMost = std::size_t{64} * 1024, kReadMost = kQueueMost;
     static constexpr int kKernelQueue = 64 * 1024;
 
     // port 0: any free port.

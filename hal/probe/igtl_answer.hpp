@@ -13,7 +13,7 @@
 namespace tact::probe {
 
 inline constexpr std::size_t kIgtlNamesMax = 64;
-inline constexpr std::size_t kIgtlBytesMax = 64 << 20;  // read at most
+inline constexpr std::size_t kIgtlBytesMax = std::size_t{64} << 20U;  // read at most
 
 struct IgtlSent {
     std::string type;  // of the message: "TRANSFORM"; "TDATA" for each of its elements

@@ -35,7 +35,7 @@ const IgtlTrackerSettings& checked(const IgtlTrackerSettings& settings);
 
 class IgtlReader {
 public:
-    static constexpr std::size_t kRoundBytes = 64 * 1024, kReadsMax = 64;
+    static constexpr std::size_t kRoundBytes = std::size_t{64} * 1024, kReadsMax = 64;
     static constexpr Duration kReopenEvery = std::chrono::milliseconds(500);
     static constexpr Duration kFloodPause = std::chrono::milliseconds(2);
     static constexpr Duration kGapMost = std::chrono::seconds(1);  // a longer one is no loss, but a pause

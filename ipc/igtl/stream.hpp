@@ -9,7 +9,8 @@
 
 namespace tact {
 
-inline constexpr std::size_t kIgtlBodyKept = 16 * 1024;  // kIgtlPosesMax elements with ample metadata
+inline constexpr std::size_t kIgtlBodyKept =
+    std::size_t{16} * 1024;  // kIgtlPosesMax elements with ample metadata
 
 class IgtlStream {
 public:
