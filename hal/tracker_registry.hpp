@@ -19,7 +19,7 @@ struct TrackerSettings {
     SimHeadSettings sim;             // its member `can` applies to every CAN driver
     std::string host = "127.0.0.1";  // of an OpenIGTLink server
     int port = kIgtlPort;
-    IgtlTrackerSettings igtl;
+    IgtlTrackerSettings igtl{};
 };
 
 struct TrackerEntry {
