@@ -119,8 +119,11 @@ TEST(HeadFeedThread, publishes_by_itself_and_ends_with_its_object) {
 
 TEST(TrackerRegistry, makes_the_named_tracker_and_lists_all_names_in_its_error) {
     EXPECT_EQ(make_tracker({}), nullptr);
-    for (const TrackerEntry& t : tracker_drivers())
-        EXPECT_NO_THROW(static_cast<void>(make_tracker({.driver = t.name, .interface = "can0", .sim = {}})));
+    for (const TrackerEntry& t : tracker_drivers()) {
+        TrackerSettings settings{.driver = t.name, .interface = "can0", .sim = {}};
+        settings.igtl.names = {"HeadToTracker"};
+        EXPECT_NO_THROW(static_cast<void>(make_tracker(settings))) << t.name;
+    }
     try {
         static_cast<void>(make_tracker({.driver = "magic", .interface = "", .sim = {}}));
         FAIL();
