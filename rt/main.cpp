@@ -117,6 +117,10 @@ int run(std::span<char* const> arguments, const StartOptions& o, const StartOver
     Housekeeping::catch_signals(mailbox);
     DeviceSettings of_device = device_settings_from(config);
     of_device.say = [](const char* text) { spdlog::warn("{}", text); };
+    // Static, as the mailbox.
+    static Latest<MouseTarget> targets[kHandsMax]{};
+    const std::array<bool, kHandsMax> led = mouse_hands(config);
+    if (led[0]) of_device.sim.mouse = &targets[0];
     const std::unique_ptr<HapticDevice> device = driver.make(of_device);
     const DeviceInfo info = device->open();
     std::unique_ptr<HapticDevice> device2;
@@ -124,6 +128,7 @@ int run(std::span<char* const> arguments, const StartOptions& o, const StartOver
     if (two_hands) {
         DeviceSettings of_second = device2_settings_from(config);
         of_second.say = of_device.say;
+        if (led[1]) of_second.sim.mouse = &targets[1];
         device2 = device_driver(config.device2.driver).make(of_second);
         info2 = device2->open();
     }
@@ -203,7 +208,9 @@ int run(std::span<char* const> arguments, const StartOptions& o, const StartOver
                                .arm_with_gui = o.arm_with_gui && !o.arm,
                                .path_names = paths,
                                .servo_thread_id = thread.id(),
-                               .page_faults_at_start = thread.faults_at_start()},
+                               .page_faults_at_start = thread.faults_at_start(),
+                               .mouse = {led[0] ? &targets[0] : nullptr, led[1] ? &targets[1] : nullptr},
+                               .T_dev_world = settings.T_world_dev.inverse()},
                               region, mailbox, *link);
     for (const LevelRequest& w : requests) housekeeping.order(CommandKind::set_level, w.level, w.path);
     if (o.arm) housekeeping.order(CommandKind::arm, 0.0, 0);

@@ -27,8 +27,10 @@ constexpr PassedOption kController[] = {
     {"--core", "N", "Processor core of the servo thread"},
     {"--priority", "P", "Real-time priority of the servo thread"},
     {"--force-scale", "X", "Gain of the displayed force"},
-    {"--hand", "passive|wander|stroke|drill|surgeon|suction-tube", "Motion of the emulated hand"},
-    {"--hand2", "passive|wander|stroke|drill|surgeon|suction-tube", "Motion of a second, emulated hand"},
+    {"--hand", "passive|wander|stroke|drill|surgeon|suction-tube|mouse",
+     "Motion of the emulated hand; mouse: led by the mouse in the window"},
+    {"--hand2", "passive|wander|stroke|drill|surgeon|suction-tube|mouse",
+     "Motion of a second, emulated hand"},
 };
 
 constexpr PassedOption kVisual[] = {
@@ -109,7 +111,22 @@ bool hand_is_free(const RunOptions& options) {
     return config.empty() || read_device_request(config).driver.starts_with("sim");
 }
 
+// A person at the window who chose no hand and has no device.
+bool mouse_may_lead(const RunOptions& options) {
+    if (!options.gui || options.headless || options.has_controller_option("--mouse")) return false;
+    const std::vector<std::string>& typed = options.typed ? *options.typed : options.controller;
+    for (const char* const choice : {"--hand", "--hand2", "--config"})
+        if (std::find(typed.begin(), typed.end(), choice) != typed.end()) return false;
+    const auto config = installed_config();
+    if (config.empty()) return true;
+    const std::string driver = read_device_request(config).driver;
+    return driver.empty() || driver == "sim";
+}
+
 void RunOptions::settle() {
+    if (mouse_may_lead(*this))
+        for (auto* const words : {&controller, typed ? &*typed : nullptr})
+            if (words != nullptr) words->emplace_back("--mouse");
     if (const auto config = installed_config(); !config.empty() && !has_controller_option("--config")) {
         if (!quiet) std::fprintf(stderr, "tact: configuration %s\n", config.c_str());
         for (auto* const words : {&controller, typed ? &*typed : nullptr})
@@ -196,6 +213,12 @@ void add_run_options(CLI::App& app, RunOptions& options) {
     controller->add_flag_callback(
         "--free-run", [&options] { options.controller.emplace_back("--free-run"); },
         "Update the force as often as the processor allows, instead of at --rate");
+
+    controller->add_flag_callback(
+        "--mouse", [&options] { options.controller.emplace_back("--mouse"); },
+        "The mouse in the window may take an emulated hand from its motion, and then leads it; default "
+        "without --hand, "
+        "--hand2 and --config");
 
     auto* const visual = app.add_option_group("Window", "Options for tact-gui");
     visual->add_option("--size", options.size, "Size of the window (pixels)")

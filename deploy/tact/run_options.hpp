@@ -55,6 +55,10 @@ struct RunOptions {
 // it names a device.
 [[nodiscard]] bool hand_is_free(const RunOptions& options);
 
+// True if a person at the window may lead the emulated hand by the mouse although no option says so: no hand and no configuration was typed,
+// and the installed configuration, if any, names no real device.
+[[nodiscard]] bool mouse_may_lead(const RunOptions& options);
+
 // Passed on to tact-rt, tact-gui or tact-prep, which checks the value.
 struct PassedOption {
     const char *name, *type, *help;

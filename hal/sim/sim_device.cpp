@@ -56,6 +56,8 @@ void SimDevice::advance(Instant now) noexcept {
         moved_at_ = fed_at_ = now;
     }
     if (now <= moved_at_) return;
+    if (MouseTarget target; settings_.mouse != nullptr && settings_.mouse->read(target))
+        hand_.follow(target, now);
     const Instant bites_at = fed_at_ + settings_.watchdog;
     if (state_ == DeviceState::powered && now > bites_at) {
         const Instant until = std::max(bites_at, moved_at_);

@@ -4,6 +4,7 @@
 //            clock
 // Encoders   the position is quantized to encoder steps at the tip, the orientation to steps of the gimbal
 // Amplifier  on only after an enable edge 0 -> 1; off at once when enable falls
+// Pointer    the newest target is read before each step; a real device has none, so no window can move it
 // Watchdog   trips exactly 10 ms after the last new heartbeat: the amplifier switches off and needs a new
 //            edge
 // Saturation a wrench beyond the motors' limits is scaled down; the direction is kept
@@ -11,12 +12,14 @@
 
 #include "hal/api/haptic_device.hpp"
 #include "hal/sim/sim_hand.hpp"
+#include "ipc/shm/latest.hpp"
 
 namespace tact {
 
 struct SimSettings {
     SimHandSettings hand;
     Duration watchdog = std::chrono::milliseconds(10);
+    const Latest<MouseTarget>* mouse = nullptr;  // targets of a pointer; null: the hand follows none
 };
 
 // Faults that tests can inject at any time.

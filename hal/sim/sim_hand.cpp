@@ -40,16 +40,17 @@ SimHand::SimHand(const SimHandSettings& settings, const Vec3& reach_m)
     : settings_(settings),
       reach_m_(reach_m),
       strokes_(settings.script == "stroke"),
-      drills_(settings.script == "drill") {
+      drills_(settings.script == "drill"),
+      mouse_(reach_m) {
     wanders_ = strokes_ || drills_ || settings.script == "wander";
     if (settings.script == "surgeon" || settings.script == "suction-tube") {
         surgeon_.emplace(SimSurgeonSettings{
             .suction_tube = settings.script == "suction-tube", .seed = settings.seed, .at_m = settings.at_m});
         pose_ = surgeon_->begin();
-    } else if (settings.script != "passive" && !wanders_) {
+    } else if (settings.script != "passive" && settings.script != "mouse" && !wanders_) {
         throw StartupError("emulated hand", "no script has the name \"" + settings.script + "\"",
-                           "use \"passive\", \"wander\", \"stroke\", \"drill\", \"surgeon\" or "
-                           "\"suction-tube\" (device.hand)");
+                           "use \"passive\", \"wander\", \"stroke\", \"drill\", \"surgeon\", "
+                           "\"suction-tube\" or \"mouse\" (device.hand)");
     }
     std::mt19937_64 random(settings.seed);
     const auto uniform = [&random](double low, double high) {
@@ -92,18 +93,25 @@ Wrench SimHand::pull() const noexcept {
 void SimHand::step(Duration dt, const Wrench& wrench_dev, bool powered) noexcept {
     const double h_all = std::min(to_s(dt), kPauseMaxS);
     if (h_all <= 0.0) return;
-    const int substeps = wanders_ || surgeon_ || held_m_ ? static_cast<int>(std::ceil(h_all / kSubstepS)) : 1;
+    const bool led = mouse_.leads() && !held_m_, scripted = !mouse_.taken() && !held_m_;
+    const bool pulled = held_m_ || led || (scripted && (wanders_ || surgeon_));
+    const int substeps = pulled ? static_cast<int>(std::ceil(h_all / kSubstepS)) : 1;
     const double h = h_all / substeps;
     for (int i = 0; i < substeps; ++i) {
         Wrench w = wrench_dev;
         if (held_m_) {
             w.force_n += kPullStiffness * (*held_m_ - pose_.p_m);
-        } else if (wanders_) {
+        } else if (led) {
+            mouse_.step(h);
+            const Wrench hand = mouse_.pull(pose_, twist_);
+            w.force_n += hand.force_n;
+            w.torque_n_m += hand.torque_n_m;
+        } else if (scripted && wanders_) {
             const Wrench hand = pull();
             w.force_n += hand.force_n;
             w.torque_n_m += hand.torque_n_m;
         }
-        if (surgeon_ && !held_m_) {
+        if (surgeon_ && scripted) {
             surgeon_->step(h, pose_.p_m, wrench_dev.force_n, powered);
             const Wrench hand = surgeon_->pull(pose_, twist_);
             w.force_n += hand.force_n;

@@ -4,7 +4,8 @@
 // Step      exact for a force that is constant over the step, so stable at any step and any servo rate
 // Scripts   passive: moved only by the motors. wander: moved by a smooth random motion. stroke: the same,
 //           mostly sideways, and pressed down onto the surface. drill: the same, slowly away from the user.
-//           surgeon, suction-tube: sim_surgeon.hpp.
+//           surgeon, suction-tube: sim_surgeon.hpp. mouse: as passive, until a pointer takes it (mouse_hand.hpp).
+// Pointer   once one has taken the hand, with any script, the script is over: between two grips the hand is passive
 #pragma once
 
 #include <array>
@@ -12,6 +13,7 @@
 #include <optional>
 #include <string>
 
+#include "hal/sim/mouse_hand.hpp"
 #include "hal/sim/sim_surgeon.hpp"
 #include "ipc/base/clock.hpp"
 #include "ipc/base/pose.hpp"
@@ -19,7 +21,8 @@
 
 namespace tact {
 
-inline constexpr std::array kSimHandNames{"passive", "wander", "stroke", "drill", "surgeon", "suction-tube"};
+inline constexpr std::array kSimHandNames{"passive", "wander",       "stroke", "drill",
+                                          "surgeon", "suction-tube", "mouse"};
 // Recordings from before 2026-11-25 hold the former name.
 inline std::string current_hand_name(const std::string& name) {
     return name == "sucker" ? "suction-tube" : name;  // former name
@@ -30,7 +33,7 @@ inline std::string current_hand_name(const std::string& name) {
 // measured for pen grips in the literature. Rotation: a hand-held gimbal of 0.1 kg and 3 cm radius, with
 // damping such that 0.05 N m turns it by 150 degrees per second.
 struct SimHandSettings {
-    std::string script = "passive";  // or "wander", "stroke", "drill", "surgeon", "suction-tube"
+    std::string script = "passive";  // or another of kSimHandNames
     std::uint64_t seed = 1;
     double mass_kg = 0.25;
     double damping_n_s_m = 5.0;
@@ -50,7 +53,15 @@ public:
     void step(Duration dt, const Wrench& wrench_dev, bool powered = true) noexcept TACT_RT;
     // Moves the hand to this place and keeps it there, whatever its script; none: the script again.
     void hold(const std::optional<Vec3>& at_m) noexcept { held_m_ = at_m; }
-    [[nodiscard]] std::uint32_t buttons() const noexcept { return surgeon_ ? surgeon_->buttons() : 0; }
+    // The newest target of a pointer, before the step up to `now`.
+    void follow(const MouseTarget& target, Instant now) noexcept TACT_RT {
+        mouse_.follow(target, now, pose_, twist_);
+    }
+    [[nodiscard]] const MouseHand& mouse() const noexcept { return mouse_; }
+    [[nodiscard]] std::uint32_t buttons() const noexcept {
+        if (mouse_.taken()) return mouse_.buttons();
+        return surgeon_ ? surgeon_->buttons() : 0;
+    }
     [[nodiscard]] const Pose& pose() const noexcept { return pose_; }
     [[nodiscard]] const Twist& twist() const noexcept { return twist_; }
 
@@ -69,6 +80,7 @@ private:
     Vec3 reach_m_;
     bool wanders_, strokes_, drills_;
     std::optional<SimSurgeon> surgeon_;
+    MouseHand mouse_;
     std::optional<Vec3> held_m_;
     Waves waves_{};
     double time_s_ = 0.0;

@@ -18,6 +18,7 @@
 #include "ipc/topics/levels.hpp"
 #include "ipc/topics/load.hpp"
 #include "ipc/topics/mark.hpp"
+#include "ipc/topics/mouse.hpp"
 #include "ipc/topics/record.hpp"
 #include "ipc/topics/recorders.hpp"
 #include "ipc/topics/replay.hpp"
@@ -28,7 +29,7 @@
 namespace tact {
 
 inline constexpr std::size_t kHandsMax = 2;
-static_assert(kDrillHands == kHandsMax && kDeviceHands == kHandsMax);
+static_assert(kDrillHands == kHandsMax && kDeviceHands == kHandsMax && kMouseHands == kHandsMax);
 
 struct RtRegion {
     static constexpr char kName[] = "tact.rt";
@@ -46,6 +47,7 @@ struct RtRegion {
     Latest<DisplayTopic> picture;
     Latest<RecordersTopic> recorders;
     Latest<MarkTopic> mark;
+    Latest<MouseStateTopic> mouse;
     Latest<ReplayTopic> replay;  // of tact-replay alone
     Latest<ReplayMarks> replay_marks;
     Ring<EventTopic, 1024> events;
@@ -63,8 +65,8 @@ struct RtRegion {
     using Topics =
         TopicList<ToolTopic, BodiesTopic, ShapesTopic, TouchTopic, DrillTopic, HeadTopic, TrackerTopic,
                   DevicesTopic, HealthTopic, LatenessTopic, LevelsTopic, DisplayTopic, RecordersTopic,
-                  MarkTopic, ReplayTopic, ReplayMarks, EventTopic, TraceTopic, StartTopic, CycleTopic,
-                  HandTopic, MailboxTopic, ReportTopic, RunText>;
+                  MarkTopic, MouseStateTopic, ReplayTopic, ReplayMarks, EventTopic, TraceTopic, StartTopic,
+                  CycleTopic, HandTopic, MailboxTopic, ReportTopic, RunText>;
 };
 
 struct GuiRegion {
@@ -72,8 +74,9 @@ struct GuiRegion {
     Latest<LoadTopic> load;
     Latest<FramesTopic> frames;
     Latest<TimelineTopic> timeline;  // for tact-replay
+    Latest<MouseTopic> mouse;
     CommandQueue commands;
-    using Topics = TopicList<LoadTopic, FramesTopic, TimelineTopic, CommandTopic>;
+    using Topics = TopicList<LoadTopic, FramesTopic, TimelineTopic, MouseTopic, CommandTopic>;
 };
 
 }  // namespace tact

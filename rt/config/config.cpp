@@ -57,6 +57,7 @@ std::vector<ConfigKey> keys_of(RtConfig& c) {
         {"servo.lock_memory", &c.servo.lock_memory, 0, 0, {}},
         {"device.driver", &c.device.driver, 0, 0, device_names()},
         {"device.hand", &c.device.hand, 0, 0, sim_hand_names()},
+        {"device.mouse", &c.device.mouse, 0, 0, {}},
         {"device.hand_at_mm", c.device.hand_at_mm, -100, 100, {}},
         {"device.hand_seed", &c.device.hand_seed, 0, 9e15, {}},
         {"device.watchdog_us", &c.device.watchdog_us, 1000, 1e7, {}},
@@ -317,6 +318,12 @@ DeviceSettings device2_settings_from(const RtConfig& c) {
     d.sim.hand.seed = static_cast<std::uint64_t>(c.device2.hand_seed);
     if (!d.process_log.empty()) d.process_log += ".2";
     return d;
+}
+
+std::array<bool, 2> mouse_hands(const RtConfig& c) {
+    const std::string& second = c.device2.hand == kAsDevice ? c.device.hand : c.device2.hand;
+    return {c.device.driver == "sim" && (c.device.mouse || c.device.hand == "mouse"),
+            c.device2.driver == "sim" && (c.device.mouse || second == "mouse")};
 }
 
 TrackerSettings tracker_settings_from(const RtConfig& c) {

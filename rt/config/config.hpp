@@ -39,6 +39,7 @@ struct RtConfig {
     struct Device {
         std::string driver = "sim";
         std::string hand = "passive";  // emulated devices: script of the hand
+        bool mouse = false;  // emulated devices: a pointer in the window may take the hand from its script
         std::int64_t hand_seed = 1;
         std::array<double, 2> hand_at_mm{0.0, 0.0};  // x, y of an emulated surgeon's working point
         double watchdog_us = 10000.0;
@@ -180,6 +181,8 @@ void check_config(const RtConfig& config, const std::string& where);
 [[nodiscard]] DeviceSettings device_settings_from(const RtConfig& config);
 // Second hand: same arm parameters; its own driver, serial and seed.
 [[nodiscard]] DeviceSettings device2_settings_from(const RtConfig& config);
+// The hands that a pointer in the window may lead: emulated ones, by the script "mouse" or by device.mouse.
+[[nodiscard]] std::array<bool, 2> mouse_hands(const RtConfig& config);
 [[nodiscard]] LinesSettings lines_settings_from(const RtConfig& config);
 [[nodiscard]] TrackerSettings tracker_settings_from(const RtConfig& config);
 [[nodiscard]] HeadSettings head_settings_from(const RtConfig& config);

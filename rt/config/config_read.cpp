@@ -125,6 +125,19 @@ void check_igtl_names(const RtConfig& config, const std::string& where, ConfigEr
                 "a name of OpenIGTLink has at most " + std::to_string(kIgtlNameMax) + " letters");
 }
 
+// A pointer leads an emulated hand only: a person holds a real arm, and no window may move it.
+void check_mouse(const RtConfig& config, const std::string& where, ConfigErrors& errors) {
+    const auto refuse = [&](const char* key, const std::string& driver) {
+        errors.emplace_back(
+            where, key, "the mouse cannot lead the hand of driver \"" + driver + "\"",
+            "use driver \"sim\", or remove the mouse: with a real arm, the hand is the person's own");
+    };
+    const std::string &first = config.device.driver, &second = config.device2.driver;
+    if (config.device.hand == "mouse" && first != "sim") refuse("device.hand", first);
+    if (config.device2.hand == "mouse" && second != "sim" && second != "none") refuse("device2.hand", second);
+    if (config.device.mouse && first != "sim" && second != "sim") refuse("device.mouse", first);
+}
+
 // Checks all values, whether from file or command line.
 ConfigErrors check_all(const RtConfig& config, const std::string& where) {
     ConfigErrors errors;
@@ -149,6 +162,7 @@ ConfigErrors check_all(const RtConfig& config, const std::string& where) {
     }
     check_pedals(config, where, errors);
     check_igtl_names(config, where, errors);
+    check_mouse(config, where, errors);
     const auto drivers = device_drivers();
     const bool real = std::any_of(drivers.begin(), drivers.end(), [&](const DeviceEntry& d) {
         return config.device.driver == d.name && !d.emulated;

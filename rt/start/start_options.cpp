@@ -80,12 +80,14 @@ void describe(CLI::App& app, StartOptions& o, StartOverrides& v) {
            "baked with --modes")
         ->check(CLI::IsMember({"on", "off"}))
         ->capture_default_str();
-    app.add_option("--hand", v.hand, "Motion of the emulated hand")
-        ->type_name("passive|wander|stroke|drill|surgeon|suction-tube");
+    app.add_option("--hand", v.hand, "Motion of the emulated hand; mouse: led by the mouse in the window")
+        ->type_name("passive|wander|stroke|drill|surgeon|suction-tube|mouse");
+    app.add_flag("--mouse", v.mouse,
+                 "The mouse in the window may take an emulated hand from its motion, and then leads it");
     app.add_option("--hand2", v.hand2,
                    "Motion of a second, emulated hand, if the configuration has none; suction-tube: "
                    "accompanies the surgeon")
-        ->type_name("passive|wander|stroke|drill|surgeon|suction-tube");
+        ->type_name("passive|wander|stroke|drill|surgeon|suction-tube|mouse");
     app.add_option("--hand-at-mm", v.hand_at_mm, "Position at which an emulated surgeon works (mm)")
         ->delimiter(',')
         ->expected(2);
@@ -138,6 +140,7 @@ RtConfig configure(const StartOptions& o, const StartOverrides& v) {
     if (v.core) c.servo.core = *v.core;
     if (v.law) c.governor.law = *v.law;
     if (v.hand) c.device.hand = current_hand_name(*v.hand);
+    if (v.mouse) c.device.mouse = true;
     if (v.hand2) {
         if (c.device2.driver == "none") c.device2.driver = "sim";
         c.device2.hand = current_hand_name(*v.hand2);

@@ -39,7 +39,7 @@ struct StartOverrides {
     std::optional<double> burr_mm, burr_rpm;
     std::vector<double> hand_at_mm;
     std::optional<int> core, priority;
-    bool free_run = false;
+    bool free_run = false, mouse = false;
 };
 
 void describe(CLI::App& app, StartOptions& options, StartOverrides& overrides);

@@ -14,7 +14,8 @@ namespace tact {
 
 namespace {
 
-constexpr int kPollMs = 10;  // longest wait of a command
+constexpr int kPollMs = 10;    // longest wait of a command
+constexpr int kPollLedMs = 4;  // while a pointer leads a hand
 
 std::atomic<ServoMailbox*> signalled{nullptr};
 static_assert(std::atomic<ServoMailbox*>::is_always_lock_free);
@@ -46,7 +47,8 @@ Housekeeping::Housekeeping(HousekeepingSettings settings, OwnedRegion<RtRegion>&
       region_(region),
       mailbox_(mailbox),
       link_(link),
-      builder_(mailbox, settings_.servo_thread_id) {
+      builder_(mailbox, settings_.servo_thread_id),
+      mouse_({settings_.mouse, settings_.T_dev_world, region.generation()}) {
     report_.gui_heartbeat_ns = -1;
 }
 
@@ -69,6 +71,7 @@ void Housekeeping::run() {
     while (!mailbox_.ended.load(std::memory_order_acquire)) {
         serve_link();
         serve_gui();
+        follow_mouse();
         log_events();
         builder_.poll();
         mailbox_.model.collect().reset();
@@ -91,11 +94,12 @@ void Housekeeping::run() {
 }
 
 void Housekeeping::serve_link() {
-    LinkServer::News news = link_.poll(kPollMs);
+    LinkServer::News news = link_.poll(mouse_.leads() ? kPollLedMs : kPollMs);
     count_recorders();
     for (std::size_t i = 0; i < news.orders; ++i) apply_order(news.order[i]);
     if (news.gui_left) {
         gui_ = {};
+        mouse_.let_go();
         report_.gui_attached = 0;
         spdlog::info("visual process detached");
     }
@@ -108,6 +112,7 @@ void Housekeeping::serve_link() {
             return;
         }
         commands_.restart(gui_->commands);  // ignores commands for an earlier controller
+        mouse_.restart(gui_->mouse);
         loads_seen_ = frames_seen_ = 0;
         report_.gui_attached = 1;
         report_.gui_generation = gui_.generation();
@@ -194,6 +199,12 @@ void Housekeeping::serve_gui() {
     }
     pass_on_frames();
     bad_input_ += commands_.pass_on(gui_->commands, settings_.path_names, mailbox_.orders);
+}
+
+void Housekeeping::follow_mouse() {
+    const Instant now = Monotonic::now();
+    if (!gui_.empty()) bad_input_ += mouse_.pass_on(gui_->mouse, now);
+    if (mouse_.follow(now)) region_->mouse.publish(mouse_.state(now));
 }
 
 void Housekeeping::log_events() {

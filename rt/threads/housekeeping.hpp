@@ -1,11 +1,12 @@
 // The housekeeping thread: all work of tact-rt that may wait, allocate or log.
 //
-// Does      serves the link, maps the GUI's region, checks its commands and loads and passes them to the servo, logs
+// Does      serves the link, maps the GUI's region, checks its commands, loads and pointer and passes them on, logs
 //           events, has models rebuilt, destroys old ones, ends the run after its time
 // Runs on   the main thread, ordinary scheduling; never on the servo's core by choice
 // Hostile   checks every field of the GUI's region; counts and drops invalid ones
 #pragma once
 
+#include <array>
 #include <csignal>
 #include <cstdint>
 #include <memory>
@@ -20,6 +21,7 @@
 #include "rt/servo/mailbox.hpp"
 #include "rt/threads/command_feed.hpp"
 #include "rt/threads/model_builder.hpp"
+#include "rt/threads/mouse_feed.hpp"
 #include "rt/threads/service_notify.hpp"
 
 namespace tact {
@@ -34,6 +36,8 @@ struct HousekeepingSettings {
     std::vector<std::string> path_names;
     int servo_thread_id = 0;
     std::uint64_t page_faults_at_start = 0;
+    std::array<Latest<MouseTarget>*, kMouseHands> mouse{};  // of emulated hands that follow a pointer
+    Pose T_dev_world;
 };
 
 class Housekeeping {
@@ -53,6 +57,7 @@ private:
     void pass_on_frames();
     void count_recorders();
     void apply_order(const LinkServer::News::Order& order);
+    void follow_mouse();
     void log_events();
     void report();
     void notify_service(Instant now);
@@ -64,6 +69,7 @@ private:
     ModelBuilder builder_;
     MappedRegion<GuiRegion> gui_;
     CommandFeed commands_;
+    MouseFeed mouse_;
     RingCursor events_;
     std::uint64_t loads_seen_ = 0, frames_seen_ = 0;
     LinkServer::Recorders recorders_;

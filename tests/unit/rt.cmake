@@ -13,6 +13,7 @@ tact_tests(govern_tests SOURCES
     USES base govern SYSTEM rapidcheck)
 tact_test(unit/replay_marks_test.cpp USES base topics replay)
 tact_test(unit/hal_sim_test.cpp USES base hal)
+tact_test(unit/hal_mouse_hand_test.cpp USES base shm hal)
 tact_tests(arm_tests SOURCES
         unit/base_pacer_test.cpp unit/base_motor_heat_test.cpp unit/hal_arm_kinematics_test.cpp
         unit/hal_arm_drive_test.cpp unit/hal_arm_velocity_test.cpp unit/hal_arm_calibration_test.cpp
@@ -25,7 +26,7 @@ tact_tests(threads_shared_tests SOURCES
         unit/threads_head_feed_test.cpp unit/threads_supervisor_test.cpp unit/servo_orders_test.cpp
     USES base hal topics servo threads config shm LABELS tsan)
 tact_tests(threads_tests SOURCES
-        unit/threads_housekeeping_test.cpp unit/threads_command_feed_test.cpp unit/threads_log_sink_test.cpp
+        unit/threads_housekeeping_test.cpp unit/threads_command_feed_test.cpp unit/threads_mouse_feed_test.cpp unit/threads_log_sink_test.cpp
         unit/threads_service_notify_test.cpp
     USES base topics servo threads config SYSTEM spdlog::spdlog)
 tact_tests(start_tests SOURCES
