@@ -99,6 +99,28 @@ json head(const RtRegion& region) {
             {"distortion", h->distortion}};
 }
 
+// Of every hand, the newest pose and force.
+json tools(const RtRegion& region) {
+    json all = json::array();
+    for (const auto& tool : region.tool)
+        if (const auto t = newest(tool))
+            all.push_back({{"pos_world_m", t->pos_world_m},
+                           {"quat_world_tool_xyzw", t->quat_world_tool_xyzw},
+                           {"force_world_n", t->force_world_n},
+                           {"buttons", t->buttons}});
+    return all;
+}
+
+// Which hands a pointer in the window may lead, or leads.
+json mouse(const RtRegion& region) {
+    const auto m = newest(region.mouse);
+    if (!m || !sensible(*m)) return nullptr;
+    constexpr const char* kLeads[] = {"none", "may", "leads", "silent"};
+    json hands = json::array();
+    for (const std::uint8_t lead : m->lead) hands.push_back(kLeads[lead]);
+    return {{"hands", hands}, {"accepted", m->accepted}, {"refused", m->refused}, {"silences", m->stale}};
+}
+
 // Of the cycles with force since the start.
 void add_armed_metrics(const HealthTopic& h, json& j) {
     const bool armed = h.armed_cycles > 0;
@@ -169,6 +191,8 @@ json controller_report(const RtRegion& region) {
     j["devices"] = devices(h);
     j["governor"] = governor(region, h.taken_at_ns);
     j["head"] = head(region);
+    j["tools"] = tools(region);
+    j["mouse"] = mouse(region);
     j["scene"] = {{"path", field_text(region.scene_path, sizeof region.scene_path)},
                   {"checksum", hex(region.scene_checksum)}};
     return j;

@@ -49,6 +49,20 @@ struct SceneState {
     float patient_axes[3][3]{};  // the patient's left, back and head, in the scene's axes
 };
 
+// The mouse as a hand.
+struct MouseHint {
+    bool may = false;     // it may lead a tool
+    bool near = false;    // the pointer is over one
+    bool holds = false;   // it leads one
+    bool by_key = false;  // without a button
+    bool drives = false;  // the second button of the stylus is pressed
+    bool bone = false;    // which runs a burr
+    bool silent = false;  // the controller received nothing for a while
+    bool taken = false;   // at least once
+    bool label = false;   // the first tool is shown there, below its ring
+    float label_x = 0.0F, label_y = 0.0F;
+};
+
 struct EventLine {
     std::int64_t taken_at_ns = 0;
     std::uint16_t code = 0;
@@ -106,6 +120,7 @@ struct DashboardState {
     bool second_hand = false, second_at_wall = false;
     double second_force_n = 0.0;
     double arrow_a_per_n = 0.0;
+    MouseHint mouse;
     std::string renderer;
     std::string stage;  // of a stereo display: mode and head tracking; empty: none
     bool head_lost = false;

@@ -25,6 +25,7 @@ inline constexpr ImU32 kWatch = IM_COL32(240, 180, 60, 255);
 inline constexpr ImU32 kBad = IM_COL32(255, 107, 94, 255);
 inline constexpr ImU32 kForce = IM_COL32(255, 92, 92, 255);
 inline constexpr ImU32 kNormal = IM_COL32(120, 220, 255, 255);  // of a contact point
+inline constexpr ImU32 kMouse = IM_COL32(255, 214, 102, 255);   // a tool that the mouse may lead
 inline constexpr ImU32 kSecondHand = IM_COL32(178, 132, 255, 255);
 inline constexpr ImU32 kOrange = IM_COL32(230, 159, 0, 255);
 inline constexpr ImU32 kGreen = IM_COL32(0, 190, 140, 255);

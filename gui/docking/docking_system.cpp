@@ -116,6 +116,13 @@ void DockingSystem::turn_wheel(double steps) {
 
 void DockingSystem::choose_by_wheel(double steps) { choose_contour(panels_.contours, steps > 0.0 ? -1 : 1); }
 
+// The body in the hand, wherever the hand holds it.
+std::optional<Vec3> DockingSystem::tool_at(std::size_t hand, const SystemContext& context) const {
+    static_cast<void>(context);
+    const auto active = list_.active();
+    return hand == 0 && active ? std::optional(list_.bodies()[*active].T_model_body.p_m) : std::nullopt;
+}
+
 void DockingSystem::adapt() {
     if (view_ != nullptr) follow_contours(view_->contours(), content_->scale, panels_.contours);
 }

@@ -31,6 +31,7 @@ public:
     void turn_wheel(double steps) override;
     void choose_by_wheel(double steps) override;
     void add_to(LoadTopic& load) const override;
+    [[nodiscard]] std::optional<Vec3> tool_at(std::size_t hand, const SystemContext& context) const override;
     void adapt() override;
     void prepare(std::int64_t now_ns, bool sharp, ViewFrame& frame, const SystemContext& context) override;
     void refine() override;

@@ -27,10 +27,10 @@ Controller::News Controller::poll() {
         if (news.bone_fd.valid()) bone_ = MappedBoneRegion::map(std::move(news.bone_fd), bone_refusal_);
         seen_tool_ = seen_second_ = seen_bodies_ = seen_shapes_ = seen_touch_ = seen_drill_ = seen_head_ =
             seen_tracker_ = seen_devices_ = seen_health_ = seen_lateness_ = seen_levels_ = seen_recorders_ =
-                seen_mark_ = seen_replay_ = seen_replay_marks_ = 0;
+                seen_mark_ = seen_mouse_ = seen_replay_ = seen_replay_marks_ = 0;
         have_tool = have_second = have_bodies = have_shapes = have_touch = have_drill = have_head =
             have_tracker = have_devices = have_health = have_lateness = have_levels = have_recorders =
-                have_mark = have_replay = have_replay_marks = false;
+                have_mark = have_mouse = have_replay = have_replay_marks = false;
         cursor_ = trace_cursor_ = RingCursor{};
         told.arrived = !region_.empty();
         if (region_.empty()) refusal_ = "the controller's region cannot be used: " + refusal_;
@@ -70,6 +70,7 @@ Controller::Fresh Controller::read() {
     static_cast<void>(take(region_->replay, seen_replay_, replay, have_replay));
     static_cast<void>(take(region_->replay_marks, seen_replay_marks_, replay_marks, have_replay_marks));
     fresh.mark = take(region_->mark, seen_mark_, mark, have_mark);
+    static_cast<void>(take(region_->mouse, seen_mouse_, mouse, have_mouse));
     fresh.recorders = take(region_->recorders, seen_recorders_, recorders, have_recorders);
     fresh.health = take(region_->health, seen_health_, health, have_health);
     fresh.levels = take(region_->levels, seen_levels_, levels, have_levels);

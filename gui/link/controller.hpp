@@ -67,6 +67,8 @@ public:
 
     // Path of the controller's scene; empty while unknown.
     [[nodiscard]] std::string scene_path() const;
+    // Of the controller's region; 0: not attached.
+    [[nodiscard]] std::uint64_t generation() const { return region_.empty() ? 0 : region_.generation(); }
     [[nodiscard]] std::uint64_t scene_checksum() const {
         return region_.empty() ? 0 : region_->scene_checksum;
     }
@@ -74,7 +76,7 @@ public:
     bool have_tool = false, have_second = false, have_bodies = false, have_shapes = false, have_touch = false,
          have_drill = false, have_head = false, have_tracker = false, have_devices = false,
          have_health = false, have_lateness = false, have_levels = false, have_recorders = false,
-         have_mark = false, have_replay = false, have_replay_marks = false;
+         have_mark = false, have_mouse = false, have_replay = false, have_replay_marks = false;
     ToolTopic tool{}, second{};  // the first hand, and the second one if present
     BodiesTopic bodies{};
     ShapesTopic shapes{};
@@ -87,6 +89,7 @@ public:
     LatenessTopic lateness{};
     RecordersTopic recorders{};
     MarkTopic mark{};
+    MouseStateTopic mouse{};
     ReplayTopic replay{};
     ReplayMarks replay_marks{};
     LevelsTopic levels{};
@@ -102,8 +105,8 @@ private:
     RingCursor cursor_, trace_cursor_;
     std::uint64_t seen_tool_ = 0, seen_second_ = 0, seen_bodies_ = 0, seen_shapes_ = 0, seen_touch_ = 0,
                   seen_drill_ = 0, seen_head_ = 0, seen_tracker_ = 0, seen_devices_ = 0, seen_health_ = 0,
-                  seen_lateness_ = 0, seen_levels_ = 0, seen_recorders_ = 0, seen_mark_ = 0, seen_replay_ = 0,
-                  seen_replay_marks_ = 0;
+                  seen_lateness_ = 0, seen_levels_ = 0, seen_recorders_ = 0, seen_mark_ = 0, seen_mouse_ = 0,
+                  seen_replay_ = 0, seen_replay_marks_ = 0;
     bool watches_;
     std::uint64_t refused_ = 0;
 };

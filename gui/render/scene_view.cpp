@@ -132,6 +132,8 @@ void SceneView::draw_in_front(const LayerPass& pass, const ViewOptions& options,
     if (frame.hand) draw_hand(pass, *frame.hand);
     if (frame.mark_at_model_m) draw_mark(pass, *frame.mark_at_model_m);
     if (layer_ != nullptr) layer_->draw_in_front(pass);
+    for (const auto& handle : frame.handle)
+        if (handle) draw_handle(pass, *handle);
     glDepthRange(0.0, 1.0);
     glDisable(GL_DEPTH_TEST);
 }
@@ -187,6 +189,32 @@ void SceneView::draw_hand(const LayerPass& pass, const DrawnHand& hand) {
     const float rgba[4] = {share(c[0]), share(c[1]), share(c[2]), 1.0F};
     programs_.use_flat(pass.eye_from_scene, pass.projection, pass.haze, rgba);
     touched_wall_.draw();
+}
+
+// After all else and without depth: it lies over the tool.
+void SceneView::draw_handle(const LayerPass& pass, const DrawnHandle& handle) {
+    const auto in_scene = [this](const Vec3& model_m) {
+        return Eigen::Vector3f(((model_m - content_->centre_model_m) / kAngstromM).cast<float>());
+    };
+    const Eigen::Vector3f at = in_scene(handle.at_model_m);
+    const Eigen::Vector3f in_eye = (pass.eye_from_scene * at.homogeneous()).head<3>();
+    if (!(in_eye.z() < 0.0F)) return;  // behind the eye
+    const Eigen::Vector3f to_eye =
+        -(pass.eye_from_scene.topLeftCorner<3, 3>().transpose() * in_eye).normalized();
+    const float a_per_px =
+        -2.0F * in_eye.z() / (pass.projection(1, 1) * static_cast<float>(std::max(pass.height_px, 1)));
+    const TubeMesh mesh = build_mouse_handle(handle, at, in_scene(handle.target_model_m), to_eye, a_per_px);
+    if (mesh.index.empty()) return;
+    handle_.fill(mesh, GL_STREAM_DRAW);
+    const auto share = [](std::uint8_t c) { return static_cast<float>(c) / 255.0F; };
+    const Rgb8& c = kHandleColour;
+    const float rgba[4] = {share(c[0]), share(c[1]), share(c[2]), 1.0F};
+    Haze clear = pass.haze;
+    clear.strength = 0.0F;
+    programs_.use_flat(pass.eye_from_scene, pass.projection, clear, rgba);
+    glDisable(GL_DEPTH_TEST);
+    handle_.draw();
+    glEnable(GL_DEPTH_TEST);
 }
 
 void SceneView::draw_box(const LayerPass& pass) {

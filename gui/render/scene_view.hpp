@@ -5,6 +5,7 @@
 // Cost     grows with the vertices of the surface and the layer's content.
 #pragma once
 
+#include <array>
 #include <memory>
 #include <optional>
 
@@ -12,6 +13,7 @@
 #include "gui/render/drawn_hand.hpp"
 #include "gui/render/edge_smoothing.hpp"
 #include "gui/render/eye_view.hpp"
+#include "gui/render/mouse_handle.hpp"
 #include "gui/render/pass_clock.hpp"
 #include "gui/render/programs.hpp"
 #include "gui/render/rest_shading.hpp"
@@ -47,9 +49,10 @@ struct ViewFrame {
     float force_thickness = 0.02F;         // of the arrow, in radii of the scene
     float force_beside_a = 0.0F;           // it begins so far to the viewer's right of that place
     std::optional<DrawnHand> hand;
-    std::optional<Vec3> mark_at_model_m;  // an instructor's mark
-    std::size_t eye = 0, eyes = 1;        // index and number of eyes
-    PassClock* passes = nullptr;          // times each pass; null: none
+    std::array<std::optional<DrawnHandle>, 2> handle;  // of the tools that the mouse may lead
+    std::optional<Vec3> mark_at_model_m;               // an instructor's mark
+    std::size_t eye = 0, eyes = 1;                     // index and number of eyes
+    PassClock* passes = nullptr;                       // times each pass; null: none
 };
 
 class SceneView {
@@ -86,6 +89,7 @@ private:
     void draw_force(const LayerPass& pass, const ViewFrame& frame);
     void draw_hand(const LayerPass& pass, const DrawnHand& hand);
     void draw_mark(const LayerPass& pass, const Vec3& at_model_m);
+    void draw_handle(const LayerPass& pass, const DrawnHandle& handle);
     void draw_box(const LayerPass& pass);
 
     std::shared_ptr<const SceneContent> content_;
@@ -93,7 +97,7 @@ private:
     Contours contours_;
     SceneLayer no_layer_;
     SceneLayer* layer_ = nullptr;
-    TriangleBuffers mark_, arrow_, hand_, touched_wall_;
+    TriangleBuffers mark_, arrow_, hand_, touched_wall_, handle_;
     GlVertexArray box_array_;
     GlBuffer box_vertices_, box_edges_;
     GLsizei box_indices_ = 0;

@@ -25,6 +25,12 @@ void SurfaceSystem::close() {
     panels_.detail = {};
 }
 
+// On the surface where it touches, though the hand is below it.
+std::optional<Vec3> SurfaceSystem::tool_at(std::size_t hand, const SystemContext& context) const {
+    const auto pen = hand == 0 ? touching_pen(context.controller, *content_) : std::nullopt;
+    return pen ? std::optional(pen->T_model_hand.p_m) : std::nullopt;
+}
+
 void SurfaceSystem::prepare(std::int64_t now_ns, bool sharp, ViewFrame& frame, const SystemContext& context) {
     static_cast<void>(now_ns), static_cast<void>(sharp);
     const Controller& controller = context.controller;

@@ -18,6 +18,7 @@ public:
     void use(const std::shared_ptr<const SceneContent>& content, std::unique_ptr<SceneStart> start,
              SceneView& view, const SystemContext& context) override;
     void close() override;
+    [[nodiscard]] std::optional<Vec3> tool_at(std::size_t hand, const SystemContext& context) const override;
     void prepare(std::int64_t now_ns, bool sharp, ViewFrame& frame, const SystemContext& context) override;
     [[nodiscard]] bool add_to_key(ContentKey& key) const override;
 

@@ -51,7 +51,9 @@ constexpr std::array<const char*, static_cast<std::size_t>(KeyAction::count)> kA
     "next_step",
     "leave_calibration",
     "save_calibration",
-    "swap_calibrated_eyes"};
+    "swap_calibrated_eyes",
+    "lead_tool",
+    "let_go_of_tool"};
 
 struct NamedKey {
     KeyCode code;

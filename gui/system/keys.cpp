@@ -19,6 +19,13 @@ constexpr auto kKeyRows = [] {
         {{}, 0, always, KeyAction::none, "Shift+wheel", "move the cut"},
         {{}, 0, bodies, KeyAction::none, "Alt+wheel", "contour level"},
         {{}, 0, bodies, KeyAction::none, "Ctrl+wheel", "choose another contour"},
+        {{}, 0, mouse, KeyAction::none, "drag the ring", "lead the tool"},
+        {typed_key('l'), 0, mouse, KeyAction::lead_tool, "L", "lead the tool without a button, or let go"},
+        {{}, 0, mouse, KeyAction::none, "... wheel", "the led tool: away or nearer"},
+        {{}, 0, mouse, KeyAction::none, "... Ctrl, Shift", "the led tool: turn; five times finer"},
+        {{}, 0, mouse, KeyAction::none, "... right", "second button of the stylus: runs a burr"},
+        {{}, 0, mouse, KeyAction::none, "... middle", "first button: the tool moves alone"},
+        {named_key(KeyCode::escape), 0, holding, KeyAction::let_go_tool, "Esc", "let go of the tool"},
         {{}, 0, watching, KeyAction::none, "Ctrl+click", "mark this place on the bone"},
         {named_key(KeyCode::escape), 0, sheet, KeyAction::close_sheet, "Esc", "close this table"},
         {named_key(KeyCode::escape), 0, browser, KeyAction::close_browser, "Esc", "close the list of scenes"},
@@ -103,6 +110,10 @@ bool applies(KeyWhen when, const KeySituation& now) noexcept {
             return now.calibrating;
         case watching:
             return now.watching && now.controller;
+        case mouse:
+            return now.mouse;
+        case holding:
+            return now.holding;
     }
     return false;
 }
@@ -112,7 +123,16 @@ char last_of(const KeyRow& row) { return row.last != '\0' ? row.last : row.strok
 }  // namespace
 
 int key_precedence(KeyWhen when) noexcept {
-    return when == KeyWhen::sheet ? 2 : when == KeyWhen::browser ? 1 : 0;
+    switch (when) {
+        case KeyWhen::holding:
+            return 3;
+        case KeyWhen::sheet:
+            return 2;
+        case KeyWhen::browser:
+            return 1;
+        default:
+            return 0;
+    }
 }
 
 bool collide(const KeyRow& a, const KeyRow& b) noexcept {

@@ -69,10 +69,12 @@ enum class KeyAction : std::uint8_t {
     leave_calibration,
     save_calibration,
     swap_calibrated_eyes,
+    lead_tool,
+    let_go_tool,
     count
 };
 
-// Condition of a row. The sheet takes precedence, then the list of scenes; a key that they use goes no further.
+// Condition of a row. A tool in the mouse's hold takes precedence, then the sheet, then the list of scenes; a key that they use goes no further.
 enum class KeyWhen : std::uint8_t {
     always,
     sheet,
@@ -83,7 +85,9 @@ enum class KeyWhen : std::uint8_t {
     controller,
     replay,
     calibrating,
-    watching
+    watching,
+    mouse,
+    holding
 };
 
 struct KeySituation {
@@ -95,6 +99,8 @@ struct KeySituation {
     bool controller = false;   // attached, and no replay
     bool replay = false;       // the window shows a recording
     bool watching = false;     // an instructor's window
+    bool mouse = false;        // it may lead a tool
+    bool holding = false;      // it leads one
     bool calibrating = false;  // bodies, bone and stereo then do not apply
 };
 

@@ -84,6 +84,11 @@ public:
         static_cast<void>(from_m), static_cast<void>(way);
         return std::nullopt;
     }
+    // Where the tool of a hand is drawn, model metres; none: where the hand is.
+    [[nodiscard]] virtual std::optional<Vec3> tool_at(std::size_t hand, const SystemContext& context) const {
+        static_cast<void>(hand), static_cast<void>(context);
+        return std::nullopt;
+    }
     virtual void adapt() {}
     virtual void move(double frame_s, const Vec3& eye_model_m, const SystemContext& context) {
         static_cast<void>(frame_s), static_cast<void>(eye_model_m), static_cast<void>(context);

@@ -93,7 +93,9 @@ void GuiApp::frame(Instant now, bool take_picture) {
     browser_.follow(state_.browser);
     follow_session();
     system().follow(context());
+    follow_tools();
     if (panels_due_) handle_input();
+    publish_mouse();
     {
         const PassClock::Scope scope(&passes_, Pass::adapt);
         system().adapt();

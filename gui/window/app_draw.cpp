@@ -52,6 +52,7 @@ void GuiApp::draw_scene(std::int64_t now_ns) {
         view.mark_at_model_m = Vec3(controller_.mark.pos_model_m[0], controller_.mark.pos_model_m[1],
                                     controller_.mark.pos_model_m[2]);
     system().prepare(now_ns, sharp_, view, context());
+    show_handles(view);
     state_.second_force_n = view.hand ? view.hand->force_world_n.norm() : 0.0;
     state_.second_at_wall = view.hand && view.hand->at_wall;
     state_.force_n = view.force_world_n.norm();

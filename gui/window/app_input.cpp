@@ -20,7 +20,7 @@ void move_cut(SceneToggles& t, float steps) {
 
 void GuiApp::handle_input() {
     const ImGuiIO& io = ImGui::GetIO();
-    if (!io.WantCaptureMouse && !calibration_.open()) {
+    if (!lead_by_mouse() && !io.WantCaptureMouse && !calibration_.open()) {
         const float height = layout_for(theme_, io.DisplaySize.x, io.DisplaySize.y,
                                         middle_card(state_, system().panels()), strip_of(state_))
                                  .view.height;
@@ -48,6 +48,8 @@ void GuiApp::handle_input() {
     now.replay = controller_.replays();
     now.controller = controller_.attached() && !now.replay;
     now.watching = controller_.watches();
+    now.mouse = state_.mouse.may;
+    now.holding = state_.mouse.holds;
     for (const KeyStroke& stroke : window_.take_keys()) {
         if (io.WantTextInput) continue;
         const KeyFound found = state_.keys.find(stroke, now);
@@ -127,6 +129,10 @@ void GuiApp::perform(KeyAction what, std::size_t place) {
             return calibration_.perform(CalibrationAction::save);
         case KeyAction::swap_calibrated_eyes:
             return calibration_.swap_eyes();
+        case KeyAction::lead_tool:
+            return lead_or_let_go();
+        case KeyAction::let_go_tool:
+            return let_go_of_tool();
         default:  // belongs to another system
             return;
     }

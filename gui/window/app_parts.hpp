@@ -8,11 +8,14 @@
 // app_picture  pictures of any size
 // app_calibration  the screen of the stage during its calibration
 // app_input    mouse and keys
+// app_mouse    the mouse as a hand
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -41,6 +44,7 @@
 #include "gui/window/still_view.hpp"
 #include "gui/window/systems.hpp"
 #include "gui/window/timeline_sender.hpp"
+#include "gui/window/tool_drag.hpp"
 #include "gui/window/window.hpp"
 namespace tact {
 
@@ -96,6 +100,14 @@ private:
     void watch(const Request& request);
     void report_mark();
     void mark_under_pointer();
+    [[nodiscard]] DragView drag_view() const;
+    void follow_tools();
+    void take_tool(std::size_t hand, bool by_key);
+    void let_go_of_tool();
+    void lead_or_let_go();
+    [[nodiscard]] bool lead_by_mouse();
+    void publish_mouse();
+    void show_handles(ViewFrame& view) const;
     void publish_load();
     void publish_frames();
     [[nodiscard]] double due_s() const;
@@ -147,6 +159,10 @@ private:
     bool as_left_wanted_ = !options_.window_state_file.empty() || options_.session_opened.has_value();
     SessionSaver session_saver_{options_.session};
     SecondHand second_hand_;
+    ToolDrag drag_;
+    std::array<DragTool, kMouseHands> drag_tools_{};
+    std::optional<std::size_t> near_tool_;  // under the pointer
+    bool camera_waits_ = false;             // the button that held a tool is still down
     std::int64_t marked_at_ns_ = std::numeric_limits<std::int64_t>::min() / 2;  // by an instructor
     RingCursor traces_place_;                                                   // in the trace ring
     TraceExport trace_export_;

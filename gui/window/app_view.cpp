@@ -119,6 +119,13 @@ std::optional<std::uint64_t> GuiApp::view_key(const EyeView& eye, const ViewFram
         key.add(view.hand->at_wall);
         force(view.hand->force_world_n);
     }
+    for (const auto& handle : view.handle) {
+        key.add(handle.has_value());
+        if (!handle) continue;
+        key.add(handle->state);
+        key.add(Pose{handle->at_model_m, Quat::Identity()});
+        key.add(Pose{handle->target_model_m, Quat::Identity()});
+    }
     view_->contours().add_to(key);
     if (!systems_[shown_]->add_to_key(key)) return std::nullopt;
     return key.value();

@@ -136,6 +136,44 @@ void message(const OverlayPen& pen, const PanelState& state, const PixelRect& v)
                       nullptr, most);
 }
 
+// One line about the mouse at the lower edge, while the pointer is over a tool or leads it.
+void mouse_hint(const OverlayPen& pen, const PanelState& state, const PixelRect& v) {
+    const MouseHint& m = state.mouse;
+    if (m.label) {
+        const std::string text = "drag to lead";
+        const float w = pen.width(pen.theme.small, text), pad = pen.theme.px(6.0F),
+                    h = pen.theme.small->FontSize;
+        const ImVec2 at{m.label_x - 0.5F * w, m.label_y + pen.theme.px(5.0F)};
+        pen.draw->AddRectFilled({at.x - pad, at.y - 0.3F * pad}, {at.x + w + pad, at.y + h + 0.3F * pad},
+                                IM_COL32(18, 22, 29, 205), 0.5F * h);
+        pen.draw->AddText(pen.theme.small, pen.theme.small->FontSize, at, colour::kMouse, text.c_str());
+    }
+    if (!m.near && !m.holds) return;
+    const char* const key = state.keys.key_of(KeyAction::lead_tool);
+    std::string text = format("Drag to lead the tool, or press %s.", key);
+    if (m.holds) {
+        text = m.silent   ? "The controller received nothing from the mouse: the hand relaxed."
+               : m.drives ? std::string(m.bone ? "The burr runs. " : "Second button pressed. ")
+                          : std::string("The mouse leads the tool. ");
+        if (!m.silent)
+            text += format(
+                "Wheel: depth   Ctrl: turn   Shift: finer   %s: %s   %s: let go",
+                m.by_key ? "Buttons" : "Right button", m.bone ? "burr" : "second button",
+                m.by_key ? (std::string(key) + " or " + state.keys.key_of(KeyAction::let_go_tool)).c_str()
+                         : "Release");
+    }
+    ImFont* const font = pen.theme.text;
+    const float most = v.width - pen.theme.px(40.0F), px = pen.theme.px(14.0F), py = pen.theme.px(7.0F);
+    const ImVec2 size = font->CalcTextSizeA(font->FontSize, 1e9F, most - 2.0F * px, text.c_str());
+    const ImVec2 at{v.x + 0.5F * (v.width - size.x) - px,
+                    v.y + v.height - size.y - 2.0F * py - pen.theme.px(70.0F)};
+    const ImVec2 end{at.x + size.x + 2.0F * px, at.y + size.y + 2.0F * py};
+    pen.draw->AddRectFilled(at, end, IM_COL32(18, 22, 29, 225), pen.theme.px(6.0F));
+    if (m.holds) pen.draw->AddRect(at, end, m.silent ? colour::kWatch : colour::kMouse, pen.theme.px(6.0F));
+    pen.draw->AddText(font, font->FontSize, {at.x + px, at.y + py}, m.silent ? colour::kWatch : colour::kText,
+                      text.c_str(), nullptr, most - 2.0F * px);
+}
+
 // Keys that apply now.
 void keys(const OverlayPen& pen, const KeyTable& table, const KeySituation& now, const PixelRect& v) {
     std::vector<const KeyRow*> rows;
@@ -173,6 +211,7 @@ void draw_overlay(const Theme& theme, PanelState& state, const SystemPanels& sys
         system.draw_over_view(pen, state, view);
         if (state.toggles.frame_times) draw_frame_times(theme, state.frames, view);
         message(pen, state, view);
+        mouse_hint(pen, state, view);
     }
     stop_banner(pen, state, view);
     replay_sign(pen, state, view);
