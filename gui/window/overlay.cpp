@@ -165,8 +165,11 @@ void mouse_hint(const OverlayPen& pen, const PanelState& state, const PixelRect&
     ImFont* const font = pen.theme.text;
     const float most = v.width - pen.theme.px(40.0F), px = pen.theme.px(14.0F), py = pen.theme.px(7.0F);
     const ImVec2 size = font->CalcTextSizeA(font->FontSize, 1e9F, most - 2.0F * px, text.c_str());
-    const ImVec2 at{v.x + 0.5F * (v.width - size.x) - px,
-                    v.y + v.height - size.y - 2.0F * py - pen.theme.px(70.0F)};
+    // Between the axes and the scale bar; above them in a narrow view.
+    const float beside = pen.theme.px(190.0F), above = size.x + 2.0F * px > v.width - 2.0F * beside
+                                                           ? pen.theme.px(92.0F)
+                                                           : pen.theme.px(14.0F);
+    const ImVec2 at{v.x + 0.5F * (v.width - size.x) - px, v.y + v.height - size.y - 2.0F * py - above};
     const ImVec2 end{at.x + size.x + 2.0F * px, at.y + size.y + 2.0F * py};
     pen.draw->AddRectFilled(at, end, IM_COL32(18, 22, 29, 225), pen.theme.px(6.0F));
     if (m.holds) pen.draw->AddRect(at, end, m.silent ? colour::kWatch : colour::kMouse, pen.theme.px(6.0F));
