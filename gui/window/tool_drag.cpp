@@ -8,6 +8,7 @@
 namespace tact {
 namespace {
 
+constexpr float kPixelsMost = 1e4F;      // in a frame
 constexpr float kHalfTurn = 3.1415927F;  // over the height of the view, as the camera
 
 Eigen::Vector3f in_eye_a(const DragView& view, const Vec3& model_m) {
@@ -61,10 +62,12 @@ void ToolDrag::move(const DragView& view, const DragMotion& motion) {
     const float fine = motion.fine ? static_cast<float>(kFine) : 1.0F;
     const Quat back =
         view.q_eye_scene.conjugate().cast<double>();  // the axes of scene, model and world are parallel
-    const float wheel = std::clamp(motion.wheel, -20.0F, 20.0F);
+    const float wheel = std::clamp(motion.wheel, -20.0F, 20.0F),
+                dx = std::clamp(motion.dx, -kPixelsMost, kPixelsMost),
+                dy = std::clamp(motion.dy, -kPixelsMost, kPixelsMost);
     if (motion.turn) {
         const Eigen::Vector3f turn_eye_rad =
-            fine * (kHalfTurn / view.view.height * Eigen::Vector3f(motion.dy, motion.dx, 0.0F) +
+            fine * (kHalfTurn / view.view.height * Eigen::Vector3f(dy, dx, 0.0F) +
                     Eigen::Vector3f(0.0F, 0.0F, kRollRad * wheel));
         target_.q = (quat_from_rotation_vector(back * turn_eye_rad.cast<double>()) * target_.q).normalized();
         return;
@@ -72,8 +75,7 @@ void ToolDrag::move(const DragView& view, const DragMotion& motion) {
     const float depth_a = std::max(-in_eye_a(view, target_model_m(meta)).z(), 0.0F);
     const float a_per_px = 2.0F * depth_a / (view.eye.projection(1, 1) * view.view.height);
     const Vec3 across_world_m =
-        meta.world_per_model * kAngstromM *
-        (fine * a_per_px * Eigen::Vector3f(motion.dx, -motion.dy, 0.0F)).cast<double>();
+        meta.world_per_model * kAngstromM * (fine * a_per_px * Eigen::Vector3f(dx, -dy, 0.0F)).cast<double>();
     const Vec3 away_world_m(0.0, 0.0, -kWheelM * static_cast<double>(fine * wheel));
     target_.p_m += back * (across_world_m + away_world_m);
     target_.p_m = target_.p_m.cwiseMax(-kReachM).cwiseMin(kReachM);

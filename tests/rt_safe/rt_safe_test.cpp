@@ -73,6 +73,8 @@ TEST(RtSafe, a_whole_run_with_every_command_and_every_fault_touches_neither_heap
     const auto region = std::make_unique<RtRegion>();
     SimSettings sim;
     sim.hand.script = "wander";
+    Latest<MouseTarget> pointer{};  // as of a window that leads the hand for a while
+    sim.mouse = &pointer;
     SimDevice device(sim);
     ManualClock clock;
     clock.advance(std::chrono::seconds(10));
@@ -111,6 +113,15 @@ TEST(RtSafe, a_whole_run_with_every_command_and_every_fault_touches_neither_heap
     cycles(50);
     order(CommandKind::arm);
     cycles(1200);
+    for (int i = 0; i < 20; ++i) {
+        MouseTarget target{};
+        target.arrived_ns = to_ns(clock.now());
+        target.pos_dev_m[i % 3] = 0.02;
+        target.quat_dev_tool_xyzw[3] = 1.0;
+        target.holds = i < 15 ? 1 : 0;
+        pointer.publish(target);
+        cycles(17);
+    }
     for (const SimFault fault :
          {SimFault::unplugged, SimFault::frozen, SimFault::amplifier, SimFault::wild_pose}) {
         device.inject(fault);

@@ -56,6 +56,7 @@ TEST(Config, the_documented_file_has_the_defaults_and_every_key) {
     EXPECT_EQ(config.servo.lock_memory, defaults.servo.lock_memory);
     EXPECT_EQ(config.device.driver, defaults.device.driver);
     EXPECT_EQ(config.device.hand, defaults.device.hand);
+    EXPECT_EQ(config.device.mouse, defaults.device.mouse);
     EXPECT_EQ(config.device.hand_seed, defaults.device.hand_seed);
     EXPECT_EQ(config.device.hand_at_mm, defaults.device.hand_at_mm);
     EXPECT_EQ(config.device.watchdog_us, defaults.device.watchdog_us);
@@ -342,6 +343,48 @@ TEST(Config, the_second_emulated_hand_has_a_script_of_its_own) {
     EXPECT_EQ(device_settings_from(config).sim.hand.script, "surgeon");
     EXPECT_EQ(device2_settings_from(config).sim.hand.script, "suction-tube");
     EXPECT_TRUE(device2_settings_from(config).sim.hand.at_m.isApprox(Vec3(-8e-3, 2e-3, 0.0)));
+}
+
+TEST(Config, a_pointer_leads_emulated_hands_only) {
+    RtConfig config;
+    const auto refused = [&config] {
+        try {
+            check_config(config, "here");
+        } catch (const ConfigError& e) {
+            return e.key + ": " + e.problem;
+        }
+        return std::string();
+    };
+    EXPECT_EQ(mouse_hands(config), (std::array{false, false}));
+    config.device.hand = "mouse";
+    EXPECT_EQ(mouse_hands(config), (std::array{true, false}));
+    config.device2.driver = "sim";
+    EXPECT_EQ(mouse_hands(config), (std::array{true, true})) << "\"same\" as the first";
+    config.device2.hand = "suction-tube";
+    EXPECT_EQ(mouse_hands(config), (std::array{true, false}));
+    config.device.mouse = true;
+    EXPECT_EQ(mouse_hands(config), (std::array{true, true}));
+    EXPECT_EQ(refused(), "");
+    // The second arm is real: its hand is a person's, the first one may be led.
+    config.device2 = {};
+    config.device2.driver = "falcon";
+    EXPECT_EQ(mouse_hands(config), (std::array{true, false}));
+    EXPECT_EQ(refused(), "");
+    for (const DeviceEntry& d : device_drivers()) {
+        if (std::string(d.name) == "sim") continue;
+        config = {};
+        config.device.driver = d.name;
+        config.device.hand = "mouse";
+        EXPECT_TRUE(says(refused(), {"device.hand: the mouse cannot lead", d.name}));
+        EXPECT_EQ(mouse_hands(config), (std::array{false, false}));
+        config.device.hand = "passive";
+        config.device.mouse = true;
+        EXPECT_TRUE(says(refused(), {"device.mouse: the mouse cannot lead", d.name}));
+        config = {};
+        config.device2.driver = d.name;
+        config.device2.hand = "mouse";
+        EXPECT_TRUE(says(refused(), {"device2.hand: the mouse cannot lead", d.name}));
+    }
 }
 
 TEST(Config, the_deadline_of_the_model_follows_the_period) {

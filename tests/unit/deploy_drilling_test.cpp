@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <cstdlib>
@@ -143,6 +144,29 @@ TEST(LetTheHandsDrill, unless_another_hand_or_device_is_requested) {
     one.controller = {"--hand2", "passive"};
     let_the_hands_drill(one);
     EXPECT_EQ(one.controller.size(), 4U);
+}
+
+// A person at the window without a device; a choice of a hand, or of a configuration, is a choice against it.
+TEST(MouseMayLead, in_a_window_where_no_hand_and_no_device_is_chosen) {
+    RunOptions o;
+    EXPECT_TRUE(mouse_may_lead(o));
+    let_the_hands_drill(o);  // a motion that a system chose, not the person
+    EXPECT_TRUE(mouse_may_lead(o));
+    o.settle();
+    EXPECT_EQ(std::count(o.controller.begin(), o.controller.end(), "--mouse"), 1);
+    EXPECT_FALSE(mouse_may_lead(o)) << "once";
+    o.forget_scene();
+    EXPECT_TRUE(o.has_controller_option("--mouse")) << "also in the next scene";
+    for (const char* const asked : {"--hand", "--hand2", "--config"}) {
+        RunOptions other;
+        other.controller = {asked, "x"};
+        EXPECT_FALSE(mouse_may_lead(other)) << asked;
+    }
+    RunOptions no_person;
+    no_person.headless = true;
+    EXPECT_FALSE(mouse_may_lead(no_person));
+    no_person.headless = no_person.gui = false;
+    EXPECT_FALSE(mouse_may_lead(no_person));
 }
 
 // The oldest files of drilled bone make room for the next one, but never the one that a run starts with.

@@ -19,6 +19,8 @@ KeySituation where_applies(KeyWhen when) {
     now.controller = when == KeyWhen::controller;
     now.replay = when == KeyWhen::replay;
     now.calibrating = when == KeyWhen::calibrating;
+    now.mouse = when == KeyWhen::mouse;
+    now.holding = when == KeyWhen::holding;
     return now;
 }
 
@@ -84,6 +86,8 @@ TEST(Keys, the_sheet_handles_esc_before_the_bodies) {
     EXPECT_EQ(table.find(escape, now).row->action, KeyAction::close_browser);
     now.sheet = true;
     EXPECT_EQ(table.find(escape, now).row->action, KeyAction::close_sheet);
+    now.holding = true;  // before all else: a person lets go at once
+    EXPECT_EQ(table.find(escape, now).row->action, KeyAction::let_go_tool);
     EXPECT_EQ(table.find({KeyCode::character, 'j', false, false}, now).row, nullptr);
 }
 
