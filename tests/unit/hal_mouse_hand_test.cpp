@@ -167,7 +167,7 @@ TEST_F(MouseHandTest, the_tool_does_not_jump_when_it_is_taken) {
         if (i % 17 == 0) send({0.0, -0.1, 0.0});
         step();
         const double speed = (hand() - before).y() / 1e-3;
-        EXPECT_LT(std::abs(speed - speed_before), 0.04) << i;
+        EXPECT_LT(std::abs(speed - speed_before), i < 3 ? 0.012 : 0.04) << i;
         speed_before = speed;
         before = hand();
     }
@@ -178,7 +178,6 @@ TEST_F(MouseHandTest, a_target_from_another_time_leads_nothing) {
     now_ += std::chrono::seconds(2);
     for (int i = 0; i < 300; ++i) step();
     EXPECT_EQ(hand(), Vec3(Vec3::Zero()));
-    now_ -= std::chrono::seconds(0);
     MouseTarget later{};
     later.arrived_ns = to_ns(now_ + std::chrono::seconds(9));
     later.quat_dev_tool_xyzw[3] = 1.0;
@@ -196,8 +195,7 @@ protected:
 
 TEST_F(ScriptedHandTest, a_script_moves_the_hand_until_a_pointer_takes_it_and_not_again) {
     for (int i = 0; i < 1500; ++i) step();
-    const Vec3 by_script = hand();
-    EXPECT_GT((by_script - hand()).norm() + device_.hand_pose().p_m.norm(), 1e-3);
+    EXPECT_GT(hand().norm(), 1e-3);
     for (int i = 0; i < 1000; ++i) {
         if (i % 17 == 0) send({0.02, 0.02, 0.02});
         step();
