@@ -18,6 +18,7 @@ import time
 
 from operator_of_window import Operator, arguments, bake_demo, expect
 
+WHEEL_M = 1.5e-3  # of the hand, for a step of the wheel
 RING_PX = 30  # from the label "drag to lead" up to the middle of the ring
 
 
@@ -88,6 +89,7 @@ class Mouse(Operator):
 
     def rest(self):
         """The tool, once it has come to rest."""
+        time.sleep(0.5)  # a busy window sends the motion later
         before = self.position()
         for _ in range(40):
             time.sleep(0.15)
@@ -99,6 +101,14 @@ class Mouse(Operator):
 
     def learn(self):
         """How far the tool moves for a pixel and for a step of the wheel, in free space."""
+        for _ in range(4):
+            self.learn_once()
+            right, down, away = map(norm, self.per_step)
+            if abs(away / WHEEL_M - 1.0) < 0.15 and abs(right / down - 1.0) < 0.15:
+                return
+        self.fail("learning how the mouse moves the tool: %s" % self.per_step)
+
+    def learn_once(self):
         self.per_step = []
         for right, down, away in ((40, 0, 0), (0, 40, 0), (0, 0, 4)):
             before = self.rest()
