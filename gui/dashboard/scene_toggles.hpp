@@ -17,7 +17,7 @@ struct SceneToggles {
     bool sound = true;         // of the drill
     bool microscope = false;   // a drilling scene through an operating microscope
     bool detail = false;       // edge lengths as colour, if the scene has a forest
-    int molecule = 4;          // trace, tube, sticks, spheres, cartoon
+    int molecule = 4;          // trace, tube, sticks, spheres, cartoon, surface
     int colouring = 0;         // by chain, element, body
 };
 

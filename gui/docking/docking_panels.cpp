@@ -64,7 +64,8 @@ void toggles(const Theme& theme, SceneToggles& t, bool residues_current) {
     ImGui::SameLine(third);
     ImGui::Checkbox("Map box", &t.box);
     ImGui::Checkbox("Frame times", &t.frame_times);
-    static constexpr std::array<const char*, 5> kMolecule{"trace", "tube", "sticks", "spheres", "cartoon"};
+    static constexpr std::array<const char*, 6> kMolecule{"trace",   "tube",    "sticks",
+                                                           "spheres", "cartoon", "surface"};
     static constexpr std::array<const char*, 4> kColouring{"chain", "element", "body", "fit"};
     static constexpr std::array<const char*, 3> kSurface{"glass", "solid", "wire"};
     const auto choice = [&](const char* what, std::span<const char* const> words, int& chosen) {
@@ -103,10 +104,21 @@ void DockingPanels::draw_in_scene_card(const Theme& theme, DashboardState& state
 void DockingPanels::add_legend(const DashboardState& state, std::vector<LegendLine>& lines) const {
     if (!fitting.message.empty() && state.now_ns < message_until_ns)
         lines.push_back({grade_colour(fitting.message_grade), fitting.message});
+    const auto style = static_cast<MoleculeStyle>(state.toggles.molecule);
+    if (style == MoleculeStyle::surface) {
+        if (!surfaces.error.empty())
+            lines.push_back({colour::kWatch, "no surface, tubes instead: " + surfaces.error});
+        else if (surfaces.awaited > 0)
+            lines.push_back({colour::kDim, "computing the surface"});
+        else if (surfaces.coarse > 0)
+            lines.push_back(
+                {colour::kWatch, "surfaces are slow in software rendering: coarse while anything moves"});
+    }
     if (drawn_as_tubes == 0) return;
-    const bool spheres = state.toggles.molecule == static_cast<int>(MoleculeStyle::spheres);
     lines.push_back({colour::kWatch, format("%s are slow in software rendering: tubes while anything moves",
-                                            spheres ? "spheres" : "sticks")});
+                                            style == MoleculeStyle::spheres   ? "spheres"
+                                            : style == MoleculeStyle::surface ? "surfaces"
+                                                                              : "sticks")});
 }
 
 void DockingPanels::draw_over_view(const OverlayPen& pen, const DashboardState& state,

@@ -146,13 +146,20 @@ struct DockingSummary {
     std::size_t bodies = 0, atoms = 0;
 };
 
+// Of bodies in the style of surfaces: numbers of bodies as in Molecules.
+struct SurfacesShown {
+    std::size_t awaited = 0, coarse = 0;
+    std::string error;
+};
+
 class DockingPanels : public SystemPanels {
 public:
     DockingSummary scene;
     FitState fit;
     FittingState fitting;
     ContourRowState contours;
-    std::size_t drawn_as_tubes = 0;  // bodies, in place of their sticks or spheres
+    std::size_t drawn_as_tubes = 0;  // bodies, in place of their sticks, spheres or surfaces
+    SurfacesShown surfaces;
     std::vector<ViewLabel> labels;
     std::int64_t message_until_ns = 0;  // fitting.message is also shown over the view until then
 

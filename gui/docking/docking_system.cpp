@@ -16,6 +16,8 @@ namespace {
 // (tests/bench/draw_bench.cpp).
 // In software rendering. A view at rest is drawn once, so it may take longer.
 constexpr std::size_t kShapesMaxInSoftware = 8000, kShapesMaxAtRest = 60000;
+// Vertices of surfaces likewise.
+constexpr std::size_t kSurfaceMaxInSoftware = 60000, kSurfaceMaxAtRest = 600000;
 
 constexpr std::int64_t kMessageShown_ns = 12'000'000'000;
 
@@ -188,7 +190,10 @@ void DockingSystem::prepare(std::int64_t now_ns, bool sharp, ViewFrame& frame, c
     layer_->frame = {t.backbone, t.codebook, t.graph, drawn_, force != nullptr ? force->items : 0};
     if (const PathLevel* const path = c.level(kMoleculesPath)) molecules_level_ = path->level;
     layer_->molecules().set_level(sharp ? 1.0F : molecules_level_);
-    if (context.software) layer_->molecules().set_shapes_max(sharp ? kShapesMaxAtRest : kShapesMaxInSoftware);
+    if (context.software) {
+        layer_->molecules().set_shapes_max(sharp ? kShapesMaxAtRest : kShapesMaxInSoftware);
+        layer_->molecules().set_surface_vertices_max(sharp ? kSurfaceMaxAtRest : kSurfaceMaxInSoftware);
+    }
     label(frame, context);
     colour_by_fit();
     layer_->molecules().set_look(
@@ -228,6 +233,7 @@ bool DockingSystem::add_to_key(ContentKey& key) const {
     key.add(look.style);
     key.add(look.colouring);
     if (look.colouring == Colouring::fit) key.add(coloured_by_);
+    if (look.style == MoleculeStyle::surface) key.add(layer_->molecules().surfaces_computed());
     for (const DrawnBody& body : f.bodies) {
         key.add(body.id);
         key.add(body.structure);
@@ -243,11 +249,14 @@ void DockingSystem::refine() {
     Molecules& molecules = layer_->molecules();
     molecules.set_level(1.0F);
     molecules.set_shapes_max(std::max(molecules.shapes_max(), kShapesMaxAtRest));
+    molecules.set_surface_vertices_max(std::max(molecules.surface_vertices_max(), kSurfaceMaxAtRest));
 }
 
 void DockingSystem::drawn(const SystemContext& context) {
     static_cast<void>(context);
-    panels_.drawn_as_tubes = layer_->molecules().left_out();
+    const Molecules& molecules = layer_->molecules();
+    panels_.drawn_as_tubes = molecules.left_out();
+    panels_.surfaces = {molecules.surfaces_awaited(), molecules.surfaces_coarse(), molecules.surface_error()};
 }
 
 void DockingSystem::add_to(LoadTopic& load) const {

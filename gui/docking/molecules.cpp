@@ -14,13 +14,24 @@ namespace {
 
 constexpr Rgb8 kGhost{150, 156, 168};
 
+// Of triangles with the colours of atoms, closed.
+Paint paint_of(const ImpostorView& view) {
+    Paint paint{.closed = true};
+    if (view.colouring == Colouring::body)
+        paint.tint = Eigen::Vector4f(static_cast<float>(view.body[0]) / 255.0F,
+                                     static_cast<float>(view.body[1]) / 255.0F,
+                                     static_cast<float>(view.body[2]) / 255.0F, 1.0F);
+    return paint;
+}
+
 }  // namespace
 
 Molecules::Molecules(std::shared_ptr<const SceneContent> content, Programs& programs)
     : content_(std::move(content)),
       programs_(programs),
       structures_(docking_of(*content_).bodies.size()),
-      folds_(structures_.size()) {
+      folds_(structures_.size()),
+      surfaces_(content_, kSurfaceVertices) {
     for (const Structure& s : docking_of(*content_).bodies)
         grey_.push_back(std::make_shared<const std::vector<Rgb8>>(s.size(), kUnknownFit));
 }
@@ -43,6 +54,8 @@ void Molecules::OfStructure::clear() {
     for (ImpostorShapes& t : trace) t.clear();
     sticks.clear();
     spheres.clear();
+    surface.clear();
+    surface_shape.clear();
 }
 
 void Molecules::set_fit_colours(std::uint32_t id, std::vector<Rgb8> colours) {
@@ -130,7 +143,15 @@ void Molecules::draw(std::span<const DrawnBody> bodies, const Eigen::Matrix4f& e
                      const Eigen::Matrix4f& projection, const Haze& haze) {
     left_out_ = 0;
     triangles_ = triangles_max_ = 0;
-    std::size_t room = shapes_max_;
+    std::size_t room = shapes_max_, surface_room = surface_vertices_max_;
+    surfaces_.follow();
+    surfaces_awaited_ = surfaces_coarse_ = 0;
+    // Each has the same share of the vertices, and what those before it left.
+    auto surfaces_left =
+        static_cast<std::size_t>(std::count_if(bodies.begin(), bodies.end(), [this](const DrawnBody& b) {
+            return !b.hidden && !b.ghost && b.structure < structures_.size() &&
+                   look(b.id).style == MoleculeStyle::surface;
+        }));
     for (auto& [id, own] : own_) own.drawn = false;
     for (const DrawnBody& body : bodies) {
         if (body.hidden || body.structure >= structures_.size()) continue;
@@ -141,6 +162,12 @@ void Molecules::draw(std::span<const DrawnBody> bodies, const Eigen::Matrix4f& e
         const Source source = source_of(body, l.colouring);
         if (l.style == MoleculeStyle::tube || l.style == MoleculeStyle::cartoon) {
             draw_tube(source, l.style, view);
+            continue;
+        }
+        if (l.style == MoleculeStyle::surface) {
+            const std::size_t drawn_vertices = draw_surface(source, view, surface_room / surfaces_left--);
+            surface_room -= drawn_vertices;
+            if (drawn_vertices == 0) draw_tube(source, MoleculeStyle::tube, view);
             continue;
         }
         // Decided by the number of atoms, before any shapes are made.
@@ -189,18 +216,50 @@ void Molecules::draw_shapes(const Source& source, MoleculeStyle style, ImpostorV
     count(kTrianglesOfShape * drawn, kTrianglesOfShape * all.count());
 }
 
+PaintedSurface& Molecules::surface(const Source& source, const MolecularSurface& mesh, std::size_t step,
+                                   bool by_element) {
+    const std::pair key{step, by_element};
+    const auto at = source.made.surface.find(key);
+    if (at != source.made.surface.end()) return at->second;
+    // The shape of a body that is straight is that of its structure, whatever its colours.
+    const Structure& straight = docking_of(*content_).bodies[source.structure];
+    const bool bent = &source.atoms != &straight;
+    std::shared_ptr<SurfaceShape>& shape =
+        (bent ? source.made : structures_[source.structure]).surface_shape[step];
+    if (!shape)
+        shape = bent ? std::make_shared<SurfaceShape>(bent_surface(mesh, straight, source.atoms), mesh.index)
+                     : std::make_shared<SurfaceShape>(mesh.vertex, mesh.index);
+    return source.made.surface
+        .try_emplace(key, shape, surface_colours(mesh, straight, by_element, source.paint))
+        .first->second;
+}
+
+std::size_t Molecules::draw_surface(const Source& source, const ImpostorView& view,
+                                    std::size_t vertices_most) {
+    const SurfaceChoice choice = surfaces_.choose(source.structure, level_, vertices_most);
+    if (choice.awaited) ++surfaces_awaited_;
+    if (!choice.surface) {
+        if (choice.too_large) ++left_out_;
+        return 0;
+    }
+    if (choice.too_large) ++surfaces_coarse_;
+    PaintedSurface& painted =
+        surface(source, *choice.surface, choice.step, view.colouring == Colouring::element);
+    count(choice.surface->index.size() / 3, choice.triangles_most);
+    programs_.use_lit(view.eye_from_local, view.projection, view.haze, paint_of(view));
+    if (!(view.haze.cut_a > 0.0F)) glEnable(GL_CULL_FACE);  // it is closed
+    painted.draw();
+    glDisable(GL_CULL_FACE);
+    return choice.surface->vertex.size();
+}
+
 void Molecules::draw_tube(const Source& source, MoleculeStyle style, const ImpostorView& view) {
     std::size_t step = 0;
     while (step + 1 < kTubeLevels.size() && kTubeLevels[step] > 1.001F * level_) ++step;
     const TriangleBuffers& full = tube(source, style, 0);  // first: the others are parts of it
     TriangleBuffers& tubes = tube(source, style, step);
     count(static_cast<std::size_t>(tubes.indices()) / 3, static_cast<std::size_t>(full.indices()) / 3);
-    Paint paint{.closed = true};
-    if (view.colouring == Colouring::body)
-        paint.tint = Eigen::Vector4f(static_cast<float>(view.body[0]) / 255.0F,
-                                     static_cast<float>(view.body[1]) / 255.0F,
-                                     static_cast<float>(view.body[2]) / 255.0F, 1.0F);
-    programs_.use_lit(view.eye_from_local, view.projection, view.haze, paint);
+    programs_.use_lit(view.eye_from_local, view.projection, view.haze, paint_of(view));
     if (!(view.haze.cut_a > 0.0F)) glEnable(GL_CULL_FACE);  // tubes are closed
     tubes.draw();
     glDisable(GL_CULL_FACE);

@@ -2,13 +2,16 @@
 //
 // Shared   the graphics data of a structure is created when a style is first drawn, once for all its copies; a
 //          body adds only its pose.
+// Surface  is computed in the background (SurfaceWorker); until it is there, a body is drawn by a coarser one or as a tube, and
+//          surfaces_awaited() counts it. That of a bent body is the straight one's, moved with the atoms.
 // Own      a body that is bent along its modes, or coloured by its fit, has graphics data of its own, made again when its shape has
 //          changed by kSameShapeA or its colours have.
-// Cost     trace, tube and cartoon are cheap anywhere. Sticks and spheres are impostors, one per bond or atom: cheap on a
+// Cost     trace, tube and cartoon are cheap anywhere. Surfaces have at most set_surface_vertices_max() vertices in a frame: the coarsest of
+//          its steps that are needed for that are drawn, and surfaces_coarse() counts the bodies. Sticks and spheres are impostors, one per bond or atom: cheap on a
 //          graphics card, expensive in software. A frame draws at most shapes_max of them (set_shapes_max);
 //          further bodies are drawn as tubes, and left_out() counts them.
 // Level    of gui.molecules: tubes and traces follow means of more atoms, with fewer sides; cartoons have fewer steps, and become tubes; sticks lose the ends of side chains first;
-//          of the spheres a random part is drawn, enlarged to fill the same volume.
+//          of the spheres a random part is drawn, enlarged to fill the same volume; surfaces come from coarser grids.
 // Thread   frame thread, context current.
 #pragma once
 
@@ -18,9 +21,13 @@
 #include <map>
 #include <memory>
 #include <span>
+#include <string>
+#include <utility>
 #include <vector>
 
 #include "gui/docking/impostors.hpp"
+#include "gui/docking/painted_surface.hpp"
+#include "gui/docking/surface_choice.hpp"
 #include "gui/render/looks.hpp"
 #include "gui/render/programs.hpp"
 #include "gui/render/ribbon.hpp"
@@ -41,7 +48,8 @@ struct DrawnBody {
 
 class Molecules {
 public:
-    static constexpr std::size_t kTubeVertices = 20000, kCartoonVertices = 60000;  // total of all structures
+    static constexpr std::size_t kTubeVertices = 20000, kCartoonVertices = 60000,
+                                 kSurfaceVertices = 300000;  // total of all structures
     static constexpr std::size_t kNoLimit = std::numeric_limits<std::size_t>::max();
 
     Molecules(std::shared_ptr<const SceneContent> content, Programs& programs);
@@ -52,6 +60,8 @@ public:
     [[nodiscard]] MoleculeLook look() const { return look_; }  // of bodies without one of their own
     void set_shapes_max(std::size_t shapes) { shapes_max_ = shapes; }
     [[nodiscard]] std::size_t shapes_max() const { return shapes_max_; }
+    void set_surface_vertices_max(std::size_t vertices) { surface_vertices_max_ = vertices; }
+    [[nodiscard]] std::size_t surface_vertices_max() const { return surface_vertices_max_; }
     // Colours of the atoms of a body while it is coloured by its fit; without them it is grey.
     void set_fit_colours(std::uint32_t id, std::vector<Rgb8> colours);
     // In (0, 1], from the next draw() on.
@@ -62,6 +72,13 @@ public:
               const Eigen::Matrix4f& projection, const Haze& haze);
     // Bodies that the last draw() drew as tubes instead of sticks or spheres.
     [[nodiscard]] std::size_t left_out() const { return left_out_; }
+    // Of the last draw(): bodies whose wanted surface is still computed, those drawn coarser for the limit of vertices, and why the surface of
+    // one cannot be computed.
+    [[nodiscard]] std::size_t surfaces_awaited() const { return surfaces_awaited_; }
+    [[nodiscard]] std::size_t surfaces_coarse() const { return surfaces_coarse_; }
+    [[nodiscard]] const std::string& surface_error() const { return surfaces_.error(); }
+    // Rises when a surface has been computed that is finer than those before it.
+    [[nodiscard]] std::uint64_t surfaces_computed() const { return surfaces_.computed(); }
     // Of the last draw(): as drawn, and at level 1.
     [[nodiscard]] std::uint32_t triangles() const { return triangles_; }
     [[nodiscard]] std::uint32_t triangles_max() const { return triangles_max_; }
@@ -74,8 +91,10 @@ private:
         std::array<TriangleBuffers, kTubeLevels.size()> tube, cartoon;
         std::array<ImpostorShapes, kTraceSteps> trace;  // by the atoms per point
         ImpostorShapes sticks, spheres;
-        std::size_t sticks_always = 0;                        // drawn at any level
-        std::size_t tube_vertices = 0, cartoon_vertices = 0;  // at level 1
+        std::map<std::size_t, std::shared_ptr<SurfaceShape>> surface_shape;  // by step
+        std::map<std::pair<std::size_t, bool>, PaintedSurface> surface;  // by step, and whether by element
+        std::size_t sticks_always = 0;                                   // drawn at any level
+        std::size_t tube_vertices = 0, cartoon_vertices = 0;             // at level 1
 
         void clear();
     };
@@ -99,6 +118,10 @@ private:
     ImpostorShapes& shapes(const Source& source, MoleculeStyle style);
     ImpostorShapes& trace(const Source& source, std::size_t atoms_per_point);
     TriangleBuffers& tube(const Source& source, MoleculeStyle style, std::size_t step);
+    PaintedSurface& surface(const Source& source, const MolecularSurface& mesh, std::size_t step,
+                            bool by_element);
+    // Returns the vertices drawn: 0 if no surface of at most so many is at hand.
+    std::size_t draw_surface(const Source& source, const ImpostorView& view, std::size_t vertices_most);
     void draw_tube(const Source& source, MoleculeStyle style, const ImpostorView& view);
     void draw_shapes(const Source& source, MoleculeStyle style, ImpostorView view);
     void count(std::size_t drawn, std::size_t most);
@@ -113,6 +136,8 @@ private:
     std::vector<std::shared_ptr<const std::vector<Rgb8>>> grey_;  // per structure
     MoleculeLook look_;
     std::map<std::uint32_t, MoleculeLook> look_of_;
+    SurfaceChoices surfaces_;
+    std::size_t surface_vertices_max_ = kNoLimit, surfaces_awaited_ = 0, surfaces_coarse_ = 0;
     std::size_t shapes_max_ = kNoLimit, left_out_ = 0;
     float level_ = 1.0F;
     std::uint32_t triangles_ = 0, triangles_max_ = 0;

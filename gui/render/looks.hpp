@@ -9,6 +9,7 @@ enum class MoleculeStyle : int {
     sticks,   // bonds
     spheres,  // atoms at their van der Waals radii
     cartoon,  // helices as ribbons, strands as arrows, the rest as tubes
+    surface,  // a smooth closed surface over the atoms
 };
 
 enum class Colouring : int {

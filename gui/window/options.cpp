@@ -116,13 +116,14 @@ bool parse_gui_options(int argc, const char* const* argv, GuiOptions& options, i
                    "Maximum frame rate (1/s); 0: unlimited; default: the display's rate, or 60")
         ->check(CLI::Range(0.0, 1e5));
     app.add_option("--molecule", options.look.style,
-                   "Style of bodies: cartoon, trace, tube, sticks or spheres")
+                   "Style of bodies: cartoon, trace, tube, sticks, spheres or surface")
         ->transform(CLI::CheckedTransformer(
             std::map<std::string, MoleculeStyle>{{"trace", MoleculeStyle::trace},
                                                  {"tube", MoleculeStyle::tube},
                                                  {"sticks", MoleculeStyle::sticks},
                                                  {"spheres", MoleculeStyle::spheres},
-                                                 {"cartoon", MoleculeStyle::cartoon}}));
+                                                 {"cartoon", MoleculeStyle::cartoon},
+                                                 {"surface", MoleculeStyle::surface}}));
     app.add_option("--colour", options.look.colouring,
                    "Colour of bodies: by chain, element, body, or the fit of their residues to the map")
         ->transform(CLI::CheckedTransformer(std::map<std::string, Colouring>{{"chain", Colouring::chain},

@@ -14,7 +14,7 @@ namespace {
 
 constexpr const char* kFix = "gui/README.md lists the keys; or remove the file: a new one is written";
 constexpr std::array<const char*, 3> kStyles{"glass", "solid", "wire"};
-constexpr std::array<const char*, 5> kMolecules{"trace", "tube", "sticks", "spheres", "cartoon"};
+constexpr std::array<const char*, 6> kMolecules{"trace", "tube", "sticks", "spheres", "cartoon", "surface"};
 constexpr std::array<const char*, 4> kColourings{"chain", "element", "body", "fit"};
 constexpr std::array<const char*, WindowState::kSpans> kSpanNames{"1 min", "10 min", "1 h", "6 h", "24 h"};
 constexpr std::array<const char*, WindowState::kLateness> kLatenessNames{"last minute", "whole run",
