@@ -37,6 +37,7 @@ constexpr PassedOption kVisual[] = {
     {"--fps-max", "FPS", "Maximum frame rate (frames/s)"},
     {"--ui-scale", "X", "Size of text and panels relative to the display's default"},
     {"--particles", "N", "Constant number of particles over bone, to measure their cost"},
+    {"--frames", "FILE.json", "Times of the window's frames and their passes, as JSON at the end"},
     {"--molecule", "cartoon|trace|tube|sticks|spheres|surface", "Style of bodies in the window"},
     {"--colour", "chain|element|body|fit", "Colour of bodies in the window"},
     {"--stereo", "off|anaglyph|side-by-side|top-bottom|two-windows|quad-buffer", "Stereo mode of the window"},

@@ -168,15 +168,14 @@ AtomCells::Sum AtomCells::sum(const Eigen::Vector3d& point_a) const {
                 const GaussianAtom& atom = atoms_[member_[m]];
                 const Eigen::Vector3f off = point - atom.centre_a;
                 const float d2 = off.squaredNorm();
+                if (d2 < nearest2) {
+                    nearest2 = d2;
+                    out.nearest = member_[m];
+                }
                 if (d2 > atom.reach_a * atom.reach_a) continue;
                 const double value = static_cast<double>(atom.weight * std::exp(-atom.decay * d2));
                 out.value += value;
                 out.gradient -= 2.0 * static_cast<double>(atom.decay) * value * off.cast<double>();
-                if (d2 < nearest2) {
-                    nearest2 = d2;
-                    out.nearest = member_[m];
-                    out.any = true;
-                }
             }
         }
     return out;

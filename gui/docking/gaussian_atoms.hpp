@@ -36,8 +36,7 @@ public:
     struct Sum {
         double value = 0.0;
         Eigen::Vector3d gradient = Eigen::Vector3d::Zero();  // per ångström
-        std::uint32_t nearest = 0;  // atom with the nearest centre, of those that reach the point
-        bool any = false;
+        std::uint32_t nearest = 0;  // atom with the nearest centre, if any reaches the point
     };
     [[nodiscard]] Sum sum(const Eigen::Vector3d& point_a) const;
 

@@ -3,8 +3,10 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <string>
 
 #include "gui/docking/gaussian_atoms.hpp"
+#include "ipc/base/error.hpp"
 #include "ipc/base/units.hpp"
 #include "ipc/scene/density/isosurface.hpp"
 
@@ -23,7 +25,7 @@ void set_normal(SurfaceVertex& vertex, const Eigen::Vector3d& outward) {
 
 // One step of Newton's method towards the level 1 in the logarithm of the sum.
 Eigen::Vector3d newton_step(const AtomCells::Sum& at, double most_a) {
-    if (!at.any || !(at.value > 0.0)) return Eigen::Vector3d::Zero();
+    if (!(at.value > 0.0)) return Eigen::Vector3d::Zero();
     const Eigen::Vector3d slope = at.gradient / at.value;
     const double slope2 = slope.squaredNorm();
     if (!(slope2 > 1e-6)) return Eigen::Vector3d::Zero();
@@ -35,6 +37,11 @@ Eigen::Vector3d newton_step(const AtomCells::Sum& at, double most_a) {
 }  // namespace
 
 MolecularSurface build_surface(const Structure& structure, double spacing_a, const Progress& progress) {
+    for (std::size_t i = 0; i < structure.size(); ++i)
+        if (!std::isfinite(structure.x_m[i] + structure.y_m[i] + structure.z_m[i]))
+            throw StartupError("computing the surface of " + structure.name,
+                               "the position of atom " + std::to_string(i + 1) + " is not finite",
+                               "bake the scene again");
     MolecularSurface surface;
     surface.spacing_a = allowed_spacing_a(structure, spacing_a, kSurfaceVoxelsMax);
     if (structure.size() == 0) return surface;

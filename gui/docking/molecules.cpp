@@ -216,21 +216,22 @@ void Molecules::draw_shapes(const Source& source, MoleculeStyle style, ImpostorV
     count(kTrianglesOfShape * drawn, kTrianglesOfShape * all.count());
 }
 
-PaintedSurface& Molecules::surface(const Source& source, const MolecularSurface& mesh, std::size_t step,
+PaintedSurface& Molecules::surface(const Source& source, const std::shared_ptr<const MolecularSurface>& mesh,
                                    bool by_element) {
-    const std::pair key{step, by_element};
+    const std::pair key{mesh, by_element};
     const auto at = source.made.surface.find(key);
     if (at != source.made.surface.end()) return at->second;
     // The shape of a body that is straight is that of its structure, whatever its colours.
     const Structure& straight = docking_of(*content_).bodies[source.structure];
     const bool bent = &source.atoms != &straight;
     std::shared_ptr<SurfaceShape>& shape =
-        (bent ? source.made : structures_[source.structure]).surface_shape[step];
+        (bent ? source.made : structures_[source.structure]).surface_shape[mesh];
     if (!shape)
-        shape = bent ? std::make_shared<SurfaceShape>(bent_surface(mesh, straight, source.atoms), mesh.index)
-                     : std::make_shared<SurfaceShape>(mesh.vertex, mesh.index);
+        shape = bent
+                    ? std::make_shared<SurfaceShape>(bent_surface(*mesh, straight, source.atoms), mesh->index)
+                    : std::make_shared<SurfaceShape>(mesh->vertex, mesh->index);
     return source.made.surface
-        .try_emplace(key, shape, surface_colours(mesh, straight, by_element, source.paint))
+        .try_emplace(key, shape, surface_colours(*mesh, straight, by_element, source.paint))
         .first->second;
 }
 
@@ -243,8 +244,7 @@ std::size_t Molecules::draw_surface(const Source& source, const ImpostorView& vi
         return 0;
     }
     if (choice.too_large) ++surfaces_coarse_;
-    PaintedSurface& painted =
-        surface(source, *choice.surface, choice.step, view.colouring == Colouring::element);
+    PaintedSurface& painted = surface(source, choice.surface, view.colouring == Colouring::element);
     count(choice.surface->index.size() / 3, choice.triangles_most);
     programs_.use_lit(view.eye_from_local, view.projection, view.haze, paint_of(view));
     if (!(view.haze.cut_a > 0.0F)) glEnable(GL_CULL_FACE);  // it is closed

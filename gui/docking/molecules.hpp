@@ -91,10 +91,11 @@ private:
         std::array<TriangleBuffers, kTubeLevels.size()> tube, cartoon;
         std::array<ImpostorShapes, kTraceSteps> trace;  // by the atoms per point
         ImpostorShapes sticks, spheres;
-        std::map<std::size_t, std::shared_ptr<SurfaceShape>> surface_shape;  // by step
-        std::map<std::pair<std::size_t, bool>, PaintedSurface> surface;  // by step, and whether by element
-        std::size_t sticks_always = 0;                                   // drawn at any level
-        std::size_t tube_vertices = 0, cartoon_vertices = 0;             // at level 1
+        std::map<std::shared_ptr<const MolecularSurface>, std::shared_ptr<SurfaceShape>> surface_shape;
+        // By whether it is coloured by element.
+        std::map<std::pair<std::shared_ptr<const MolecularSurface>, bool>, PaintedSurface> surface;
+        std::size_t sticks_always = 0;                        // drawn at any level
+        std::size_t tube_vertices = 0, cartoon_vertices = 0;  // at level 1
 
         void clear();
     };
@@ -118,7 +119,7 @@ private:
     ImpostorShapes& shapes(const Source& source, MoleculeStyle style);
     ImpostorShapes& trace(const Source& source, std::size_t atoms_per_point);
     TriangleBuffers& tube(const Source& source, MoleculeStyle style, std::size_t step);
-    PaintedSurface& surface(const Source& source, const MolecularSurface& mesh, std::size_t step,
+    PaintedSurface& surface(const Source& source, const std::shared_ptr<const MolecularSurface>& mesh,
                             bool by_element);
     // Returns the vertices drawn: 0 if no surface of at most so many is at hand.
     std::size_t draw_surface(const Source& source, const ImpostorView& view, std::size_t vertices_most);

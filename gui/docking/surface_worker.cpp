@@ -80,19 +80,24 @@ void SurfaceWorker::compute(std::uint32_t structure) {
         const std::lock_guard lock(mutex_);
         return !stop_;
     };
-    double finest_a = finest_spacing_a(build_surface(atoms, kProbeSpacingA, going), vertices_max_);
-    for (std::size_t i = 0; i < kSurfaceSteps; ++i) {
-        const std::size_t step = i == 0 ? kSurfaceSteps - 1 : i - 1;
-        auto surface = std::make_shared<MolecularSurface>(
-            build_surface(atoms, spacing_of_step_a(finest_a, step), going));
-        // A finer grid shows more folds, so the finest step may have more vertices than the probe told.
-        while (step == 0 &&
-               static_cast<double>(surface->vertex.size()) > kTooMany * static_cast<double>(vertices_max_)) {
-            finest_a = finest_spacing_a(*surface, vertices_max_) * 1.02;
-            *surface = build_surface(atoms, finest_a, going);
-        }
-        if (!put({structure, step, std::move(surface), {}})) return;
+    const auto built = [&](double spacing_a) {
+        return std::make_shared<const MolecularSurface>(build_surface(atoms, spacing_a, going));
+    };
+    const auto give = [&](std::size_t step, std::shared_ptr<const MolecularSurface> surface) {
+        return put({structure, step, std::move(surface), {}});
+    };
+    const auto probe = built(kProbeSpacingA);
+    double finest_a = finest_spacing_a(*probe, vertices_max_);
+    if (!give(kSurfaceSteps - 1, probe)) return;
+    auto finest = built(finest_a);
+    // A finer grid shows more folds, so it may have more vertices than the probe told.
+    while (static_cast<double>(finest->vertex.size()) > kTooMany * static_cast<double>(vertices_max_)) {
+        finest_a = 1.02 * finest_spacing_a(*finest, vertices_max_);
+        finest = built(finest_a);
     }
+    if (!give(0, std::move(finest))) return;
+    for (std::size_t step = 1; step < kSurfaceSteps; ++step)
+        if (!give(step, built(spacing_of_step_a(finest_a, step)))) return;
 }
 
 }  // namespace tact

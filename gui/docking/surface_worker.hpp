@@ -1,5 +1,5 @@
-// Computes the surfaces of structures in the background: of each, the coarsest step of detail, which is there at once, then the finest, then
-// those between.
+// Computes the surfaces of structures in the background: of each, a coarse one that takes a few milliseconds and serves as the last step of
+// detail for now, then the finest step, then the others.
 //
 // Finest   has about vertices_max vertices, or the spacing kFinestSpacingA.
 // Thread   its own, at low priority. Callers never wait for it; the destructor alone waits for the current slice.

@@ -14,6 +14,7 @@
 #include "gui/window/still_view.hpp"
 #include "tests/unit/gui_canvas.hpp"
 #include "tests/unit/gui_fake.hpp"
+#include "tests/unit/gui_wait.hpp"
 
 namespace tact::gui_detail_test {
 namespace {
@@ -214,12 +215,16 @@ protected:
         return camera_.eye(static_cast<float>(kWidth) / static_cast<float>(kHeight));
     }
     Image drawn(int width_px = kWidth, int height_px = kHeight) {
-        clear(0.0F, 0.0F, 0.0F);
         glViewport(0, 0, width_px, height_px);
         ViewFrame frame{};
         frame.width_px = width_px;
         frame.height_px = height_px;
-        view_->draw(eye(), options_, frame);
+        // Surfaces are computed in the background.
+        EXPECT_TRUE(test::wait_for([&] {
+            clear(0.0F, 0.0F, 0.0F);
+            view_->draw(eye(), options_, frame);
+            return layer_->molecules().surfaces_awaited() == 0;
+        }));
         return picture();
     }
 
@@ -234,8 +239,9 @@ protected:
 
 TEST_F(GuiLevels, gui_molecules_changes_triangles_and_picture_in_every_style) {
     options_.surface = false;
-    for (const MoleculeStyle style : {MoleculeStyle::trace, MoleculeStyle::tube, MoleculeStyle::sticks,
-                                      MoleculeStyle::spheres, MoleculeStyle::cartoon}) {
+    for (const MoleculeStyle style :
+         {MoleculeStyle::trace, MoleculeStyle::tube, MoleculeStyle::sticks, MoleculeStyle::spheres,
+          MoleculeStyle::cartoon, MoleculeStyle::surface}) {
         Molecules& molecules = layer_->molecules();
         molecules.set_look({style, Colouring::chain});
         molecules.set_level(1.0F);

@@ -52,14 +52,18 @@ protected:
         view_->set_layer(&*layer_);
     }
     Image picture(std::span<const DrawnBody> bodies) {
-        glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
         ViewFrame frame{};
         frame.width_px = kWidth;
         frame.height_px = kHeight;
         layer_->frame.bodies = bodies;
         frame.hand = second_hand_;
-        view_->draw(camera_.eye(static_cast<float>(frame.width_px) / static_cast<float>(frame.height_px)),
-                    options_, frame);
+        // Surfaces are computed in the background.
+        EXPECT_TRUE(test::wait_for([&] {
+            glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
+            view_->draw(camera_.eye(static_cast<float>(frame.width_px) / static_cast<float>(frame.height_px)),
+                        options_, frame);
+            return layer_->molecules().surfaces_awaited() == 0;
+        }));
         return read_pixels(kWidth, kHeight);
     }
     std::shared_ptr<const SceneContent> content_;
@@ -74,14 +78,14 @@ protected:
 TEST_F(GuiDrawScene, each_style_draws_a_different_image) {
     std::set<std::string> pictures;
     for (const auto style : {MoleculeStyle::trace, MoleculeStyle::tube, MoleculeStyle::sticks,
-                             MoleculeStyle::spheres, MoleculeStyle::cartoon})
+                             MoleculeStyle::spheres, MoleculeStyle::cartoon, MoleculeStyle::surface})
         for (const auto colouring : {Colouring::chain, Colouring::body}) {
             layer_->molecules().set_look({style, colouring});
             const Image image = picture(std::array{home_});
             EXPECT_GT(drawn(image), 100U);
             pictures.insert({image.rgb.begin(), image.rgb.end()});
         }
-    EXPECT_EQ(pictures.size(), 10U);
+    EXPECT_EQ(pictures.size(), 12U);
 }
 
 TEST_F(GuiDrawScene, a_bent_body_is_drawn_as_its_bent_atoms_and_follows_each_change) {
@@ -98,7 +102,7 @@ TEST_F(GuiDrawScene, a_bent_body_is_drawn_as_its_bent_atoms_and_follows_each_cha
     }
     docking.modes = {bow};
     for (const auto style : {MoleculeStyle::trace, MoleculeStyle::tube, MoleculeStyle::sticks,
-                             MoleculeStyle::spheres, MoleculeStyle::cartoon}) {
+                             MoleculeStyle::spheres, MoleculeStyle::cartoon, MoleculeStyle::surface}) {
         const auto begin_layer = [&] {  // the view stays, with the haze of the straight scene
             layer_.emplace(content_, *programs_);
             view_->set_layer(&*layer_);
@@ -118,8 +122,8 @@ TEST_F(GuiDrawScene, a_bent_body_is_drawn_as_its_bent_atoms_and_follows_each_cha
             const float amplitude_m = i == 0 ? 3e-10F : 6e-10F;
             docking.bodies[0] = bent_structure(straight, bow, {&amplitude_m, 1});
             begin_layer();
-            // A cartoon keeps the helices and strands of the straight structure while it is bent.
-            if (style != MoleculeStyle::cartoon) {
+            // A cartoon keeps the helices and strands of the straight structure while it is bent, and a surface is moved.
+            if (style != MoleculeStyle::cartoon && style != MoleculeStyle::surface) {
                 EXPECT_EQ(picture(std::array{home_}).rgb, bent[i].rgb)
                     << static_cast<int>(style) << ", " << i;
             }
@@ -197,7 +201,7 @@ TEST_F(GuiDrawScene, a_body_coloured_by_its_fit_has_the_given_colours_and_is_gre
         return count;
     };
     for (const auto style : {MoleculeStyle::trace, MoleculeStyle::tube, MoleculeStyle::sticks,
-                             MoleculeStyle::spheres, MoleculeStyle::cartoon}) {
+                             MoleculeStyle::spheres, MoleculeStyle::cartoon, MoleculeStyle::surface}) {
         layer_.emplace(content_, *programs_);
         view_->set_layer(&*layer_);
         layer_->frame.codebook = layer_->frame.graph = false;
