@@ -33,6 +33,53 @@ void main() {
     v_inside = hazed(vec4(0.72 * mix(colour.rgb, u_tint.rgb, u_tint.a), 1.0), -p.z, y);
 }
 )";
+constexpr char kFineVertex[] = R"(
+layout(location = 0) in vec3 position;
+layout(location = 1) in vec3 normal;
+layout(location = 2) in vec4 colour;
+uniform vec4 u_tint;
+out vec3 v_place;
+out vec3 v_normal;
+out vec4 v_base;
+noperspective out float v_y;
+void main() {
+    vec4 p = u_eye * vec4(position, 1.0);
+    gl_ClipDistance[0] = -p.z - u_cut;
+    v_place = p.xyz;
+    v_normal = normalize(mat3(u_eye) * normal);
+    v_base = vec4(mix(colour.rgb, u_tint.rgb, u_tint.a), colour.a);
+    gl_Position = u_projection * p;
+    v_y = gl_Position.y / gl_Position.w;
+}
+)";
+// The side that is seen is lit: by the triangle, because an interpolated normal may turn away from the eye at an outline.
+constexpr char kFineFragment[] = R"(
+in vec3 v_place;
+in vec3 v_normal;
+in vec4 v_base;
+noperspective in float v_y;
+uniform float u_glass;
+uniform float u_opacity;
+uniform float u_closed;
+out vec4 colour;
+void main() {
+    float depth = -v_place.z;
+    if (u_closed > 0.5 && !gl_FrontFacing) {
+        colour = hazed(vec4(0.72 * v_base.rgb, 1.0), depth, v_y);
+        return;
+    }
+    vec3 n = normalize(gl_FrontFacing ? v_normal : -v_normal), v = normalize(-v_place);
+    vec4 c = lit(v_base.rgb, n, v);
+    float a = v_base.a;
+    if (u_glass > 0.5) {
+        float rim = 1.0 - max(dot(n, v), 0.0);
+        a *= mix(0.17, 0.78, rim * rim) + 0.45 * c.a;
+        if (!gl_FrontFacing) a *= 0.55;
+        a *= 1.0 - 0.8 * haze_at(depth);
+    }
+    colour = hazed(vec4(c.rgb, min(a * u_opacity, 1.0)), depth, v_y);
+}
+)";
 // Of a closed body that is cut: its inner walls look like the face of the cut.
 constexpr char kCutFragment[] = R"(#version 330 core
 in vec4 v_colour;
@@ -104,11 +151,13 @@ Programs::LitProgram::LitProgram(const char* what, const char* vertex, const cha
       view(program),
       glass(program.uniform("u_glass")),
       opacity(program.uniform("u_opacity")),
-      tint(program.uniform("u_tint")) {}
+      tint(program.uniform("u_tint")),
+      closed(program.uniform("u_closed")) {}
 
 Programs::Programs()
     : lit_("surface", shader(kLitVertex).c_str(), kPlainFragment),
       cut_("cut surface", shader(kLitVertex).c_str(), kCutFragment),
+      fine_("surface lit by pixels", shader(kFineVertex).c_str(), shader(kFineFragment).c_str()),
       flat_("line", shader(kFlatVertex).c_str(), kPlainFragment),
       balls_("point", shader(kBallVertex).c_str(), kBallFragment),
       background_("background", kBackgroundVertex, kBackgroundFragment),
@@ -124,12 +173,14 @@ Programs::Programs()
 
 void Programs::use_lit(const Eigen::Matrix4f& eye, const Eigen::Matrix4f& projection, const Haze& haze,
                        const Paint& paint) {
-    const LitProgram& lit = paint.closed && haze.cut_a > 0.0F ? cut_ : lit_;
+    const bool closes = paint.closed && haze.cut_a > 0.0F;
+    const LitProgram& lit = by_pixel_ ? fine_ : closes ? cut_ : lit_;
     lit.program.use();
     lit.view.set(eye, projection, haze);
     glUniform1f(lit.glass, paint.glass ? 1.0F : 0.0F);
     glUniform1f(lit.opacity, paint.opacity);
     glUniform4fv(lit.tint, 1, paint.tint.data());
+    if (by_pixel_) glUniform1f(lit.closed, closes ? 1.0F : 0.0F);
 }
 
 void Programs::use_flat(const Eigen::Matrix4f& eye, const Eigen::Matrix4f& projection, const Haze& haze,

@@ -1,7 +1,7 @@
 // The shader programs of triangles, lines, points and the background. Atoms: gui/docking/impostors.hpp.
 //
-// Lighting is per vertex, so the cost of a frame follows the number of vertices (set by the governor), and software
-// rendering stays usable. Attributes: 0 position, 1 normal, 2 colour.
+// Light   by pixel, with interpolated normals; or by vertex, so that the cost of a frame in software rendering follows the number of vertices
+//         (set by the governor) and not that of pixels: light_by_pixel(). Attributes: 0 position, 1 normal, 2 colour.
 #pragma once
 
 #include "gui/render/gl.hpp"
@@ -22,6 +22,8 @@ public:
     Programs();
     void use_lit(const Eigen::Matrix4f& eye_from_local, const Eigen::Matrix4f& projection, const Haze& haze,
                  const Paint& paint);
+    // Of triangles, from the next use on.
+    void light_by_pixel(bool on) { by_pixel_ = on; }
     // Lines and boxes in one colour.
     void use_flat(const Eigen::Matrix4f& eye_from_local, const Eigen::Matrix4f& projection, const Haze& haze,
                   const float rgba[4]);
@@ -34,10 +36,11 @@ private:
     struct LitProgram {
         GlProgram program;
         ViewUniforms view;
-        GLint glass, opacity, tint;
+        GLint glass, opacity, tint, closed;
         LitProgram(const char* what, const char* vertex, const char* fragment);
     };
-    LitProgram lit_, cut_;
+    LitProgram lit_, cut_, fine_;
+    bool by_pixel_ = false;
     GlProgram flat_, balls_, background_;
     GlVertexArray empty_;
     ViewUniforms flat_view_, balls_view_;

@@ -69,6 +69,7 @@ void SceneView::draw(const EyeView& eye, const ViewOptions& options, const ViewF
     const auto cut = [cuts](bool on) {
         cuts&& on ? glEnable(GL_CLIP_DISTANCE0) : glDisable(GL_CLIP_DISTANCE0);
     };
+    programs_.light_by_pixel(options.light_by_pixel);
     glEnable(GL_DEPTH_TEST);
     glDisable(GL_CULL_FACE);
     glDisable(GL_BLEND);

@@ -64,7 +64,9 @@ void GuiApp::draw_scene(std::int64_t now_ns) {
     view_options_.style = static_cast<SurfaceStyle>(t.style);
     view_options_.depth_cue = t.depth_cue;
     view_options_.smooth_edges = t.smooth_edges;
-    view_options_.shaded = t.shading && (sharp_ || !window_.software());
+    const bool rich = sharp_ || !window_.software();  // else only once the view rests
+    view_options_.shaded = t.shading && rich;
+    view_options_.light_by_pixel = rich || std::getenv("TACT_TRY_PIXEL") != nullptr;
     view_options_.cut_a.reset();
     if (t.cut) view_options_.cut_a = t.cut_at * view_->radius_a();
     view_options_.gradient = !t.white_ground && !options_.plain;

@@ -30,6 +30,7 @@ void GuiApp::save_picture(const ViewFrame& of_window) {
                 ViewOptions options = view_options_;
                 options.smooth_edges = !many_samples && !wanted.transparent;
                 options.shaded = state_.toggles.shading;
+                options.light_by_pixel = true;
                 if (ground != nullptr) {
                     options.gradient = false;
                     options.plain_ground = *ground;

@@ -30,6 +30,7 @@ void GuiApp::draw_window_view(const ViewFrame& view, Instant now) {
         view_->contours().set_refined(true);
         detail_.refined = 1;
         view_options_.shaded = state_.toggles.shading;
+        view_options_.light_by_pixel = true;
         draw_view(eye, view);
         view_->contours().set_refined(false);
         still_.keep(view.x_px, view.y_px, view.width_px, view.height_px);

@@ -67,6 +67,10 @@ void draw(benchmark::State& state) {
     frame.height_px = kHeight;
     layer.frame.bodies = bodies;
     glViewport(0, 0, kWidth, kHeight);
+    do {  // surfaces are computed in the background
+        view.draw(camera.eye(static_cast<float>(frame.width_px) / static_cast<float>(frame.height_px)), {},
+                  frame);
+    } while (layer.molecules().surfaces_awaited() > 0);
     for (auto _ : state) {
         glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
         camera.rotate(3.0F, 0.0F, kHeight);
@@ -77,11 +81,25 @@ void draw(benchmark::State& state) {
     state.SetLabel(window.renderer());
 }
 BENCHMARK(draw)
-    ->ArgName("style: trace, tube, sticks, spheres")
-    ->DenseRange(0, 3)
+    ->ArgName("style: trace, tube, sticks, spheres, cartoon, surface")
+    ->DenseRange(0, 5)
     ->Unit(benchmark::kMillisecond)
     ->MeasureProcessCPUTime()
     ->UseRealTime();
+
+void compute_surface(benchmark::State& state) {
+    const Structure atoms = ball_of_atoms(27000);
+    std::size_t vertices = 0;
+    for (auto _ : state)
+        vertices = build_surface(atoms, 0.1 * static_cast<double>(state.range(0))).vertex.size();
+    state.counters["vertices"] = static_cast<double>(vertices);
+}
+BENCHMARK(compute_surface)
+    ->ArgName("spacing in tenths of an angstrom")
+    ->Arg(25)
+    ->Arg(10)
+    ->Arg(6)
+    ->Unit(benchmark::kMillisecond);
 
 DensityGrid blobs(std::uint32_t n) {
     DensityGrid grid;

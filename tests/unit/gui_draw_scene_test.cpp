@@ -232,6 +232,67 @@ TEST_F(GuiDrawScene, a_style_applies_to_one_body_and_a_limit_turns_spheres_into_
     EXPECT_EQ(layer_->molecules().left_out(), 1U);
 }
 
+TEST_F(GuiDrawScene, a_surface_that_is_cut_looks_solid_inside) {
+    layer_->molecules().set_look({MoleculeStyle::surface, Colouring::chain});
+    options_.depth_cue = false;
+    // Pixels of the flat colour that the faces of a cut have.
+    const auto faces = [](const Image& image) {
+        std::size_t count = 0;
+        for (std::size_t i = 0; i < image.rgb.size(); i += 3)
+            for (const std::size_t chain : {0U, 1U}) {
+                const Rgb8 c = chain_colour(chain);
+                bool same = true;
+                for (std::size_t k = 0; k < 3; ++k)
+                    same = same && std::abs(image.rgb[i + k] - 0.72 * c[k]) < 1.5;
+                count += same ? 1U : 0U;
+            }
+        return count;
+    };
+    const Image whole = picture(std::array{home_});
+    const std::size_t by_chance = faces(whole);
+    options_.cut_a = 0.0F;
+    const Image half = picture(std::array{home_});
+    EXPECT_GT(faces(half), by_chance + 100U);
+    EXPECT_GT(drawn(half), drawn(whole) / 3);
+    options_.cut_a = -60.0F;  // behind it
+    EXPECT_EQ(drawn(picture(std::array{home_})), 0U);
+}
+
+TEST_F(GuiDrawScene, a_surface_has_the_vertices_allowed_and_is_a_tube_until_it_is_there) {
+    layer_->molecules().set_look({MoleculeStyle::tube, Colouring::chain});
+    const Image tube = picture(std::array{home_});
+    Molecules& molecules = layer_->molecules();
+    molecules.set_look({MoleculeStyle::surface, Colouring::chain});
+    glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
+    ViewFrame frame{};
+    frame.width_px = kWidth;
+    frame.height_px = kHeight;
+    layer_->frame.bodies = std::span(&home_, 1);
+    view_->draw(camera_.eye(static_cast<float>(kWidth) / static_cast<float>(kHeight)), options_, frame);
+    if (molecules.surfaces_computed() == 0) {
+        EXPECT_EQ(read_pixels(kWidth, kHeight).rgb, tube.rgb);
+        EXPECT_EQ(molecules.surfaces_awaited(), 1U);
+    }
+    const Image fine = picture(std::array{home_});
+    EXPECT_EQ(molecules.surfaces_coarse() + molecules.left_out(), 0U);
+    const std::uint32_t most = molecules.triangles();
+    EXPECT_EQ(molecules.triangles_max(), most);
+    // Triangles are twice the vertices of a closed surface, about.
+    molecules.set_surface_vertices_max(most / 4);
+    EXPECT_NE(picture(std::array{home_}).rgb, fine.rgb);
+    EXPECT_EQ(molecules.surfaces_coarse(), 1U);
+    EXPECT_LE(molecules.triangles(), most / 2 + 4);
+    // Two copies share what one was allowed.
+    DrawnBody copy = home_;
+    copy.id = 2;
+    static_cast<void>(picture(std::array{home_, copy}));
+    EXPECT_EQ(molecules.surfaces_coarse(), 2U);
+    EXPECT_LE(molecules.triangles(), most / 2 + 8);
+    molecules.set_surface_vertices_max(10);
+    EXPECT_EQ(picture(std::array{home_}).rgb, tube.rgb);
+    EXPECT_EQ(molecules.left_out(), 1U);
+}
+
 TEST_F(GuiDrawScene, a_surface_follows_its_level_at_once_for_any_frame_time) {
     const std::string path = folder_ + "/fine.tact";
     fake::write_helix_scene(path, 64);
