@@ -29,7 +29,7 @@ struct ViewOptions {
     bool depth_cue = true;  // far content fades into the background
     bool smooth_edges = true;
     bool light_by_pixel = false;  // of triangles; else by vertex, for software rendering of a view that moves
-    bool shaded = false;  // by RestShading: in software rendering too slow for a view that moves
+    bool shaded = false;          // by RestShading: in software rendering too slow for a view that moves
     std::optional<float>
         cut_a;  // a plane across the view, so far before the camera's target; what is nearer is not drawn
     bool gradient = true;                                    // background; off: plain_ground, cheaper

@@ -121,6 +121,52 @@ DensityGrid blobs(std::uint32_t n) {
     return grid;
 }
 
+// A map's contour as glass, 1920 x 1080 pixels, which it fills as a scene does at the start.
+void draw_map(benchmark::State& state) {
+    if (std::getenv("DISPLAY") == nullptr) {
+        state.SkipWithError("no display");
+        return;
+    }
+    constexpr int kMapWidth = 1920, kMapHeight = 1080;
+    Window window(kMapWidth, kMapHeight, true);
+    OffscreenTarget target(kMapWidth, kMapHeight);
+    target.bind();
+    Programs programs;
+    programs.light_by_pixel(state.range(0) != 0);
+    const DensityGrid grid = blobs(205);
+    const PlainMesh mesh = extract_contour(grid, 0.5);
+    PlainSurface surface;
+    surface.fill(mesh);
+    Camera camera;
+    camera.frame(75.0F);
+    Eigen::Matrix4f model = Eigen::Matrix4f::Identity();
+    model.topLeftCorner<3, 3>() *= 1e10F;
+    model.topRightCorner<3, 1>() = Eigen::Vector3f::Constant(-102.0F);
+    glViewport(0, 0, kMapWidth, kMapHeight);
+    glEnable(GL_DEPTH_TEST);
+    glEnable(GL_CULL_FACE);
+    glEnable(GL_BLEND);
+    glBlendFunc(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA);
+    for (auto _ : state) {
+        glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
+        camera.rotate(3.0F, 0.0F, kMapHeight);
+        const EyeView eye = camera.eye(static_cast<float>(kMapWidth) / static_cast<float>(kMapHeight));
+        programs.use_lit(eye.eye_from_scene * model, eye.projection, {}, {.glass = true});
+        glDepthMask(GL_FALSE);
+        surface.draw({0.66F, 0.80F, 0.95F});
+        glDepthMask(GL_TRUE);
+        glFinish();
+    }
+    state.counters["vertices"] = static_cast<double>(mesh.vertex.size());
+    state.SetLabel(window.renderer());
+}
+BENCHMARK(draw_map)
+    ->ArgName("light by pixel")
+    ->DenseRange(0, 1)
+    ->Unit(benchmark::kMillisecond)
+    ->MeasureProcessCPUTime()
+    ->UseRealTime();
+
 void extract(benchmark::State& state) {
     const DensityGrid grid = blobs(100);
     const DensityGrid thin = thinned(grid, static_cast<std::uint32_t>(state.range(0)));

@@ -26,6 +26,7 @@ if(TACT_GUI)
             topics shm gui_stereo SYSTEM nlohmann_json::nlohmann_json TIMEOUT 300)
     tact_test(unit/gui_cut_test.cpp USES gui_window gui_render gui_docking launch scene base)
     tact_test(unit/gui_press_test.cpp USES gui_window gui_dashboard launch)
+    tact_test(unit/gui_light_test.cpp USES gui_window gui_render launch scene base)
     tact_test(unit/gui_output_test.cpp USES gui_window gui_dashboard gui_base base SYSTEM spdlog::spdlog)
     tact_test(unit/gui_ribbon_test.cpp USES gui_render scene SYSTEM ZLIB::ZLIB)
     tact_test(unit/gui_draw_scene_test.cpp USES gui_window gui_render launch scene base gui_docking prep_mesh topics shm
