@@ -213,6 +213,22 @@ void Contours::draw_clear(const Eigen::Matrix4f& eye, const Eigen::Matrix4f& pro
     glDisable(GL_BLEND);
 }
 
+bool Contours::glass_alone(SurfaceStyle otherwise) const {
+    bool any = false;
+    for (std::size_t i = 0; i < wanted_.size(); ++i) {
+        if (!shown(i) || opaque(wanted_[i], otherwise)) continue;
+        if (wanted_[i].style.value_or(otherwise) != SurfaceStyle::glass) return false;
+        any = true;
+    }
+    return any;
+}
+
+void Contours::draw_glass_to_sort(const Eigen::Matrix4f& eye, const Eigen::Matrix4f& projection,
+                                  const Haze& haze, SurfaceStyle otherwise) {
+    for (std::size_t i = 0; i < wanted_.size(); ++i)
+        if (shown(i) && !opaque(wanted_[i], otherwise)) draw(i, eye, projection, haze, otherwise, true);
+}
+
 void Contours::draw_cut(const Eigen::Matrix4f& eye, const Eigen::Matrix4f& projection, const Haze& haze,
                         SurfaceStyle otherwise) {
     if (content_->grid.values.empty()) return;
@@ -235,7 +251,7 @@ void Contours::draw_cut(const Eigen::Matrix4f& eye, const Eigen::Matrix4f& proje
 }
 
 void Contours::draw(std::size_t i, const Eigen::Matrix4f& eye, const Eigen::Matrix4f& projection,
-                    const Haze& haze, SurfaceStyle otherwise) {
+                    const Haze& haze, SurfaceStyle otherwise, bool sorted) {
     const Contour& contour = wanted_[i];
     Slot& slot = slot_[i];
     const SurfaceStyle style = contour.style.value_or(otherwise);
@@ -260,10 +276,10 @@ void Contours::draw(std::size_t i, const Eigen::Matrix4f& eye, const Eigen::Matr
             glEnable(GL_CULL_FACE);
             glCullFace(contour.level >= content_->meta.map_mean ? GL_BACK : GL_FRONT);
         }
-        glDepthMask(GL_FALSE);
+        if (!sorted) glDepthMask(GL_FALSE);
         triangles();
         glDisable(GL_CULL_FACE);
-        glDepthMask(GL_TRUE);
+        if (!sorted) glDepthMask(GL_TRUE);
     } else if (contour.opacity < 1.0F) {
         // Only the nearest layer, so that it looks like one object: first the depth, then the colour.
         glColorMask(GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);

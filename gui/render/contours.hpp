@@ -5,8 +5,8 @@
 //           then.
 // Detail    approach_vertices() applies the level of "gui.mesh": the same fraction of the full vertices for each
 //           shown surface. A plain surface applies it at its next extraction.
-// Drawn     opaque surfaces first, then transparent ones from the inside (highest level) to the outside. Triangles
-//           of one glass surface are not sorted: they have one colour, so the order hardly shows.
+// Drawn     opaque surfaces first, then transparent ones: glass sorted by SortedGlass where the view asks for it; else from the inside (highest
+//           level) to the outside, with the triangles of a surface as they come.
 // Thread    frame thread, context current.
 #pragma once
 
@@ -66,6 +66,10 @@ public:
                      const Haze& haze, SurfaceStyle otherwise);
     void draw_clear(const Eigen::Matrix4f& eye_from_model, const Eigen::Matrix4f& projection,
                     const Haze& haze, SurfaceStyle otherwise);
+    // True if what is clear is glass alone, which may be drawn in any order if SortedGlass sorts it.
+    [[nodiscard]] bool glass_alone(SurfaceStyle otherwise) const;
+    void draw_glass_to_sort(const Eigen::Matrix4f& eye_from_model, const Eigen::Matrix4f& projection,
+                            const Haze& haze, SurfaceStyle otherwise);
 
     // The face where haze.cut_a cuts the map: of each shown contour that faces lower densities, in its colour; of glass, glassy.
     void draw_cut(const Eigen::Matrix4f& eye_from_model, const Eigen::Matrix4f& projection, const Haze& haze,
@@ -95,7 +99,7 @@ private:
     [[nodiscard]] bool opaque(const Contour& contour, SurfaceStyle otherwise) const;
     [[nodiscard]] std::uint32_t full(const Slot& slot) const;
     void draw(std::size_t contour, const Eigen::Matrix4f& eye_from_model, const Eigen::Matrix4f& projection,
-              const Haze& haze, SurfaceStyle otherwise);
+              const Haze& haze, SurfaceStyle otherwise, bool sorted = false);
 
     std::shared_ptr<const SceneContent> content_;
     Programs& programs_;

@@ -62,7 +62,9 @@ uniform float u_glass;
 uniform float u_opacity;
 uniform float u_closed;
 out vec4 colour;
+void peel();
 void main() {
+    peel();
     float depth = -v_place.z;
     if (u_closed > 0.5 && !gl_FrontFacing) {
         colour = hazed(vec4(0.72 * v_base.rgb, 1.0), depth, v_y);
@@ -78,6 +80,16 @@ void main() {
         a *= 1.0 - 0.8 * haze_at(depth);
     }
     colour = hazed(vec4(c.rgb, min(a * u_opacity, 1.0)), depth, v_y);
+}
+)";
+constexpr char kNoPeel[] = "void peel() {}\n";
+// Only what lies behind the layer before and in front of what is solid.
+constexpr char kPeel[] = R"(
+uniform sampler2D u_solid;
+uniform sampler2D u_before;
+void peel() {
+    ivec2 at = ivec2(gl_FragCoord.xy);
+    if (gl_FragCoord.z >= texelFetch(u_solid, at, 0).r || gl_FragCoord.z <= texelFetch(u_before, at, 0).r) discard;
 }
 )";
 // Of a closed body that is cut: its inner walls look like the face of the cut.
@@ -157,7 +169,8 @@ Programs::LitProgram::LitProgram(const char* what, const char* vertex, const cha
 Programs::Programs()
     : lit_("surface", shader(kLitVertex).c_str(), kPlainFragment),
       cut_("cut surface", shader(kLitVertex).c_str(), kCutFragment),
-      fine_("surface lit by pixels", shader(kFineVertex).c_str(), shader(kFineFragment).c_str()),
+      fine_("surface lit by pixels", shader(kFineVertex).c_str(), (shader(kFineFragment) + kNoPeel).c_str()),
+      peel_("layer of glass", shader(kFineVertex).c_str(), (shader(kFineFragment) + kPeel).c_str()),
       flat_("line", shader(kFlatVertex).c_str(), kPlainFragment),
       balls_("point", shader(kBallVertex).c_str(), kBallFragment),
       background_("background", kBackgroundVertex, kBackgroundFragment),
@@ -166,6 +179,9 @@ Programs::Programs()
       flat_colour_(flat_.uniform("u_colour")),
       balls_colour_(balls_.uniform("u_colour")),
       balls_size_(balls_.uniform("u_size")) {
+    peel_.program.use();
+    glUniform1i(peel_.program.uniform("u_solid"), 1);
+    glUniform1i(peel_.program.uniform("u_before"), 2);
     background_.use();
     glUniform3fv(background_.uniform("u_top"), 1, kBackgroundTop);
     glUniform3fv(background_.uniform("u_bottom"), 1, kBackgroundBottom);
@@ -174,13 +190,13 @@ Programs::Programs()
 void Programs::use_lit(const Eigen::Matrix4f& eye, const Eigen::Matrix4f& projection, const Haze& haze,
                        const Paint& paint) {
     const bool closes = paint.closed && haze.cut_a > 0.0F;
-    const LitProgram& lit = by_pixel_ ? fine_ : closes ? cut_ : lit_;
+    const LitProgram& lit = peels_ ? peel_ : by_pixel_ ? fine_ : closes ? cut_ : lit_;
     lit.program.use();
     lit.view.set(eye, projection, haze);
     glUniform1f(lit.glass, paint.glass ? 1.0F : 0.0F);
     glUniform1f(lit.opacity, paint.opacity);
     glUniform4fv(lit.tint, 1, paint.tint.data());
-    if (by_pixel_) glUniform1f(lit.closed, closes ? 1.0F : 0.0F);
+    if (by_pixel_ || peels_) glUniform1f(lit.closed, closes ? 1.0F : 0.0F);
 }
 
 void Programs::use_flat(const Eigen::Matrix4f& eye, const Eigen::Matrix4f& projection, const Haze& haze,

@@ -24,6 +24,8 @@ public:
                  const Paint& paint);
     // Of triangles, from the next use on.
     void light_by_pixel(bool on) { by_pixel_ = on; }
+    // While on, of triangles only one layer is drawn, by pixel (SortedGlass): behind the depth in texture unit 2, in front of that in unit 1.
+    void peel(bool on) { peels_ = on; }
     // Lines and boxes in one colour.
     void use_flat(const Eigen::Matrix4f& eye_from_local, const Eigen::Matrix4f& projection, const Haze& haze,
                   const float rgba[4]);
@@ -39,8 +41,8 @@ private:
         GLint glass, opacity, tint, closed;
         LitProgram(const char* what, const char* vertex, const char* fragment);
     };
-    LitProgram lit_, cut_, fine_;
-    bool by_pixel_ = false;
+    LitProgram lit_, cut_, fine_, peel_;
+    bool by_pixel_ = false, peels_ = false;
     GlProgram flat_, balls_, background_;
     GlVertexArray empty_;
     ViewUniforms flat_view_, balls_view_;

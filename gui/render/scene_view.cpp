@@ -108,7 +108,14 @@ void SceneView::draw(const EyeView& eye, const ViewOptions& options, const ViewF
         cut(false);
         if (cuts) contours_.draw_cut(eye_from_model, pass.projection, pass.haze, options.style);
         cut(true);
-        contours_.draw_clear(eye_from_model, pass.projection, pass.haze, options.style);
+        if (options.glass_layers > 0 && contours_.glass_alone(options.style)) {
+            if (!glass_) glass_ = std::make_unique<SortedGlass>(programs_);
+            glass_->draw(frame.x_px, frame.y_px, frame.width_px, frame.height_px, options.glass_layers, [&] {
+                contours_.draw_glass_to_sort(eye_from_model, pass.projection, pass.haze, options.style);
+            });
+        } else {
+            contours_.draw_clear(eye_from_model, pass.projection, pass.haze, options.style);
+        }
     }
     cut(false);
     glDisable(GL_BLEND);

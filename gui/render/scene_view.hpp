@@ -19,6 +19,7 @@
 #include "gui/render/rest_shading.hpp"
 #include "gui/render/scene_content.hpp"
 #include "gui/render/scene_layer.hpp"
+#include "gui/render/sorted_glass.hpp"
 #include "gui/render/triangle_buffers.hpp"
 
 namespace tact {
@@ -29,6 +30,7 @@ struct ViewOptions {
     bool depth_cue = true;  // far content fades into the background
     bool smooth_edges = true;
     bool light_by_pixel = false;  // of triangles; else by vertex, for software rendering of a view that moves
+    int glass_layers = 0;         // of glass sorted at each pixel (SortedGlass); 0: in the order of drawing
     bool shaded = false;          // by RestShading: in software rendering too slow for a view that moves
     std::optional<float>
         cut_a;  // a plane across the view, so far before the camera's target; what is nearer is not drawn
@@ -104,6 +106,7 @@ private:
     GLsizei box_indices_ = 0;
     std::unique_ptr<EdgeSmoothing> edges_;  // created for the first smoothed frame
     std::unique_ptr<RestShading> shading_;  // likewise
+    std::unique_ptr<SortedGlass> glass_;    // likewise
 };
 
 }  // namespace tact

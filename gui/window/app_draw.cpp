@@ -67,6 +67,7 @@ void GuiApp::draw_scene(std::int64_t now_ns) {
     const bool rich = sharp_ || !window_.software();  // else only once the view rests
     view_options_.shaded = t.shading && rich;
     view_options_.light_by_pixel = rich;
+    view_options_.glass_layers = rich ? glass_layers(window_.software()) : 0;
     view_options_.cut_a.reset();
     if (t.cut) view_options_.cut_a = t.cut_at * view_->radius_a();
     view_options_.gradient = !t.white_ground && !options_.plain;

@@ -31,6 +31,7 @@ void GuiApp::save_picture(const ViewFrame& of_window) {
                 options.smooth_edges = !many_samples && !wanted.transparent;
                 options.shaded = state_.toggles.shading;
                 options.light_by_pixel = true;
+                options.glass_layers = kGlassLayers;
                 if (ground != nullptr) {
                     options.gradient = false;
                     options.plain_ground = *ground;

@@ -31,6 +31,7 @@ void GuiApp::draw_window_view(const ViewFrame& view, Instant now) {
         detail_.refined = 1;
         view_options_.shaded = state_.toggles.shading;
         view_options_.light_by_pixel = true;
+        view_options_.glass_layers = glass_layers(window_.software());
         draw_view(eye, view);
         view_->contours().set_refined(false);
         still_.keep(view.x_px, view.y_px, view.width_px, view.height_px);

@@ -11,6 +11,7 @@
 #include "gui/docking/docking_layer.hpp"
 #include "gui/render/camera.hpp"
 #include "gui/render/scene_view.hpp"
+#include "gui/render/sorted_glass.hpp"
 #include "gui/window/window.hpp"
 
 namespace tact {
@@ -133,6 +134,7 @@ void draw_map(benchmark::State& state) {
     target.bind();
     Programs programs;
     programs.light_by_pixel(state.range(0) != 0);
+    SortedGlass sorted(programs);
     const DensityGrid grid = blobs(205);
     const PlainMesh mesh = extract_contour(grid, 0.5);
     PlainSurface surface;
@@ -151,18 +153,25 @@ void draw_map(benchmark::State& state) {
         glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
         camera.rotate(3.0F, 0.0F, kMapHeight);
         const EyeView eye = camera.eye(static_cast<float>(kMapWidth) / static_cast<float>(kMapHeight));
-        programs.use_lit(eye.eye_from_scene * model, eye.projection, {}, {.glass = true});
-        glDepthMask(GL_FALSE);
-        surface.draw({0.66F, 0.80F, 0.95F});
-        glDepthMask(GL_TRUE);
+        const auto draw_glass = [&] {
+            programs.use_lit(eye.eye_from_scene * model, eye.projection, {}, {.glass = true});
+            surface.draw({0.66F, 0.80F, 0.95F});
+        };
+        if (state.range(0) > 1) {
+            sorted.draw(0, 0, kMapWidth, kMapHeight, glass_layers(true), draw_glass);
+        } else {
+            glDepthMask(GL_FALSE);
+            draw_glass();
+            glDepthMask(GL_TRUE);
+        }
         glFinish();
     }
     state.counters["vertices"] = static_cast<double>(mesh.vertex.size());
     state.SetLabel(window.renderer());
 }
 BENCHMARK(draw_map)
-    ->ArgName("light by pixel")
-    ->DenseRange(0, 1)
+    ->ArgName("light by vertex, by pixel, and glass sorted")
+    ->DenseRange(0, 2)
     ->Unit(benchmark::kMillisecond)
     ->MeasureProcessCPUTime()
     ->UseRealTime();

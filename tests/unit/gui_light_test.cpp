@@ -3,10 +3,12 @@
 
 #include <Eigen/Geometry>
 #include <Eigen/LU>
+#include <algorithm>
 #include <cmath>
 #include <optional>
 
 #include "gui/render/programs.hpp"
+#include "gui/render/sorted_glass.hpp"
 #include "gui/render/triangle_buffers.hpp"
 #include "tests/unit/gui_draw_canvas.hpp"
 
@@ -179,6 +181,127 @@ TEST_F(GuiLight, by_pixel_lights_both_sides_and_keeps_the_cut_and_glass) {
     EXPECT_LT(hazed[0], clear[0] - 10);
     far.strength = 0.0F;
     EXPECT_EQ(middle(drawn(true, far, {})), clear);
+}
+
+// Triangles of glass that overlap and meet, over a solid one, against all fragments of a pixel sorted in double precision.
+TEST_F(GuiLight, glass_is_blended_in_the_order_of_depth) {
+    Programs programs;
+    SortedGlass glass(programs);
+    // Slanted layers that cross each other, in an order that is neither that of depth nor its reverse.
+    const auto slab = [this](float depth, float tilt, const Rgb8& c) {
+        TubeMesh mesh;
+        const Eigen::Matrix3f turn = camera_.orientation().conjugate().toRotationMatrix();
+        for (const auto& [x, y] : {std::pair{-30.0F, -20.0F}, {30.0F, -20.0F}, {0.0F, 28.0F}}) {
+            const Eigen::Vector3f p = turn * Eigen::Vector3f(x, y, depth + tilt * x),
+                                  n = turn * Eigen::Vector3f::UnitZ();
+            mesh.vertex.push_back({{p.x(), p.y(), p.z()}, {n.x(), n.y(), n.z()}, {c[0], c[1], c[2], 255}});
+        }
+        mesh.index = {0, 1, 2};
+        return mesh;
+    };
+    const std::array<TubeMesh, 4> layer{slab(4.0F, 0.1F, {230, 40, 40}), slab(-3.0F, 0.3F, {40, 220, 60}),
+                                        slab(1.0F, -0.4F, {60, 80, 240}), slab(7.0F, 0.0F, {240, 230, 40})};
+    const TubeMesh solid = slab(-1.0F, -0.2F, {180, 180, 180});
+    std::array<TriangleBuffers, 4> buffers;
+    for (std::size_t i = 0; i < 4; ++i) buffers[i].fill(layer[i], GL_STATIC_DRAW);
+    TriangleBuffers solid_buffers;
+    solid_buffers.fill(solid, GL_STATIC_DRAW);
+    programs.light_by_pixel(true);
+    const auto triangles = [&] {
+        for (TriangleBuffers& b : buffers) {
+            programs.use_lit(camera_.view(), projection().cast<float>(), {}, {.glass = true});
+            b.draw();
+        }
+    };
+    const auto begin = [&] {
+        glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
+        glDisable(GL_BLEND);
+        programs.use_lit(camera_.view(), projection().cast<float>(), {}, {});
+        solid_buffers.draw();
+        glEnable(GL_BLEND);
+        glBlendFunc(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA);
+    };
+    const auto seen_at = [&](int x, int y) {
+        struct Fragment {
+            double depth, opacity;
+            Point colour;
+        };
+        std::vector<Fragment> all;
+        const auto add = [&](const TubeMesh& mesh, bool clear) {
+            const auto at = hit(mesh, x, y);
+            if (!at) return;
+            const auto& c = mesh.vertex[0].rgba;
+            const Point n = at->normal, v = -at->place.normalized();
+            const double rim = 1.0 - n.dot(v),
+                         shine = std::pow(std::max(n.dot((Point(0.352, 0.754, 0.553) + v).normalized()), 0.0),
+                                          32.0);
+            all.push_back({-at->place.z(), clear ? 0.17 + 0.61 * rim * rim + 0.45 * shine : 1.0,
+                           lit(Point(c[0], c[1], c[2]) / 255.0, n, v)});
+        };
+        for (const TubeMesh& mesh : layer) add(mesh, true);
+        add(solid, false);
+        std::sort(all.begin(), all.end(),
+                  [](const Fragment& a, const Fragment& b) { return a.depth > b.depth; });
+        Point sum = Point::Zero();
+        for (const Fragment& f : all) sum = f.opacity * f.colour.cwiseMin(1.0) + (1.0 - f.opacity) * sum;
+        // Places where two fragments are as deep are left out.
+        bool meet = false;
+        for (std::size_t i = 1; i < all.size(); ++i) meet = meet || all[i - 1].depth - all[i].depth < 0.2;
+        return std::pair{sum, meet || all.size() < 2};
+    };
+    const auto error = [&] {
+        const Image image = read_pixels(kWidth, kHeight);
+        double most = 0.0;
+        std::size_t count = 0;
+        for (int y = 20; y < 90; ++y)
+            for (int x = 40; x < 120; ++x) {
+                const auto [seen, leave_out] = seen_at(x, y);
+                const auto beside = seen_at(x + 1, y).first, above = seen_at(x, y + 1).first;
+                if (leave_out || (beside - seen).norm() > 0.05 || (above - seen).norm() > 0.05) continue;
+                ++count;
+                for (std::size_t k = 0; k < 3; ++k)
+                    most = std::max(
+                        most,
+                        std::abs(image.rgb[3 * static_cast<std::size_t>((kHeight - 1 - y) * kWidth + x) + k] -
+                                 255.0 * seen[static_cast<Eigen::Index>(k)]));
+            }
+        EXPECT_GT(count, 1500U);
+        return most;
+    };
+    begin();
+    glDepthMask(GL_FALSE);
+    triangles();
+    glDepthMask(GL_TRUE);
+    EXPECT_GT(error(), 8.0);  // in the order of drawing
+    begin();
+    glass.draw(0, 0, kWidth, kHeight, 8, triangles);
+    const double sorted = error();
+    EXPECT_LT(sorted, 2.0);
+    EXPECT_EQ(glass.layers_drawn(), 4);
+    // In fewer layers the front ones are right, and what is behind still shines through.
+    begin();
+    glass.draw(0, 0, kWidth, kHeight, 2, triangles);
+    const double two = error();
+    EXPECT_EQ(glass.layers_drawn(), 2);
+    EXPECT_LT(two, 8.0);
+    begin();
+    glass.draw(0, 0, kWidth, kHeight, 8, [] {});
+    EXPECT_EQ(glass.layers_drawn(), 0);
+    const Image alone = read_pixels(kWidth, kHeight);
+    begin();
+    EXPECT_EQ(read_pixels(kWidth, kHeight).rgb, alone.rgb);
+    // In a part of the framebuffer.
+    begin();
+    glViewport(30, 20, 80, 60);
+    glass.draw(30, 20, 80, 60, 8, triangles);
+    const Image part = read_pixels(kWidth, kHeight);
+    EXPECT_NE(part.rgb, alone.rgb);
+    for (int x = 0; x < kWidth; ++x) {
+        const std::size_t i = 3 * static_cast<std::size_t>((kHeight - 1 - 10) * kWidth + x);  // below it
+        EXPECT_EQ(part.rgb[i], alone.rgb[i]);
+    }
+    glViewport(0, 0, kWidth, kHeight);
+    glDisable(GL_BLEND);
 }
 
 }  // namespace
