@@ -83,7 +83,8 @@ private:
         if (!first_) {  // they were meant for the scene before
             options_.keep.clear();
             options_.drop_controller_option("--resume");
-            if (asked_.bodies) options_.drop_controller_option("--poses");
+            for (const char* const option : {"--poses", "--copies"})
+                if (asked_.bodies) options_.drop_controller_option(option);
         }
         if (asked_.bodies)  // the bodies are where the session has them
             for (const char* const moved : {"--start-offset-a", "--start-rotation-deg", "--copies"})
@@ -296,7 +297,7 @@ private:
                 std::fprintf(stderr, "no screenshot %s: the window ended too early\n",
                              options_.screenshot.c_str());
         }
-        if (!options_.save.empty())
+        if (!options_.save.empty() && !(next_ && next_->extends))
             system_->save(region, {facts_.scene, options_.save, options_.programs}, signals_);
         return facts_.intended ? 0 : 1;
     }

@@ -4,13 +4,24 @@
 
 #include "ipc/base/error.hpp"
 #include "ipc/scene/bone/drilled_bone.hpp"
+#include "ipc/scene/file/bake_record.hpp"
 #include "ipc/scene/file/scene_meta.hpp"
 #include "ipc/scene/file/scene_switch.hpp"
 #include "ipc/scene/session/session_file.hpp"
 
 namespace tact::launch {
 
-std::string bound_to_one_scene(const RunOptions& o) {
+namespace {
+
+bool has_more(const SceneFile& scene, const SceneFile& shown) {
+    const auto whole = read_bake_record(read_note(scene)), part = read_bake_record(read_note(shown));
+    return whole && part && extends(*whole, *part);
+}
+
+}  // namespace
+
+std::string bound_to_one_scene(const RunOptions& o, bool extends) {
+    if (extends) return o.record.empty() ? "" : "--record";
     for (const auto& [name, file] : {std::pair("--record", &o.record),
                                      {"--save", &o.save},
                                      {"--out", &o.out},
@@ -31,10 +42,13 @@ std::optional<Asked> SceneSwitch::poll(const SceneFile& shown) {
     try {
         const auto scene = take_asked_scene(folder());
         if (!scene) return std::nullopt;
-        if (!bound_by_.empty())
-            throw StartupError("opening " + scene->string(),
-                               "this run writes files about its own scene at its end (" + bound_by_ + ")",
-                               "close the window and start: tact run " + scene->string());
+        const auto check_bound = [&](const std::string& bound_by) {
+            if (!bound_by.empty())
+                throw StartupError("opening " + scene->string(),
+                                   "this run writes files about its own scene at its end (" + bound_by + ")",
+                                   "close the window and start: tact run " + scene->string());
+        };
+        if (!is_session(*scene)) check_bound(bound_by_);
         if (scene->extension() == ".bone") {
             const std::uint64_t belongs_to = drilled_bone_scene(*scene);
             if (belongs_to != shown.checksum())
@@ -46,7 +60,10 @@ std::optional<Asked> SceneSwitch::poll(const SceneFile& shown) {
             return Asked{std::filesystem::absolute(shown.name()), *scene};
         }
         Asked asked = asked_of(*scene);
-        static_cast<void>(read_meta(SceneFile::open(asked.scene)));
+        const SceneFile file = SceneFile::open(asked.scene);
+        static_cast<void>(read_meta(file));
+        asked.extends = asked.bodies && has_more(file, shown);
+        check_bound(asked.extends ? bound_extending_by_ : bound_by_);
         return asked;
     } catch (const StartupError& e) {
         refuse(e.what());

@@ -15,8 +15,9 @@
 
 namespace tact::launch {
 
-// The option that writes files about one scene at the end of a run; empty: none was given.
-[[nodiscard]] std::string bound_to_one_scene(const RunOptions& options);
+// The option that binds a run to its scene, because it writes files about it; empty: none was given. A recording is of one controller; all
+// else is written at the end, about the scene as it is then, and so may have got more structures (extends).
+[[nodiscard]] std::string bound_to_one_scene(const RunOptions& options, bool extends);
 
 // What a run shows: a scene, perhaps with bone that was kept of it, or with all that a session holds.
 struct Asked {
@@ -24,13 +25,16 @@ struct Asked {
     std::filesystem::path bone{};     // empty: as baked
     std::filesystem::path session{};  // empty: none
     bool bodies = false;              // the session has bodies
+    bool extends = false;             // it is the scene that is shown, with more structures
 };
 // file: a scene or a session. Throws StartupError: not readable, or the scene of the session is not found.
 [[nodiscard]] Asked asked_of(const std::filesystem::path& file);
 
 class SceneSwitch {
 public:
-    explicit SceneSwitch(const RunOptions& options) : bound_by_(bound_to_one_scene(options)) {}
+    explicit SceneSwitch(const RunOptions& options)
+        : bound_by_(bound_to_one_scene(options, false)),
+          bound_extending_by_(bound_to_one_scene(options, true)) {}
     [[nodiscard]] const std::filesystem::path& folder() const { return scratch_.path(); }
     // Window state for the next window of this run, if the user keeps no such file.
     [[nodiscard]] std::filesystem::path window_state() const { return folder() / "window.toml"; }
@@ -39,7 +43,7 @@ public:
 
 private:
     ScratchFolder scratch_;
-    std::string bound_by_;
+    std::string bound_by_, bound_extending_by_;
 };
 
 }  // namespace tact::launch

@@ -14,6 +14,7 @@
 
 #include "ipc/base/error.hpp"
 #include "ipc/base/units.hpp"
+#include "ipc/scene/session/extend_session.hpp"
 
 namespace tact {
 namespace {
@@ -181,6 +182,7 @@ void FitController::add_to(Session& session, const BodyList& list) const {
         for (const FitHistory::Move& move : history_.places_of(name))
             place.bodies.push_back({move.id, move.T_model_body});
     }
+    number_bodies(session);
 }
 
 void FitController::restore(const Session& session) {

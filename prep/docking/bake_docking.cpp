@@ -9,6 +9,7 @@
 #include "ipc/base/units.hpp"
 #include "ipc/scene/density/docking_gain.hpp"
 #include "ipc/scene/density/isosurface.hpp"
+#include "ipc/scene/density/start_place.hpp"
 #include "prep/codebook/best_codebook.hpp"
 #include "prep/map/low_pass.hpp"
 #include "prep/map/map_resolution.hpp"
@@ -65,16 +66,14 @@ void check_input(const DockingInput& input) {
         check_resolution(*input.force_map_resolution_m, "--force-map-resolution-a");
 }
 
-// The hand reaches the map and a margin around it, but not a structure that starts farther away.
-void check_reach(const Structure& s, const DensityGrid& grid, const Vec3& extent_m) {
-    const Vec3 from_middle_m = s.home_com_model_m - (grid.origin_m + 0.5 * extent_m);
-    const double outside_m = (from_middle_m.cwiseAbs() - 0.5 * extent_m).cwiseMax(0.0).norm();
-    if (outside_m > 0.5 * extent_m.maxCoeff()) {
-        throw StartupError("bake a docking scene",
-                           s.name + printed(" lies %.0f Å outside the map, beyond the reach of the hand",
-                                            outside_m / kAngstromM),
-                           "move the structure near the map, or correct the map's origin");
-    }
+void check_reach(const Structure& s, const DensityGrid& grid) {
+    if (in_reach(grid, s.home_com_model_m)) return;
+    throw StartupError(
+        "bake a docking scene",
+        s.name + printed(" lies %.0f Å outside the map, beyond the reach of the hand",
+                         outside_m(grid, s.home_com_model_m) / kAngstromM),
+        "move the structure near the map, correct the map's origin, or dock it beside the map: "
+        "tact-prep dock --allow-outside, or add it to a scene with tact dock SCENE MODEL");
 }
 
 BakedBody describe(const Structure& s, const Codebook& codebook, const DensityMap& map,
@@ -168,7 +167,15 @@ BakedDocking bake_docking(const DockingInput& input, SceneWriter& out, const Pro
     say(printed("centre: (%.4g, %.4g, %.4g) Å, of the density above the contour", centre_m.x() / kAngstromM,
                 centre_m.y() / kAngstromM, centre_m.z() / kAngstromM));
 
-    for (const Structure& s : input.structures) check_reach(s, grid, extent_m);
+    // The gain is measured around the positions of structures, which says nothing of one far from the map.
+    std::vector<Structure> felt = input.structures;
+    for (std::size_t i = 0; i < felt.size(); ++i) {
+        if (!input.outside) check_reach(felt[i], grid);
+        if (in_reach(grid, felt[i].home_com_model_m)) continue;
+        say(printed("body %zu is %.0f Å outside the map in its file: it starts beside the map", i,
+                    outside_m(grid, felt[i].home_com_model_m) / kAngstromM));
+        felt[i].home_com_model_m = centre_m;
+    }
 
     // The progress fractions were measured on bakes that take seconds: GroEL, 26 929 atoms, in maps of 100^3 voxels,
     // 2026-11-23; codebooks take 92 %. A short bake ends before a wrong fraction matters.
@@ -228,8 +235,8 @@ BakedDocking bake_docking(const DockingInput& input, SceneWriter& out, const Pro
     const LevelMaps level_maps = make_level_maps(
         input.force_map_resolution_m ? force_map_grid : grid, statistics.background, statistics.sigma,
         meta.resolution_m, level_smoothings_m(input.structures, codebooks, meta.resolution_m));
-    const DockingGain gain = docking_gain(level_maps, input.structures, codebooks, meta.world_per_model, {},
-                                          part(progress, 0.92, 0.98));
+    const DockingGain gain =
+        docking_gain(level_maps, felt, codebooks, meta.world_per_model, {}, part(progress, 0.92, 0.98));
     meta.energy_j_per_sigma = gain.energy_j_per_sigma;
     say(printed(
         "gain: %.4g J per sigma; force %.3g N (99th percentile near the density), stiffness up to %.3g N/m "

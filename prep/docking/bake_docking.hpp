@@ -29,6 +29,8 @@ struct DockingInput {
         force_map_resolution_m;  // resolution of the smoothed force map; default: not smoothed
     std::uint32_t vertices_max = 1'000'000;
     std::uint32_t modes = 0;  // of each structure, for bending; at most kModesMax
+    bool outside =
+        false;  // structures may be beyond the reach of the hand; a body of them starts beside the map
 };
 
 struct BakedBody {

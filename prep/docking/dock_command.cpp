@@ -2,6 +2,7 @@
 
 #include <signal.h>
 
+#include <charconv>
 #include <chrono>
 #include <cstdio>
 #include <ctime>
@@ -13,6 +14,7 @@
 #include "ipc/base/printable.hpp"
 #include "ipc/base/units.hpp"
 #include "ipc/scene/density/normal_modes.hpp"
+#include "ipc/scene/file/bake_record.hpp"
 #include "ipc/version/version.hpp"
 #include "prep/console/console.hpp"
 #include "prep/console/scene_report.hpp"
@@ -21,7 +23,6 @@
 #include "prep/docking/bake_docking.hpp"
 #include "prep/docking/examine_map.hpp"
 #include "prep/docking/report_docking.hpp"
-#include "prep/input/read_file.hpp"
 #include "prep/map/read_map.hpp"
 #include "prep/structure/import_structure.hpp"
 #include "prep/synthetic/ring.hpp"
@@ -39,7 +40,7 @@ struct DockSettings {
     double level = 0.0;
     std::uint32_t vertices_max = 1'000'000, modes = 0;
     pid_t ends_with = 0;
-    bool json = false;
+    bool json = false, outside = false;
 };
 
 std::string now_utc() {
@@ -49,6 +50,31 @@ std::string now_utc() {
     char text[32];
     std::strftime(text, sizeof text, "%Y-%m-%dT%H:%M:%SZ", &parts);
     return text;
+}
+
+// The shortest text that is this number again.
+template <class Number>
+std::string exact(Number number) {
+    char text[40];
+    return {text, std::to_chars(text, text + sizeof text, number).ptr};
+}
+
+// So that the scene can be baked again with more structures. Without --allow-outside, which only admits the positions of structures.
+BakeRecord record_of(const DockSettings& o) {
+    BakeRecord record;
+    record.inputs.push_back(bake_input("map", o.map.path));
+    for (const std::string& half : o.map.half_maps) record.inputs.push_back(bake_input("half-map", half));
+    if (!o.map.mask.empty()) record.inputs.push_back(bake_input("mask", o.map.mask));
+    for (const std::string& model : o.models) record.inputs.push_back(bake_input("structure", model));
+    const auto add = [&](const char* option, const std::string& value) {
+        record.options.insert(record.options.end(), {option, value});
+    };
+    if (o.map.resolution_a) add("--resolution-a", exact(*o.map.resolution_a));
+    if (o.contour) add("--contour", exact(*o.contour));
+    if (o.force_map_resolution_a) add("--force-map-resolution-a", exact(*o.force_map_resolution_a));
+    if (o.vertices_max != DockSettings{}.vertices_max) add("--vertices-max", exact(o.vertices_max));
+    if (o.modes > 0) add("--modes", exact(o.modes));
+    return record;
 }
 
 DockingInput from_files(const DockSettings& o, const Progress& progress) {
@@ -71,6 +97,8 @@ DockingInput from_files(const DockSettings& o, const Progress& progress) {
         join = ", ";
         input.structures.push_back(std::move(model.structure));
     }
+    for (std::string& line : note_lines(record_of(o))) input.note.push_back(std::move(line));
+    input.outside = o.outside;
     return input;
 }
 
@@ -166,6 +194,9 @@ void add_dock(CLI::App& app, CLI::App& demo) {
     from_files->add_option("models", o->models, "Structures: PDB or mmCIF, also .gz; one body per file")
         ->required();
     o->map.add_options(*from_files);
+    from_files->add_flag("--allow-outside", o->outside,
+                         "Accept structures whose positions in their files are far from the map; such a body "
+                         "starts beside the map");
     both(from_files);
     from_files->callback([o] { dock(*o, false); });
     CLI::App* const made = demo.add_subcommand(

@@ -10,6 +10,7 @@
 #include <sstream>
 
 #include "ipc/base/error.hpp"
+#include "ipc/scene/file/bake_record.hpp"
 #include "ipc/scene/file/scene_meta.hpp"
 #include "prep/export/bent_places.hpp"
 #include "prep/export/fit_remarks.hpp"

@@ -58,26 +58,6 @@ std::vector<char> read_whole_file(const std::filesystem::path& path, std::uint64
     }
 }
 
-std::string file_mark(const std::filesystem::path& path) {
-    std::FILE* const opened = std::fopen(path.c_str(), "rb");
-    if (opened == nullptr)
-        throw StartupError("read " + path.string(), std::strerror(errno),
-                           "check the path and its permissions");
-    const std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(opened, &std::fclose);
-    std::vector<unsigned char> part(std::size_t{1} << 18);
-    uLong sum = ::crc32(0, nullptr, 0);
-    std::uint64_t bytes = 0;
-    while (const std::size_t got = std::fread(part.data(), 1, part.size(), file.get())) {
-        sum = ::crc32(sum, part.data(), static_cast<uInt>(got));
-        bytes += got;
-    }
-    if (std::ferror(file.get()) != 0)
-        throw StartupError("read " + path.string(), std::strerror(errno), "check the disk for errors");
-    char text[64];
-    std::snprintf(text, sizeof text, "%llu bytes, crc32 %08lx", static_cast<unsigned long long>(bytes), sum);
-    return text;
-}
-
 std::string format_ending(const std::filesystem::path& path) {
     const auto lower = [](std::string text) {
         std::transform(text.begin(), text.end(), text.begin(),

@@ -14,9 +14,6 @@ namespace tact {
 
 std::vector<char> read_whole_file(const std::filesystem::path& path, std::uint64_t bytes_max);
 
-// Identifies the content of a file as stored: "312255 bytes, crc32 1a2b3c4d".
-std::string file_mark(const std::filesystem::path& path);
-
 // Lower-case ending of the name without a trailing ".gz": "a.MRC.gz" -> ".mrc".
 std::string format_ending(const std::filesystem::path& path);
 

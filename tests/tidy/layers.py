@@ -35,7 +35,7 @@ BELOW = {
     "ipc/scene/bone": ["ipc/base", "ipc/scene/file"],
     "ipc/scene/fit": ["ipc/base", "ipc/scene/file", "ipc/scene/density"],
     "ipc/scene/field": ["ipc/base", "ipc/scene/file"],
-    "ipc/scene/session": ["ipc/base", "ipc/scene/file"],
+    "ipc/scene/session": ["ipc/base", "ipc/scene/file", "ipc/scene/density"],
     "ipc/record": ["ipc/base", "ipc/shm", "ipc/topics"],
     "ipc/recorder": ["ipc/base", "ipc/version", "ipc/manual", "ipc/shm", "ipc/topics", "ipc/record", "ipc/scene/bone", "ipc/scene/file"],
     "ipc/station": ["ipc/base"],
@@ -105,7 +105,7 @@ WRAPPED = [
     (r"toml\+\+|spdlog/", ["rt/main", "rt/start", "rt/replay", "rt/threads", "rt/config", "gui", "prep", "deploy", "hal/sim", "tests"]),
     (r"httplib\.h", ["deploy/tact/metrics_server", "tests"]),
     (r"nlohmann/", ["hal/haply/inverse_messages", "deploy", "prep", "gui", "rt/config/check_config", "rt/start/start_bodies", "rt/replay",
-                    "ipc/topics/frames_json", "ipc/recorder/main", "ipc/scene/session/session_file", "ipc/station/station_report", "tests"]),
+                    "ipc/topics/frames_json", "ipc/recorder/main", "ipc/scene/session", "ipc/station/station_report", "tests"]),
 ]
 # Names that only these files of a folder may use: the tables of its systems.
 NAMED = [("gui/", re.compile(r"\bSceneKind::"), ["gui/window/systems.cpp"]),

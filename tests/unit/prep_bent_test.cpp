@@ -11,9 +11,9 @@
 #include <sstream>
 
 #include "ipc/base/units.hpp"
+#include "ipc/scene/file/bake_record.hpp"
 #include "prep/export/bent_places.hpp"
 #include "prep/export/export_bodies.hpp"
-#include "prep/input/read_file.hpp"
 #include "prep/modes/elastic_network.hpp"
 #include "prep/structure/import_structure.hpp"
 #include "prep/synthetic/ring.hpp"

@@ -1,4 +1,5 @@
 // Saving placed structures: round trip through a scene, values from theory, and refused exports.
+#include "ipc/scene/file/bake_record.hpp"
 #include "prep/cif/cif_document.hpp"
 #include "prep/export/export_bodies.hpp"
 
@@ -15,7 +16,6 @@
 #include "ipc/base/random.hpp"
 #include "ipc/base/units.hpp"
 #include "prep/export/write_structure_file.hpp"
-#include "prep/input/read_file.hpp"
 #include "prep/structure/import_structure.hpp"
 #include "tests/unit/scene_samples.hpp"
 

@@ -1,8 +1,10 @@
 // tact dock MAP MODEL...: bakes the scene once, then runs it.
+// tact dock SCENE MODEL...: bakes it again with more structures, then runs it.
 // tact demo dock: the force draws a synthetic ring of six from a displaced start to its place in the 12 Å map.
 #include <memory>
 
 #include "deploy/tact/baked_run.hpp"
+#include "deploy/tact/docking/add_structures.hpp"
 #include "deploy/tact/docking/docking.hpp"
 #include "deploy/tact/run.hpp"
 
@@ -45,6 +47,7 @@ struct DockOptions {
 };
 
 int dock(const DockOptions& o) {
+    if (is_scene_or_session(o.map)) return dock_into_scene(o.map, o.models, o.baked);
     BakeRequest request{
         .inputs = {o.map}, .words = {"dock", std::filesystem::absolute(o.map)}, .options = o.baked.prep};
     for (const auto& m : o.models) {
@@ -59,7 +62,10 @@ int dock(const DockOptions& o) {
 void add_dock(CLI::App& app, int& exit_code) {
     auto* const command = app.add_subcommand("dock", "Dock structures into a density map");
     const auto o = std::make_shared<DockOptions>();
-    command->add_option("MAP", o->map, "Density map: MRC, CCP4 or Situs, also .gz")
+    command
+        ->add_option(
+            "MAP", o->map,
+            "Density map: MRC, CCP4 or Situs, also .gz; or a docking scene or session that MODEL is added to")
         ->required()
         ->check(CLI::ExistingFile);
     command->add_option("MODEL", o->models, "Structures: PDB or mmCIF, also .gz; one body per file")
