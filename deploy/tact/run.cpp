@@ -83,7 +83,8 @@ private:
         if (!first_) {  // they were meant for the scene before
             options_.keep.clear();
             options_.drop_controller_option("--resume");
-            for (const char* const option : {"--poses", "--copies"})
+            for (const char* const option :
+                 {"--poses", "--copies", "--start-offset-a", "--start-rotation-deg"})
                 if (asked_.bodies) options_.drop_controller_option(option);
         }
         if (asked_.bodies)  // the bodies are where the session has them
@@ -362,6 +363,7 @@ int run_scene(const std::filesystem::path& scene, RunOptions options) {
         }
         if (next && code == 0) {
             before = std::exchange(now, *next);
+            if (!now.back.empty()) before = asked_of(now.back);
             options.forget_scene();
         } else if (code != 0 && !came_up && !before.scene.empty()) {
             scene_switch->refuse(

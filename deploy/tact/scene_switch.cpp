@@ -64,6 +64,8 @@ std::optional<Asked> SceneSwitch::poll(const SceneFile& shown) {
         static_cast<void>(read_meta(file));
         asked.extends = asked.bodies && has_more(file, shown);
         check_bound(asked.extends ? bound_extending_by_ : bound_by_);
+        if (asked.extends && std::filesystem::exists(folder() / kShownSession))
+            asked.back = folder() / kShownSession;
         return asked;
     } catch (const StartupError& e) {
         refuse(e.what());

@@ -26,6 +26,7 @@ struct Asked {
     std::filesystem::path session{};  // empty: none
     bool bodies = false;              // the session has bodies
     bool extends = false;             // it is the scene that is shown, with more structures
+    std::filesystem::path back{};  // the session to go back to if it does not start; empty: as this run began
 };
 // file: a scene or a session. Throws StartupError: not readable, or the scene of the session is not found.
 [[nodiscard]] Asked asked_of(const std::filesystem::path& file);

@@ -2,7 +2,7 @@
 //
 // app.cpp      the frame, the controller, panels, the published load
 // app_scene    the scene shown, its levels, its bodies
-// app_session  saves and continues sessions
+// app_session  saves and continues sessions, also in a scene with more structures
 // app_draw     the frame around the 3D view, and both eyes of a stage
 // app_view     the 3D view: its resolution, and its full detail at rest
 // app_picture  pictures of any size
@@ -37,6 +37,7 @@
 #include "gui/window/options.hpp"
 #include "gui/window/panel_image.hpp"
 #include "gui/window/run_recorder.hpp"
+#include "gui/window/scene_extender.hpp"
 #include "gui/window/scene_loader.hpp"
 #include "gui/window/screenshots.hpp"
 #include "gui/window/second_hand.hpp"
@@ -75,6 +76,8 @@ private:
     [[nodiscard]] WindowState window_state() const;
     void keep_window_state() const;
     void follow_session();
+    void follow_added_scene();
+    [[nodiscard]] Session present_session() const;
     [[nodiscard]] SystemContext context();
     [[nodiscard]] SceneSystem& system() { return *systems_[shown_]; }
     void handle_input();
@@ -158,6 +161,7 @@ private:
     // For the first scene shown.
     bool as_left_wanted_ = !options_.window_state_file.empty() || options_.session_opened.has_value();
     SessionSaver session_saver_{options_.session};
+    SceneExtender scene_extender_;
     SecondHand second_hand_;
     ToolDrag drag_;
     std::array<DragTool, kMouseHands> drag_tools_{};

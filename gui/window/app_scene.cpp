@@ -71,7 +71,7 @@ void GuiApp::use_scene(std::unique_ptr<SceneStart> start) {
     camera_.frame(view_->radius_a());
     home_view();
     begin_as_left();
-    browser_.used(content_->path, state_.browser);
+    browser_.used(content_->path, content_->meta.kind, content_->note, state_.browser);
     if (system().home_reach_a() > 0.0F) home_view();
     window_.set_title(std::string("Tact: ") + state_.scene.title);
     spdlog::info("showing {}: {} vertices", content_->path.string(), view_->vertices_max());

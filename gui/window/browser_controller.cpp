@@ -10,6 +10,7 @@
 #include "ipc/base/error.hpp"
 #include "ipc/base/state_folder.hpp"
 #include "ipc/base/whole_file.hpp"
+#include "ipc/scene/file/bake_record.hpp"
 #include "ipc/scene/file/scene_file.hpp"
 #include "ipc/scene/file/scene_kinds.hpp"
 #include "ipc/scene/file/scene_switch.hpp"
@@ -37,6 +38,12 @@ void keep_before(const std::filesystem::path& table) {
                            "make its folder writable, or move the file away");
 }
 
+std::filesystem::path folder_of(const std::filesystem::path& scene, const std::string& note) {
+    const auto record = read_bake_record(note);
+    const bool cached = scene.parent_path() == user_folder("XDG_CACHE_HOME", ".cache");
+    return cached && record ? record->inputs.front().path.parent_path() : scene.parent_path();
+}
+
 void say(BrowserState& state, Grade grade, std::string words) {
     state.message = std::move(words);
     state.message_grade = grade;
@@ -44,10 +51,12 @@ void say(BrowserState& state, Grade grade, std::string words) {
 
 }  // namespace
 
-void BrowserController::used(const std::filesystem::path& scene, BrowserState& state) {
+void BrowserController::used(const std::filesystem::path& scene, SceneKind kind, const std::string& note,
+                             BrowserState& state) {
     const auto path = std::filesystem::absolute(scene).lexically_normal();
     current_ = path.string();
-    if (state.folder.empty()) state.folder = path.parent_path().string();
+    current_kind_ = kind;
+    if (state.folder.empty()) state.folder = folder_of(path, note).string();
     remember(path);
 }
 
@@ -117,7 +126,13 @@ void BrowserController::drop(const std::vector<std::string>& files, BrowserState
     state.open = true;
     if (import_.running() || examine_.running())
         return say(state, Grade::watch, "An import is in progress: cancel it, or drop again when it ends.");
-    Dropped meant = meaning_of(files);
+    Dropped meant = meaning_of(files, {current_, current_kind_});
+    if (!meant.add.empty()) {
+        state.form.reset();
+        state.message.clear();
+        marked_ = files;
+        return show_marks(state);
+    }
     if (!meant.scene.empty()) return open_scene(meant.scene, state);
     if (meant.import.empty()) return say(state, Grade::watch, meant.trouble + "\n" + dropped_kinds_text());
     import(std::move(meant), state);
@@ -199,9 +214,26 @@ void BrowserController::follow_form(BrowserState& state) {
 
 void BrowserController::start_import(Dropped meant, BrowserState& state) {
     importing_ = meant.import[1];
-    meant.import.emplace_back("--bake-only");
+    adding_ = false;
+    run_tact(std::move(meant.import), state);
+}
+
+void BrowserController::start_adding(const Dropped& meant, BrowserState& state) {
+    if (scene_switch_.empty()) {
+        std::string command = "tact";
+        for (const std::string& word : meant.add) command += " " + word;
+        return say(state, Grade::watch,
+                   "This window has no launcher and cannot switch scenes.\nClose it and run: " + command);
+    }
+    importing_ = meant.add[2];
+    adding_ = true;
+    run_tact(meant.add, state);
+}
+
+void BrowserController::run_tact(std::vector<std::string> arguments, BrowserState& state) {
+    arguments.emplace_back("--bake-only");
     try {
-        import_.start("tact", meant.import);
+        import_.start("tact", arguments);
         import_begun_ = Monotonic::now();
         cancelled_ = false;
         spdlog::info("importing {}", importing_);
@@ -217,10 +249,12 @@ void BrowserController::show_marks(BrowserState& state) const {
         state.marks_text.clear();
         return;
     }
-    const Dropped meant = meaning_of(marked_);
+    const Dropped meant = meaning_of(marked_, {current_, current_kind_});
     state.marks_import = !meant.import.empty();
+    state.marks_add = !meant.add.empty();
     state.marks_text = meaning_text(meant);
-    if (!state.marks_import) state.marks_text.insert(0, std::to_string(marked_.size()) + " marked. ");
+    if (!state.marks_import && !state.marks_add)
+        state.marks_text.insert(0, std::to_string(marked_.size()) + " marked. ");
 }
 
 void BrowserController::follow_marks(BrowserState& state) {
@@ -234,9 +268,12 @@ void BrowserController::follow_marks(BrowserState& state) {
         show_marks(state);
     }
     if (std::exchange(state.import_wanted, false) && !import_.running() && !examine_.running()) {
-        Dropped meant = meaning_of(marked_);
-        if (meant.import.empty()) return show_marks(state);
-        import(std::move(meant), state);
+        Dropped meant = meaning_of(marked_, {current_, current_kind_});
+        if (meant.import.empty() && meant.add.empty()) return show_marks(state);
+        if (!meant.add.empty())
+            start_adding(meant, state);
+        else
+            import(std::move(meant), state);
         if (!import_.running() && !examine_.running()) return;
         marked_.clear();
         show_marks(state);
@@ -272,6 +309,8 @@ void BrowserController::follow_import(BrowserState& state) {
         say(state, Grade::unknown, "The import was cancelled; nothing was written.");
     else if (!outcome->good())
         say(state, Grade::bad, error_text(outcome->output));
+    else if (last.starts_with('/') && last.ends_with(".tact") && adding_)
+        state.added_scene = last;
     else if (last.starts_with('/') && last.ends_with(".tact"))
         open_scene(last, state);
     else

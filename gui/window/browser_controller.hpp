@@ -21,8 +21,10 @@ class BrowserController {
 public:
     // scene_switch: the launcher's folder; empty: no launcher.
     explicit BrowserController(std::filesystem::path scene_switch) : scene_switch_(std::move(scene_switch)) {}
-    // A scene is shown: adds it to the list if a launcher runs the window.
-    void used(const std::filesystem::path& scene, BrowserState& state);
+    // A scene is shown: adds it to the list if a launcher runs the window. note: of the scene; one that `tact` baked leads to the folder of its
+    // files.
+    void used(const std::filesystem::path& scene, SceneKind kind, const std::string& note,
+              BrowserState& state);
     // Puts a file in front of the recent ones.
     void remember(const std::filesystem::path& file);
     // Reads the list of recent scenes, and the folder, again.
@@ -33,7 +35,8 @@ public:
     void follow(BrowserState& state);
     // Requests a scene, from the list or from elsewhere.
     void open_scene(const std::filesystem::path& scene, BrowserState& state);
-    // Handles dropped files: opens a scene; has raw data baked by `tact` into its cache, then opens the result.
+    // Handles dropped files: opens a scene; has raw data baked by `tact` into its cache, then opens the result. Files that can be added to
+    // the scene that is shown are marked, and a person adds them: BrowserState::added_scene names the result.
     void drop(const std::vector<std::string>& files, BrowserState& state);
 
 private:
@@ -47,6 +50,8 @@ private:
     void follow_examination(BrowserState& state);
     void follow_form(BrowserState& state);
     void start_import(Dropped meant, BrowserState& state);
+    void start_adding(const Dropped& meant, BrowserState& state);
+    void run_tact(std::vector<std::string> arguments, BrowserState& state);
     struct Read {
         std::vector<SceneRow> recent, drilled;
         std::string recent_trouble;
@@ -56,6 +61,8 @@ private:
 
     std::filesystem::path scene_switch_;
     std::string current_;
+    SceneKind current_kind_{};
+    bool adding_ = false;  // the import adds to the scene that is shown
     bool was_open_ = false, asked_ = false;
     std::vector<std::string> marked_;  // from any folder, at most one more than an import allows
     Dropped asking_;                   // is examined, or waits for the answers of BrowserState::form

@@ -92,15 +92,16 @@ float marks_height(const Theme& theme, const BrowserState& browser) {
 }
 void marks_line(const Theme& theme, BrowserState& browser) {
     ImGui::Separator();
-    ImGui::BeginDisabled(!browser.marks_import || browser.importing);
-    if (ImGui::Button("Import")) browser.import_wanted = true;
+    const bool can = browser.marks_import || browser.marks_add;
+    ImGui::BeginDisabled(!can || browser.importing);
+    if (ImGui::Button(browser.marks_add ? "Add" : "Import")) browser.import_wanted = true;
     ImGui::EndDisabled();
     ImGui::SameLine();
     if (ImGui::Button("Clear")) browser.clear_wanted = true;
     ImGui::SameLine(theme.px(kMarksButtons));
     ImGui::AlignTextToFramePadding();
     ImGui::PushTextWrapPos(0.0F);
-    text_coloured(browser.marks_import ? colour::kText : colour::kWatch, browser.marks_text);
+    text_coloured(can ? colour::kText : colour::kWatch, browser.marks_text);
     ImGui::PopTextWrapPos();
 }
 

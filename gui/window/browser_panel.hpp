@@ -35,7 +35,8 @@ struct BrowserState {
     std::optional<double> import_share;             // of the import, 0 to 1, if reported
     std::string
         marks_text;  // result of importing the marked rows, or why nothing can be imported; empty: no mark
-    bool marks_import = false;
+    bool marks_import = false,
+         marks_add = false;          // they can be imported, or added to the scene that is shown
     bool can_save = false;           // there is a session to save
     std::optional<ImportForm> form;  // drawn in place of the rows until it is answered or cancelled
     std::string message;
@@ -43,6 +44,7 @@ struct BrowserState {
     // The user's choices; emptied by the application.
     std::string scene_wanted, folder_wanted, mark_wanted;
     bool import_wanted = false, clear_wanted = false, session_wanted = false;
+    std::string added_scene;  // baked with what is shown and more; waits for the session that continues in it
 };
 
 // Over the centre of the view.

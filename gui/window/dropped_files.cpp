@@ -66,6 +66,16 @@ std::string shown_name(const std::string& file) {
     return name.substr(0, head) + "..." + name.substr(tail);
 }
 
+// All files are of a type that can be added to the scene that is shown.
+bool adds_to(const ShownScene& shown, const SceneKindRow& system,
+             const std::vector<std::vector<std::string>>& by_type) {
+    if (shown.path.empty() || shown.path.front() != '/' || shown.kind != system.kind) return false;
+    for (std::size_t i = 0; i < by_type.size(); ++i)
+        if (!by_type[i].empty() && (!system.raw[i].adds || by_type[i].size() > system.raw[i].files_max))
+            return false;
+    return true;
+}
+
 }  // namespace
 
 const std::string& dropped_kinds_text() {
@@ -98,10 +108,10 @@ const char* raw_folder_text() {
     return kind.system != nullptr ? kind.system->raw[kind.type].name : "";
 }
 
-Dropped meaning_of(const std::vector<std::string>& files) {
+Dropped meaning_of(const std::vector<std::string>& files, const ShownScene& shown) {
     Dropped out;
     const auto no = [&](const std::string& why) {
-        out = {{}, {}, why};
+        out = {{}, {}, {}, why};
         return out;
     };
     if (files.empty()) return no("No file.");
@@ -127,6 +137,11 @@ Dropped meaning_of(const std::vector<std::string>& files) {
         by_type[kind.type].push_back(file);
     }
     if (system == nullptr) return no("No file.");
+    if (adds_to(shown, *system, by_type)) {
+        out.add = {system->command, shown.path};
+        out.add.insert(out.add.end(), files.begin(), files.end());
+        return out;
+    }
     out.import = {system->command};
     for (std::size_t i = 0; i < by_type.size(); ++i) {
         const RawFileType& type = system->raw[i];
@@ -142,6 +157,12 @@ Dropped meaning_of(const std::vector<std::string>& files) {
 
 std::string meaning_text(const Dropped& meant) {
     if (!meant.scene.empty()) return "Open " + shown_name(meant.scene) + ".";
+    if (meant.add.size() > 2) {
+        const std::size_t others = meant.add.size() - 3;
+        return "Add " + shown_name(meant.add[2]) +
+               (others > 0 ? " and " + std::to_string(others) + " more" : std::string()) +
+               " to this scene, whose bodies stay where they are.";
+    }
     if (meant.import.empty()) return meant.trouble;
     std::string action;
     for (const SceneKindRow& system : scene_kinds())

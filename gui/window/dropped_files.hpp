@@ -8,6 +8,8 @@
 #include <string>
 #include <vector>
 
+#include "ipc/scene/file/scene_kinds.hpp"
+
 namespace tact {
 
 inline constexpr std::size_t kDroppedMost = 17;  // a map and as many structures as a scene holds
@@ -23,11 +25,19 @@ inline constexpr std::size_t kDroppedMost = 17;  // a map and as many structures
 struct Dropped {
     std::string scene;                // to open
     std::vector<std::string> import;  // arguments of `tact`: {"dock", MAP, MODEL...}, {"touch", MESH}, ...
-    std::string trouble;              // what is impossible, why, and the fix
+    std::vector<std::string>
+        add;  // arguments that add the files to the scene that is shown: {"dock", SCENE, MODEL...}
+    std::string trouble;  // what is impossible, why, and the fix
 };
 
-[[nodiscard]] Dropped meaning_of(const std::vector<std::string>& files);
-// One line: "Dock 1abc.pdb into emd.mrc.", or the reason against it.
+// The scene that is shown, to which files of some types can be added.
+struct ShownScene {
+    std::string path;  // absolute; empty: none
+    SceneKind kind{};
+};
+
+[[nodiscard]] Dropped meaning_of(const std::vector<std::string>& files, const ShownScene& shown = {});
+// One line: "Dock 1abc.pdb into emd.mrc.", "Add 1abc.pdb to this scene.", or the reason against it.
 [[nodiscard]] std::string meaning_text(const Dropped& meant);
 
 }  // namespace tact

@@ -286,7 +286,7 @@ TEST_F(Import, an_unreadable_list_of_scenes_is_kept_aside) {
     std::ofstream(list) << "by hand, and wrong";
     {
         BrowserController dashboard(folder_);
-        dashboard.used("/a/b.tact", state_);
+        dashboard.used("/a/b.tact", SceneKind::docking, {}, state_);
     }  // waits for the file to be written
     EXPECT_EQ(read_recents(list).at(0).path, "/a/b.tact");
     std::ifstream aside(list.string() + ".damaged");

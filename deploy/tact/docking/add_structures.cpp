@@ -77,6 +77,10 @@ int dock_into_scene(const fs::path& scene_or_session, const std::vector<fs::path
         std::puts(scene.c_str());
         return 0;
     }
+    // What is typed about start poses goes before what follows from the files.
+    for (const char* const option : {"--poses", "--copies", "--start-offset-a", "--start-rotation-deg"})
+        if (session.bodies.empty() && baked.run.has_controller_option(option))
+            return run_scene(scene, baked.run);
     const ScratchFolder scratch;
     const fs::path continued = scratch.path() / ("added" + std::string(kSessionEnding));
     write_whole(continued, session_text(extended_session(session, shown, SceneFile::open(scene)), continued));

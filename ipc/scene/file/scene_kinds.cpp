@@ -26,7 +26,7 @@ constexpr RawFileType kDockingRaw[] = {
     {"map", "a map", kMapEndings, nullptr, 1,
      "A structure needs the map that it is docked into: give both together."},
     {"structure", "its structures", kStructureEndings, nullptr, kSceneBodiesMax,
-     "A map needs a structure to dock into it: give both together."},
+     "A map needs a structure to dock into it: give both together.", true},
 };
 constexpr RawFileType kSurfaceRaw[] = {{"mesh", "a mesh", kMeshEndings, nullptr, 1, nullptr}};
 constexpr RawFileType kDrillingRaw[] = {

@@ -25,6 +25,7 @@ struct RawFileType {
     const char* folder_of;    // contents of a folder that counts as one such file; null: no folder
     std::uint32_t files_max;  // accepted by one command
     const char* missing;      // message if the other files come without this one; null: none needed
+    bool adds = false;        // tact COMMAND SCENE FILE... adds such files to a scene of this kind
 };
 
 // Limits of the values in section META.

@@ -4,6 +4,8 @@
 // DIR/open      by the window: the scene's absolute path, one line
 // DIR/demo      by the start page: the name of a demo, one word of lower-case letters
 // DIR/past      by the window: how many seconds ago the moment is that a person wants to look back to
+// DIR/added.tact-session, DIR/shown.tact-session   by the window, before it asks for the first: the session that continues in the scene with
+//               more structures, and the one to go back to if that scene does not start
 // DIR/refused   by the launcher: the reason for which the present scene continues
 // Each file is complete or absent (a temporary file, renamed), bounded, and removed when read: its content is
 // untrusted input from another process.
@@ -19,6 +21,7 @@
 
 namespace tact {
 
+inline constexpr const char *kAddedSession = "added.tact-session", *kShownSession = "shown.tact-session";
 inline constexpr std::size_t kAskedPathMost = 4096, kRefusalMost = 2048, kDemoNameMost = 16;
 inline constexpr double kPastMostS = 600.0;
 
