@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "ipc/scene/density/start_place.hpp"
+
 namespace tact {
 
 const NormalModes& DockingContent::modes_of(std::size_t body) const {
@@ -10,9 +12,11 @@ const NormalModes& DockingContent::modes_of(std::size_t body) const {
 }
 
 void DockingContent::each_point(const std::function<void(const Vec3&)>& take) const {
-    for (const Structure& s : bodies)
-        for (std::size_t i = 0; i < s.size(); ++i)
-            take(s.home_com_model_m + Vec3(s.x_m[i], s.y_m[i], s.z_m[i]));
+    for (std::size_t body = 0; body < bodies.size(); ++body) {
+        const Structure& s = bodies[body];
+        const Vec3 start_m = start_of(body).p_m;
+        for (std::size_t i = 0; i < s.size(); ++i) take(start_m + Vec3(s.x_m[i], s.y_m[i], s.z_m[i]));
+    }
 }
 
 const DockingContent& docking_of(const SceneContent& content) {
@@ -31,6 +35,7 @@ std::unique_ptr<SystemContent> read_docking(SceneFile file, SceneContent& conten
         docking->bonds.push_back(find_bonds(docking->bodies.back()));
         docking->modes.push_back(read_modes(file, i, docking->bodies.back()));
     }
+    docking->starts = start_places(content.grid, docking->bodies);
     return docking;
 }
 

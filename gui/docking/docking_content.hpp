@@ -16,7 +16,11 @@ public:
     std::vector<Codebook> codebooks;       // one per body
     std::vector<std::vector<Bond>> bonds;  // one list per body
     std::vector<NormalModes> modes;        // one per body, or none
+    std::vector<Pose> starts;              // where a controller starts the bodies; none: as in their files
 
+    [[nodiscard]] Pose start_of(std::size_t body) const {
+        return body < starts.size() ? starts[body] : bodies[body].home();
+    }
     // count() 0: the body does not bend.
     [[nodiscard]] const NormalModes& modes_of(std::size_t body) const;
     void each_point(const std::function<void(const Vec3&)>& take) const override;

@@ -45,7 +45,8 @@ void DockingSystem::use(const std::shared_ptr<const SceneContent>& content, std:
     panels_.scene = summary_of(*content);
     count_contour();
     std::vector<Pose> homes;
-    for (const Structure& structure : docking_of(*content).bodies) homes.push_back(structure.home());
+    const DockingContent& docking = docking_of(*content);
+    for (std::size_t body = 0; body < docking.bodies.size(); ++body) homes.push_back(docking.start_of(body));
     list_.start(homes);
     if (context.controller.have_bodies) list_.follow(context.controller.bodies);
     fit_controller_.use(content);

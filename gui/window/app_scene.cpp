@@ -94,7 +94,9 @@ void GuiApp::begin_as_left() {
     state_.toggles.style = window_state.toggles.style;
     state_.toggles.molecule = window_state.toggles.molecule;
     state_.toggles.colouring = window_state.toggles.colouring;
-    camera_.place(window_state.target_a.cast<float>(), window_state.q_eye_scene.cast<float>(),
+    const Vec3 origin_a = content_->centre_model_m / kAngstromM;
+    const Vec3 target_a = window_state.target_a + window_state.origin_model_a.value_or(origin_a) - origin_a;
+    camera_.place(target_a.cast<float>(), window_state.q_eye_scene.cast<float>(),
                   static_cast<float>(window_state.distance_a));
 }
 
@@ -109,6 +111,7 @@ WindowState GuiApp::window_state() const {
     window_state.toggles = state_.toggles;
     if (content_) {
         window_state.scene = content_->checksum;
+        window_state.origin_model_a = content_->centre_model_m / kAngstromM;
         window_state.target_a = camera_.target_a().cast<double>();
         window_state.q_eye_scene = camera_.orientation().cast<double>();
         window_state.distance_a = static_cast<double>(camera_.distance_a());

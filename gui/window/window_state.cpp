@@ -19,7 +19,7 @@ constexpr std::array<const char*, 4> kColourings{"chain", "element", "body", "fi
 constexpr std::array<const char*, WindowState::kSpans> kSpanNames{"1 min", "10 min", "1 h", "6 h", "24 h"};
 constexpr std::array<const char*, WindowState::kLateness> kLatenessNames{"last minute", "whole run",
                                                                          "over time"};
-constexpr double kFarA = 1e13;
+constexpr double kFarA = 1e13, kNoOrigin = 2.0 * kFarA;
 
 struct Flag {
     const char* name;
@@ -62,6 +62,7 @@ WindowState read_window_state_text(std::string_view text, const std::string& nam
     std::array<double, 2> size{1280.0, 720.0};
     std::array<double, 4> quat{0.0, 0.0, 0.0, 1.0};
     std::string checksum;
+    Vec3 origin_a = Vec3::Constant(kNoOrigin);
     std::vector<TomlKey> keys{
         {"size_px", std::span<double>(size), 240.0, 16384.0},
         {"traces", &s.traces},
@@ -71,6 +72,7 @@ WindowState read_window_state_text(std::string_view text, const std::string& nam
         {"scene.surface", TomlChoice{&s.toggles.style, kStyles}},
         {"scene.molecule", TomlChoice{&s.toggles.molecule, kMolecules}},
         {"scene.colour", TomlChoice{&s.toggles.colouring, kColourings}},
+        {"scene.origin_a", std::span<double>(origin_a.data(), 3), -kFarA, kFarA},
         {"scene.target_a", std::span<double>(s.target_a.data(), 3), -kFarA, kFarA},
         {"scene.quat_eye_scene_xyzw", std::span<double>(quat), -1.0, 1.0},
         {"scene.distance_a", std::span<double>(&s.distance_a, 1), 0.0, kFarA},
@@ -79,6 +81,7 @@ WindowState read_window_state_text(std::string_view text, const std::string& nam
     static_cast<void>(reader.read(text, keys));
     s.width_px = static_cast<int>(size[0]);
     s.height_px = static_cast<int>(size[1]);
+    if (origin_a.x() != kNoOrigin) s.origin_model_a = origin_a;
     if (!checksum.empty()) {
         char* end = nullptr;
         s.scene = std::strtoull(checksum.c_str(), &end, 16);
@@ -118,6 +121,7 @@ std::string window_state_text(const WindowState& s) {
         for (const double v : values) all += (all.empty() ? "" : ", ") + number(v);
         return "[" + all + "]";
     };
+    if (s.origin_model_a) text += line("origin_a", list(std::span(s.origin_model_a->data(), 3)));
     text += line("target_a", list(std::span(s.target_a.data(), 3)));
     text += line("quat_eye_scene_xyzw", list(std::span(s.q_eye_scene.coeffs().data(), 4)));
     text += line("distance_a", number(s.distance_a));

@@ -9,6 +9,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -20,11 +21,13 @@ namespace tact {
 struct WindowState {
     static constexpr int kSpans = 5, kLateness = 3;
     int width_px = 1280, height_px = 720;
-    bool traces = false;           // in place of the plots
-    int span_choice = 0;           // of the plots, numbered as in the dashboard
-    int lateness_choice = 0;       // likewise
-    SceneToggles toggles;          // style, molecule and colouring are the scene's
-    std::uint64_t scene = 0;       // its checksum; 0: none was shown
+    bool traces = false;      // in place of the plots
+    int span_choice = 0;      // of the plots, numbered as in the dashboard
+    int lateness_choice = 0;  // likewise
+    SceneToggles toggles;     // style, molecule and colouring are the scene's
+    std::uint64_t scene = 0;  // its checksum; 0: none was shown
+    std::optional<Vec3>
+        origin_model_a;  // of the frame of the scene, which another content moves; none: as it is now
     Vec3 target_a = Vec3::Zero();  // of the camera, in the frame of the scene
     Quat q_eye_scene = Quat::Identity();
     double distance_a = 0.0;  // 0: the scene's default view

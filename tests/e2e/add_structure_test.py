@@ -9,6 +9,7 @@ import glob
 import json
 import os
 import pathlib
+import re
 import shutil
 import subprocess
 import sys
@@ -18,6 +19,13 @@ import time
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "unit"))
 from deploy_add_structure_test import Bench, apart_a  # noqa: E402
 from operator_of_window import Operator, arguments, expect  # noqa: E402
+
+
+def view(settings):
+    """What the camera looks at, in the frame of the map, and from what distance (angstrom)."""
+    numbers = {line.split(" = ")[0]: [float(n) for n in re.findall(r"-?\d+\.?\d*(?:e-?\d+)?", line.split("=")[1])]
+               for line in settings.split("\n") if line.startswith(("origin_a", "target_a", "distance_a"))}
+    return [a + b for a, b in zip(numbers["origin_a"], numbers["target_a"])] + numbers["distance_a"]
 
 
 def mark(o, name):
@@ -54,8 +62,9 @@ def place(o):
     (file,) = o.until("a session is saved", lambda: glob.glob(os.path.join(o.folder, "out", "*.tact-session")))
     o.key("Escape")
     with open(file) as f:
-        (body,) = json.load(f)["bodies"]
-    return body
+        session = json.load(f)
+    (body,) = session["bodies"]
+    return body, view(session["window"])
 
 
 def shown(o):
@@ -81,8 +90,10 @@ def main():
         subprocess.run([o.program("tact-prep"), "dock", "map.mrc", "a.pdb", "--resolution-a", "9", "-o", "scene.tact"], cwd=folder, check=True,
                        capture_output=True)
         try:
-            o.start("--start-offset-a", "6", "--seed", "3")
-            left = place(o)
+            settings = os.path.join(folder, "window.toml")
+            o.start("--start-offset-a", "6", "--seed", "3", "--window-state", settings)
+            o.xdotool("mousemove", "700", "250", "mousedown", "3", "mousemove", "760", "270", "mousemove", "790", "280", "mouseup", "3")
+            left, looked_at = place(o)
             add(o, "b.pdb")
             o.see("return to", "Scene")
             state = o.status()["state"]
@@ -106,6 +117,9 @@ def main():
             last = o.end()["bodies"]
         finally:
             o.close()
+        with open(settings) as f:
+            now = view(f.read())
+        bad += expect("the view is the same: %s and %s" % (looked_at, now), all(abs(a - b) < 0.01 for a, b in zip(looked_at, now)))
         bad += expect("there are three bodies", [b["name"] for b in last] == ["a.pdb", "b.pdb", "far.pdb"])
         bad += expect("the first is where it was left, and fixed", apart_a(last[0], left) < 1e-3 and left["fixed"] and last[0]["fixed"])
         bad += expect("it is not where its file has it: %.2f A off" % last[0]["offset_a"], last[0]["offset_a"] > 0.5)

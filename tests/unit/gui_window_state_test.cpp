@@ -30,6 +30,7 @@ WindowState one_of_all() {
                  .molecule = 3,
                  .colouring = 2};
     s.scene = 0xfedcba9876543210ULL;
+    s.origin_model_a = Vec3(7.0, -1.0 / 7.0, 4e3);
     s.target_a = Vec3(1.0 / 3.0, -2e3, 0.25);
     s.q_eye_scene = quat_from_rotation_vector(Vec3(0.3, -0.2, 1.1));
     s.distance_a = 210.1;
@@ -55,6 +56,7 @@ TEST(WindowStateFile, a_written_state_reads_back_unchanged) {
     EXPECT_EQ(again.toggles.molecule, 3);
     EXPECT_EQ(again.toggles.colouring, 2);
     EXPECT_EQ(again.scene, s.scene);
+    EXPECT_EQ(again.origin_model_a, s.origin_model_a);
     EXPECT_EQ(again.target_a, s.target_a);
     EXPECT_LT(again.q_eye_scene.angularDistance(s.q_eye_scene), 1e-9);
     EXPECT_EQ(again.distance_a, s.distance_a);

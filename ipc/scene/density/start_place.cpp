@@ -51,4 +51,15 @@ Pose place_beside(const DensityGrid& grid, const Structure& structure, std::span
     return {at_m, Quat::Identity()};
 }
 
+std::vector<Pose> start_places(const DensityGrid& grid, std::span<const Structure> structures) {
+    std::vector<Pose> places;
+    std::vector<BodyBall> placed;
+    for (const Structure& structure : structures) {
+        const bool reached = in_reach(grid, structure.home_com_model_m);
+        places.push_back(reached ? structure.home() : place_beside(grid, structure, placed));
+        placed.push_back(ball_of(structure, places.back()));
+    }
+    return places;
+}
+
 }  // namespace tact

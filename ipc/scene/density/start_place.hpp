@@ -5,6 +5,7 @@
 #pragma once
 
 #include <span>
+#include <vector>
 
 #include "ipc/scene/density/structure.hpp"
 
@@ -27,5 +28,8 @@ struct BodyBall {
 // Axes as in the file; beside the box of the map in the direction of +x, clear of the other bodies.
 [[nodiscard]] Pose place_beside(const DensityGrid& grid, const Structure& structure,
                                 std::span<const BodyBall> others);
+
+// Of one body for each structure: at the position in its file if the hand reaches it there, else beside the map.
+[[nodiscard]] std::vector<Pose> start_places(const DensityGrid& grid, std::span<const Structure> structures);
 
 }  // namespace tact

@@ -27,27 +27,12 @@ double start_energy_j_per_sigma(const SceneMeta& meta, const DockingSettings& se
     return meta.energy_j_per_sigma * settings.force_scale;
 }
 
-namespace {
-
-// Structures far from the map, which the hand would not reach, start beside it.
-void place_in_reach(const DockingParts& parts, std::vector<StartBody>& bodies) {
-    std::vector<BodyBall> placed;
-    for (StartBody& body : bodies) {
-        const Structure& structure = parts.structures[body.structure];
-        if (!in_reach(parts.grid, body.T_model_body.p_m))
-            body.T_model_body = place_beside(parts.grid, structure, placed);
-        placed.push_back(ball_of(structure, body.T_model_body));
-    }
-}
-
-}  // namespace
-
 std::vector<StartBody> start_bodies(const DockingParts& parts, const DockingSettings& settings) {
     std::vector<StartBody> start = settings.bodies;
     if (start.empty()) {
-        for (std::uint32_t s = 0; s < parts.structures.size(); ++s)
-            start.push_back({.structure = s, .T_model_body = parts.structures[s].home()});
-        place_in_reach(parts, start);
+        const std::vector<Pose> places = start_places(parts.grid, parts.structures);
+        for (std::uint32_t s = 0; s < places.size(); ++s)
+            start.push_back({.structure = s, .T_model_body = places[s]});
         start[0].T_model_body = start_pose(start[0].T_model_body, settings.start_offset_m,
                                            settings.start_rotation_rad, settings.seed);
     }
