@@ -90,7 +90,9 @@ private:
     void draw_view(const EyeView& eye, const ViewFrame& view);
     void draw_small_view(const EyeView& eye, const ViewFrame& view, double share);
     [[nodiscard]] std::optional<std::uint64_t> view_key(const EyeView& eye, const ViewFrame& view) const;
+    [[nodiscard]] double whole_surface_s() const;  // to draw it at full detail, as measured
     [[nodiscard]] bool refining_is_quick() const;
+    [[nodiscard]] bool sorting_is_quick() const;
     void measure_resolution(const EyeView& eye, const ViewFrame& view);
     void save_picture(const ViewFrame& of_window);
     void draw_stage(ViewFrame view, std::int64_t now_ns);

@@ -12,6 +12,9 @@ namespace {
 // So many pixels are drawn with four samples each: more takes seconds, in which the window stands still.
 constexpr double kSamplesMax = 9e6, kSamplesMaxSoftware = 2.1e6;
 
+// Of glass sorted at each pixel: each draws the surface once more.
+constexpr int kGlassLayersSoftware = 5;
+
 }  // namespace
 
 // The frame was prepared as for a screenshot: everything in full detail.
@@ -31,7 +34,7 @@ void GuiApp::save_picture(const ViewFrame& of_window) {
                 options.smooth_edges = !many_samples && !wanted.transparent;
                 options.shaded = state_.toggles.shading;
                 options.light_by_pixel = true;
-                options.glass_layers = kGlassLayers;
+                options.glass_layers = window_.software() ? kGlassLayersSoftware : kGlassLayers;
                 if (ground != nullptr) {
                     options.gradient = false;
                     options.plain_ground = *ground;

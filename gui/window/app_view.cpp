@@ -7,6 +7,8 @@ namespace {
 
 // A resting view whose full detail takes longer is not refined: the user may begin to move it meanwhile.
 constexpr double kRefineMost_s = 0.25;
+// Sorted glass takes so many times the time of the surface in software rendering (tests/bench/draw_bench).
+constexpr double kSortedTakes = 16.0;
 // The lowest level of gui.resolution: half of the pixels along each axis.
 constexpr double kSmallest = 0.25;
 // A lower resolution must save at least this part of a view's time: less is not worth the blur, and within what a measurement is off.
@@ -31,7 +33,7 @@ void GuiApp::draw_window_view(const ViewFrame& view, Instant now) {
         detail_.refined = 1;
         view_options_.shaded = state_.toggles.shading;
         view_options_.light_by_pixel = true;
-        view_options_.glass_layers = glass_layers(window_.software());
+        view_options_.glass_layers = sorting_is_quick() ? glass_layers(window_.software()) : 0;
         draw_view(eye, view);
         view_->contours().set_refined(false);
         still_.keep(view.x_px, view.y_px, view.width_px, view.height_px);
@@ -90,9 +92,15 @@ void GuiApp::measure_resolution(const EyeView& eye, const ViewFrame& view) {
     glClear(GL_DEPTH_BUFFER_BIT);
 }
 
-bool GuiApp::refining_is_quick() const {
+double GuiApp::whole_surface_s() const {
     const double drawn = std::max<double>(view_->vertices(), 1.0);
-    return passes_.path_s(VisualPathIndex::mesh) * view_->vertices_max() / drawn < kRefineMost_s;
+    return passes_.path_s(VisualPathIndex::mesh) * view_->vertices_max() / drawn;
+}
+
+bool GuiApp::refining_is_quick() const { return whole_surface_s() < kRefineMost_s; }
+
+bool GuiApp::sorting_is_quick() const {
+    return !window_.software() || kSortedTakes * whole_surface_s() < kRefineMost_s;
 }
 
 std::optional<std::uint64_t> GuiApp::view_key(const EyeView& eye, const ViewFrame& view) const {
