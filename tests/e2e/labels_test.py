@@ -66,7 +66,7 @@ def docking(script):
     script.click("Add a contour", "remove", "Scene")
     script.click("remove", "remove", "Scene", gone=True)
     script.click("View", "Bodies as", "Scene")
-    for style in ("trace", "tube", "sticks", "spheres", "cartoon"):
+    for style in ("trace", "tube", "sticks", "spheres", "cartoon", "surface"):
         script.act("bodies as %s" % style, lambda: o.click(style, "Scene"), lambda: True)
     for colour in ("element", "body", "fit", "chain"):
         script.act("coloured by %s" % colour, lambda: o.click(colour, "Scene"),

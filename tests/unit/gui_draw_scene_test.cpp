@@ -232,6 +232,39 @@ TEST_F(GuiDrawScene, a_style_applies_to_one_body_and_a_limit_turns_spheres_into_
     EXPECT_EQ(layer_->molecules().left_out(), 1U);
 }
 
+// The surface of a lone atom looks like its sphere, which is drawn as an impostor.
+TEST_F(GuiDrawScene, the_surface_of_an_atom_is_lit_as_its_sphere) {
+    Structure atom;
+    atom.x_m = atom.y_m = atom.z_m = {0.0F};
+    atom.element = {19};
+    atom.chain = {2};
+    const MolecularSurface mesh = build_surface(atom, 0.3);
+    PaintedSurface surface(std::make_shared<SurfaceShape>(mesh.vertex, mesh.index),
+                           surface_colours(mesh, atom, false));
+    ImpostorPrograms impostors;
+    ImpostorShapes sphere;
+    sphere.fill(spheres_of(atom));
+    camera_.frame(3.0F);
+    const Haze haze;
+    const EyeView eye = camera_.eye(static_cast<float>(kWidth) / static_cast<float>(kHeight));
+    glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
+    impostors.use_spheres({eye.eye_from_scene, eye.projection, haze});
+    sphere.draw();
+    const Image wanted = read_pixels(kWidth, kHeight);
+    glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
+    programs_->light_by_pixel(true);
+    programs_->use_lit(eye.eye_from_scene, eye.projection, haze, {.closed = true});
+    glEnable(GL_CULL_FACE);
+    surface.draw();
+    glDisable(GL_CULL_FACE);
+    const Image seen = read_pixels(kWidth, kHeight);
+    std::size_t off = 0;
+    for (std::size_t i = 0; i < seen.rgb.size(); ++i)
+        off += std::abs(seen.rgb[i] - wanted.rgb[i]) > 8 ? 1U : 0U;
+    EXPECT_GT(drawn(wanted), 2000U);
+    EXPECT_LT(off, drawn(wanted) / 20) << "of three channels, at the outline";
+}
+
 TEST_F(GuiDrawScene, a_surface_that_is_cut_looks_solid_inside) {
     layer_->molecules().set_look({MoleculeStyle::surface, Colouring::chain});
     options_.depth_cue = false;
