@@ -65,7 +65,7 @@ void toggles(const Theme& theme, SceneToggles& t, bool residues_current) {
     ImGui::Checkbox("Map box", &t.box);
     ImGui::Checkbox("Frame times", &t.frame_times);
     static constexpr std::array<const char*, 6> kMolecule{"trace",   "tube",    "sticks",
-                                                           "spheres", "cartoon", "surface"};
+                                                          "spheres", "cartoon", "surface"};
     static constexpr std::array<const char*, 4> kColouring{"chain", "element", "body", "fit"};
     static constexpr std::array<const char*, 3> kSurface{"glass", "solid", "wire"};
     const auto choice = [&](const char* what, std::span<const char* const> words, int& chosen) {

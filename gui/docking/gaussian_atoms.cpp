@@ -160,7 +160,9 @@ AtomCells::Sum AtomCells::sum(const Eigen::Vector3d& point_a) const {
     float nearest2 = std::numeric_limits<float>::max();
     for (int z = from.z(); z <= to.z(); ++z)
         for (int y = from.y(); y <= to.y(); ++y) {
-            const auto row = static_cast<std::size_t>((z * size_.y() + y) * size_.x());
+            const auto row = (static_cast<std::size_t>(z) * static_cast<std::size_t>(size_.y()) +
+                              static_cast<std::size_t>(y)) *
+                             static_cast<std::size_t>(size_.x());
             // Cells of a row follow each other.
             const std::uint32_t begin = first_[row + static_cast<std::size_t>(from.x())],
                                 end = first_[row + static_cast<std::size_t>(to.x()) + 1];
