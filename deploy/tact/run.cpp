@@ -341,6 +341,17 @@ private:
     std::vector<double> fps_;
 };
 
+// What returns if `now` does not start: `before`, with its bodies where the window says that they are.
+Asked way_back(const Asked& now, Asked before) {
+    if (now.back.empty()) return before;
+    try {
+        return asked_of(now.back);
+    } catch (const StartupError& e) {
+        std::fprintf(stderr, "tact: %s\n", e.what());
+        return before;
+    }
+}
+
 }  // namespace
 
 int run_scene(const std::filesystem::path& scene, RunOptions options) {
@@ -363,7 +374,7 @@ int run_scene(const std::filesystem::path& scene, RunOptions options) {
         }
         if (next && code == 0) {
             before = std::exchange(now, *next);
-            if (!now.back.empty()) before = asked_of(now.back);
+            before = way_back(now, std::move(before));
             options.forget_scene();
         } else if (code != 0 && !came_up && !before.scene.empty()) {
             scene_switch->refuse(

@@ -47,9 +47,10 @@ if(TACT_GUI)
             ${CMAKE_BINARY_DIR}/window_states 1280x720 WORKING_DIRECTORY ${CMAKE_SOURCE_DIR})
         add_test(NAME figures_test COMMAND tests/e2e/figures_test.py $<TARGET_FILE_DIR:tact> WORKING_DIRECTORY ${CMAKE_SOURCE_DIR})
         add_test(NAME start_page_test COMMAND tests/e2e/start_page_test.py $<TARGET_FILE_DIR:tact> WORKING_DIRECTORY ${CMAKE_SOURCE_DIR})
+        add_test(NAME add_structure_test COMMAND tests/e2e/add_structure_test.py $<TARGET_FILE_DIR:tact> WORKING_DIRECTORY ${CMAKE_SOURCE_DIR})
         add_test(NAME session_test COMMAND tests/e2e/session_test.py $<TARGET_FILE_DIR:tact> WORKING_DIRECTORY ${CMAKE_SOURCE_DIR})
         add_test(NAME look_back_test COMMAND tests/e2e/look_back_test.py $<TARGET_FILE_DIR:tact> WORKING_DIRECTORY ${CMAKE_SOURCE_DIR})
-        set_tests_properties(operate_test mouse_hand_test labels_test window_states_test figures_test start_page_test session_test look_back_test
+        set_tests_properties(operate_test mouse_hand_test labels_test window_states_test figures_test start_page_test session_test look_back_test add_structure_test
             PROPERTIES LABELS e2e TIMEOUT 900 SKIP_RETURN_CODE 77 RUN_SERIAL TRUE)
     endif()
 endif()

@@ -146,7 +146,11 @@ inline int window(int argc, char** argv) {
         }
         const bool bone = std::filesystem::path(other).extension() == ".bone";  // the scene stays
         if (bone ? !before : std::strcmp(argv[1], other) != 0) {
-            ask_for_scene(folder, other);
+            const char* const as = std::getenv("ASKS_AS");  // its session
+            if (const char* const back = std::getenv("GOES_BACK_TO"); back != nullptr)
+                std::filesystem::copy_file(back, folder / kShownSession,
+                                           std::filesystem::copy_options::overwrite_existing);
+            ask_for_scene(folder, as != nullptr ? as : other);
             told << std::flush;
             for (;;) {
                 ::poll(nullptr, 0, 5);

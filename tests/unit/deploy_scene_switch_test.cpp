@@ -101,6 +101,73 @@ TEST_F(OtherScene, if_the_other_scene_fails_to_start_the_old_one_returns_with_th
     EXPECT_NE(told[told.size() - 2].find("could not be started"), std::string::npos) << said_;
 }
 
+// The scene of the run with one more structure, and the session that continues in it.
+class MoreStructures : public OtherScene {
+protected:
+    void SetUp() override {
+        OtherScene::SetUp();
+        const std::string file = "input: structure, 1 bytes, crc32 00000000, /";
+        write(scene_, file + "a\nbake options: \n");
+        write(other_, file + "a\n" + file + "b\nbake options: \n");
+        session_ = scratch_.path() / "added.tact-session";
+        Session session;
+        session.scene = other_;
+        session.scene_checksum = SceneFile::open(other_).checksum();
+        session.bodies = R"([{"id":1}])";
+        std::ofstream(session_) << session_text(session, session_);
+        setenv("ASKS_AS", session_.c_str(), 1);
+    }
+    void TearDown() override {
+        unsetenv("ASKS_AS");
+        OtherScene::TearDown();
+    }
+    static void write(const std::filesystem::path& file, const std::string& note) {
+        sample::scene(sample::meta(), sample::structure(), sample::codebook(), sample::grid(), note)
+            .write(file);
+    }
+    std::filesystem::path session_;
+};
+
+TEST_F(MoreStructures, go_on_in_a_run_with_a_report_and_without_typed_start_poses) {
+    options_.json = scratch_.path() / "run.json";
+    options_.controller = {"--start-offset-a", "3", "--copies", "2"};
+    ASSERT_EQ(run(), 0) << said_;
+    const auto controllers = lines("controllers");
+    ASSERT_EQ(controllers.size(), 2U) << said_;
+    EXPECT_EQ(controllers[1], other_.string() + " --session default --poses " + session_.string());
+    EXPECT_NE(lines("windows")[1].find("--open-session " + session_.string()), std::string::npos);
+}
+
+TEST_F(MoreStructures,
+       of_another_scene_are_refused_in_a_run_with_a_report_and_so_is_any_in_one_with_a_recording) {
+    options_.json = scratch_.path() / "run.json";
+    write(scene_, "input: structure, 1 bytes, crc32 00000009, /a\nbake options: \n");
+    ASSERT_EQ(run(), 0) << said_;
+    EXPECT_EQ(lines("controllers").size(), 1U) << said_;
+    EXPECT_NE(lines("told")[1].find("(--json)"), std::string::npos);
+    EXPECT_EQ(bound_to_one_scene(options_, true), "");
+    options_.record = "run.h5";
+    EXPECT_EQ(bound_to_one_scene(options_, true), "--record");
+}
+
+TEST_F(MoreStructures, that_do_not_start_lead_back_to_the_bodies_as_they_were) {
+    misbehave("refuse-other");
+    const auto shown = scratch_.path() / "shown";
+    char checksum[17];
+    std::snprintf(checksum, sizeof checksum, "%016llx",
+                  static_cast<unsigned long long>(SceneFile::open(scene_).checksum()));
+    std::ofstream(shown) << R"({"tact_session":1,"bodies":[{"id":1}],"scene":{"path":")" << scene_.string()
+                         << R"(","checksum":")" << checksum << "\"}}";
+    setenv("GOES_BACK_TO", shown.c_str(), 1);
+    ASSERT_EQ(run(), 0) << said_;
+    unsetenv("GOES_BACK_TO");
+    const auto controllers = lines("controllers");
+    ASSERT_EQ(controllers.size(), 2U) << said_;
+    EXPECT_TRUE(controllers[1].starts_with(scene_.string() + " --session default --poses "))
+        << controllers[1];
+    EXPECT_TRUE(controllers[1].ends_with(kShownSession)) << controllers[1];
+}
+
 class KeptBone : public OtherScene {
 protected:
     [[nodiscard]] std::filesystem::path bone_of(std::uint64_t checksum) const {

@@ -158,6 +158,66 @@ TEST_F(Import, a_map_is_imported_only_after_its_resolution_is_typed) {
     EXPECT_EQ(scenes(), 1U) << state_.message;
 }
 
+TEST_F(Import, a_structure_is_added_to_the_scene_that_is_shown_once_a_person_says_so) {
+    const std::string map = (folder_ / "map.mrc").string(), model = (folder_ / "a.pdb").string(),
+                      scene = (folder_ / "a.tact").string(), second = (folder_ / "b.pdb").string();
+    write_map(map);
+    for (const std::string& file : {model, second})
+        std::ofstream(file)
+            << "ATOM      1  CA  ALA A   1       6.000   6.000   6.000  1.00  0.00           C\n"
+               "ATOM      2  CA  ALA A   2       8.000   7.000   6.000  1.00  0.00           C\n";
+    ASSERT_EQ(std::system(("tact-prep dock " + map + " " + model + " --resolution-a 8 -o " + scene +
+                           " >/dev/null 2>&1")
+                              .c_str()),
+              0);
+    const auto scene_switch = folder_ / "scene_switch";
+    std::filesystem::create_directory(scene_switch);
+    const std::string note = read_note(SceneFile::open(scene));
+    {
+        BrowserController alone({});
+        alone.used(scene, SceneKind::docking, note, state_);
+        alone.drop({second}, state_);
+        state_.import_wanted = true;
+        alone.follow(state_);
+        EXPECT_FALSE(state_.importing);
+        EXPECT_NE(state_.message.find("run: tact dock " + scene + " " + second), std::string::npos)
+            << state_.message;
+    }
+    BrowserController dashboard(scene_switch);
+    dashboard.used(scene, SceneKind::docking, note, state_);
+    dashboard.drop({second}, state_);
+    EXPECT_TRUE(state_.open && state_.marks_add && !state_.marks_import);
+    EXPECT_EQ(state_.marks_text, "Add b.pdb to this scene, whose bodies stay where they are.");
+    dashboard.follow(state_);
+    EXPECT_FALSE(state_.importing) << "nothing starts by itself";
+    state_.import_wanted = true;
+    dashboard.follow(state_);
+    until_done(dashboard);
+    ASSERT_FALSE(state_.added_scene.empty()) << state_.message;
+    EXPECT_EQ(read_meta(SceneFile::open(state_.added_scene)).body_count, 2U);
+    EXPECT_FALSE(take_asked_scene(scene_switch)) << "the session of the window asks for it";
+    state_.added_scene.clear();
+    std::ofstream(map, std::ios::app) << "changed";
+    dashboard.drop({second}, state_);
+    state_.import_wanted = true;
+    dashboard.follow(state_);
+    until_done(dashboard);
+    EXPECT_TRUE(state_.added_scene.empty());
+    EXPECT_NE(state_.message.find("has changed since the scene was baked"), std::string::npos)
+        << state_.message;
+    EXPECT_EQ(state_.message_grade, Grade::bad);
+}
+
+TEST_F(Import, the_folder_of_a_baked_scene_is_that_of_its_files) {
+    const std::string note = "input: map, 5 bytes, crc32 00000000, /data/maps/emd.mrc\nbake options: \n";
+    BrowserController dashboard({});
+    dashboard.used(folder_ / "cache/tact/emd-1.tact", SceneKind::docking, note, state_);
+    EXPECT_EQ(state_.folder, "/data/maps");
+    state_.folder.clear();
+    dashboard.used("/elsewhere/emd.tact", SceneKind::docking, note, state_);
+    EXPECT_EQ(state_.folder, "/elsewhere");
+}
+
 TEST_F(Import, files_that_cannot_be_read_are_refused_before_anything_is_asked) {
     const std::string map = (folder_ / "map.mrc").string(), model = (folder_ / "a.pdb").string();
     std::ofstream(map) << "no map";

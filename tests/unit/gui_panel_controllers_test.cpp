@@ -162,6 +162,22 @@ TEST_F(TestDashboard, dropped_files_are_a_scene_an_import_or_refused_with_a_reas
     }
 }
 
+TEST_F(TestDashboard, structures_alone_are_added_to_a_docking_scene_that_is_shown) {
+    using Words = std::vector<std::string>;
+    const ShownScene docking{"/s/a.tact", SceneKind::docking};
+    const Dropped got = meaning_of({"/a/1.pdb", "/a/2.cif.gz"}, docking);
+    EXPECT_EQ(got.add, (Words{"dock", "/s/a.tact", "/a/1.pdb", "/a/2.cif.gz"}));
+    EXPECT_TRUE(got.import.empty() && got.scene.empty());
+    EXPECT_EQ(meaning_text(got), "Add 1.pdb and 1 more to this scene, whose bodies stay where they are.");
+    EXPECT_EQ(meaning_of({"/a/1.pdb", "/a/m.mrc"}, docking).import, (Words{"dock", "/a/m.mrc", "/a/1.pdb"}))
+        << "with a map they are a scene of their own";
+    for (const ShownScene& other : {ShownScene{}, ShownScene{"/s/a.tact", SceneKind::surface},
+                                    ShownScene{"relative.tact", SceneKind::docking}})
+        EXPECT_TRUE(meaning_of({"/a/1.pdb"}, other).add.empty());
+    for (const Words& bad : {Words{"/a/m.mrc"}, Words{"/a/x.ply", "/a/1.pdb"}, Words(17, "/a/1.pdb")})
+        EXPECT_TRUE(meaning_of(bad, docking).add.empty());
+}
+
 TEST_F(TestDashboard, the_import_of_dropped_files_is_described_in_one_line) {
     const auto words = [](const std::vector<std::string>& files) { return meaning_text(meaning_of(files)); };
     EXPECT_EQ(words({"/a/1abc.pdb", "/a/emd.mrc"}), "Dock 1abc.pdb into emd.mrc.");

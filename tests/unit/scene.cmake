@@ -2,7 +2,8 @@
 tact_tests(scene_file_tests SOURCES
         unit/scene_file_test.cpp unit/scene_kinds_test.cpp unit/scene_content_test.cpp unit/scene_contour_test.cpp
         unit/scene_isosurface_test.cpp unit/scene_clashes_test.cpp unit/scene_session_test.cpp
-    USES scene scene_session base)
+        unit/scene_extend_test.cpp
+    USES scene scene_session base SYSTEM nlohmann_json::nlohmann_json)
 tact_tests(scene_density_tests SOURCES
         unit/scene_density_map_test.cpp unit/scene_density_sum_test.cpp unit/scene_density_reference_test.cpp
         unit/scene_laplacian_map_test.cpp unit/scene_subtracted_map_test.cpp unit/scene_docking_gain_test.cpp
