@@ -18,7 +18,7 @@
 namespace tact {
 namespace {
 
-constexpr const char* kRecentName = "recent.json";
+constexpr const char *kRecentName = "recent.json", *kAnswersName = "import_answers.json";
 
 std::int64_t unix_now_s() { return static_cast<std::int64_t>(std::time(nullptr)); }
 
@@ -146,7 +146,60 @@ void BrowserController::import(Dropped meant, BrowserState& state) {
     });
     if (!asks) return start_import(std::move(meant), state);
     asking_ = std::move(meant);
+    begin_recalling(asking_);
     examine({}, state);
+}
+
+void BrowserController::begin_recalling(const Dropped& meant) {
+    recall_.reset();
+    choices_proposed_ = false;
+    recalling_ =
+        std::async(std::launch::async, [command = meant.import[0], path = meant.import[1]]() -> Recall {
+            Recall out;
+            if (const auto folder = state_folder(); !folder.empty()) try {
+                    out.answers = recall(read_answers(folder / kAnswersName), imported_file(path, command));
+                } catch (const StartupError& e) {
+                    out.trouble = e.what();
+                }
+            return out;
+        });
+}
+
+void BrowserController::propose_answers(ImportForm& form, BrowserState& state) {
+    if (recalling_.valid()) recall_ = recalling_.get();  // was read long before the files were
+    if (!recall_) return;
+    if (!recall_->trouble.empty()) {
+        spdlog::warn("{}", recall_->trouble);
+        say(state, Grade::watch, std::exchange(recall_->trouble, {}));
+    }
+    if (recall_->answers)
+        form.other_choice = propose(*recall_->answers, !std::exchange(choices_proposed_, true), form);
+}
+
+void BrowserController::keep_answers(const ImportForm& form) {
+    const auto folder = state_folder();
+    if (folder.empty() || answering_.valid()) return;
+    answering_ = std::async(
+        std::launch::async,
+        [folder, command = asking_.import[0], path = asking_.import[1],
+         answers = answers_of(form)]() -> std::string {
+            const auto file = folder / kAnswersName;
+            try {
+                std::vector<ImportAnswers> imports;
+                try {
+                    imports = read_answers(file);
+                } catch (const StartupError& e) {
+                    spdlog::warn("{}", e.what());
+                    spdlog::warn("starting new answers of imports; the old file is kept as {}",
+                                 set_aside(file).string());
+                }
+                write_whole_file(file, answers_text(with_answers(std::move(imports),
+                                                                 {imported_file(path, command), answers})));
+            } catch (const StartupError& e) {
+                return e.what();
+            }
+            return {};
+        });
 }
 
 void BrowserController::examine(const std::vector<std::string>& choices, BrowserState& state) {
@@ -185,6 +238,7 @@ void BrowserController::follow_examination(BrowserState& state) {
     if (!state.form)
         return say(state, Grade::bad, "tact-prep examine gave no report: " + last_line(outcome->output));
     state.form->title = meaning_text(asking_);
+    propose_answers(*state.form, state);
 }
 
 void BrowserController::follow_form(BrowserState& state) {
@@ -195,7 +249,11 @@ void BrowserController::follow_form(BrowserState& state) {
         state.form.reset();
         return;
     }
-    if (std::exchange(form.other_choice, false)) return examine(form.choice_arguments(), state);
+    if (std::exchange(form.other_choice, false)) {
+        // Answers that were given with another choice say nothing about this one.
+        if (form.shown && recall_) recall_->answers.reset();
+        return examine(form.choice_arguments(), state);
+    }
     if (!std::exchange(form.answered, false) || !form.complete() || import_.running()) return;
     if (const std::string table = form.edited_table(); !table.empty()) {
         try {
@@ -206,6 +264,7 @@ void BrowserController::follow_form(BrowserState& state) {
         }
         spdlog::info("names of structures written to {}", form.structure_table);
     }
+    keep_answers(form);
     const std::vector<std::string> answers = form.arguments();
     asking_.import.insert(asking_.import.end(), answers.begin(), answers.end());
     state.form.reset();
@@ -322,11 +381,12 @@ void BrowserController::follow(BrowserState& state) {
     follow_marks(state);
     follow_examination(state);
     follow_form(state);
-    if (ready(keeping_))
-        if (const std::string trouble = keeping_.get(); !trouble.empty()) {
-            spdlog::warn("{}", trouble);
-            say(state, Grade::watch, trouble);
-        }
+    for (std::future<std::string>* const kept : {&keeping_, &answering_})
+        if (ready(*kept))
+            if (const std::string trouble = kept->get(); !trouble.empty()) {
+                spdlog::warn("{}", trouble);
+                say(state, Grade::watch, trouble);
+            }
     if (!scene_switch_.empty()) {
         if (const auto refusal = take_refusal(scene_switch_)) {
             asked_ = false;

@@ -12,6 +12,7 @@
 
 #include "gui/base/child_job.hpp"
 #include "gui/window/dropped_files.hpp"
+#include "gui/window/import_answers.hpp"
 #include "gui/window/scene_list.hpp"
 #include "ipc/base/clock.hpp"
 
@@ -49,6 +50,9 @@ private:
     void examine(const std::vector<std::string>& choices, BrowserState& state);
     void follow_examination(BrowserState& state);
     void follow_form(BrowserState& state);
+    void begin_recalling(const Dropped& meant);
+    void propose_answers(ImportForm& form, BrowserState& state);
+    void keep_answers(const ImportForm& form);
     void start_import(Dropped meant, BrowserState& state);
     void start_adding(const Dropped& meant, BrowserState& state);
     void run_tact(std::vector<std::string> arguments, BrowserState& state);
@@ -73,6 +77,15 @@ private:
     bool asked_in_log_ = false;
     std::future<Read> reading_;
     std::future<std::string> keeping_;  // error, or empty
+    // Answers of earlier imports, proposed in the dialog.
+    struct Recall {
+        std::optional<Recalled> answers;
+        std::string trouble;
+    };
+    std::future<Recall> recalling_;
+    std::optional<Recall> recall_;  // for asking_
+    bool choices_proposed_ = false;
+    std::future<std::string> answering_;  // keeps them: error, or empty
 };
 
 }  // namespace tact

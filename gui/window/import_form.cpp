@@ -180,6 +180,7 @@ std::optional<ImportForm> read_import_form(std::string_view text) {
         number.high = *high;
         number.in_histogram = !form.bins.empty() && n.value("in_histogram", json()).is_boolean() &&
                               n["in_histogram"].get<bool>();
+        number.of_file = n.value("of_file", json()).is_boolean() && n["of_file"].get<bool>();
         if (const auto proposed = finite_number(n, "proposed")) {
             number.set(*proposed);
             number.proposed = number.typed.data();

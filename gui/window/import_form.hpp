@@ -27,7 +27,10 @@ struct ImportForm {
         std::string option, label, unit, help, proposed;  // proposed: as typed; empty: none
         double low = 0.0, high = 0.0;                     // of an answer
         bool in_histogram = false;
+        bool of_file = false;  // an answer for this file alone
         std::array<char, 24> typed{};
+        std::string recalled,
+            recalled_from;  // answer of an earlier import, as typed, and which: "As for head.nrrd."
         // The answer, if it is a number within the limits.
         [[nodiscard]] std::optional<double> value() const;
         void set(double value);
@@ -36,6 +39,7 @@ struct ImportForm {
         std::string option, label;
         std::vector<std::pair<std::string, std::string>> rows;  // value, text
         std::size_t chosen = 0;
+        std::string recalled_from{};  // as of numbers
     };
     struct Structure {
         StructureRow row;  // as the report says

@@ -75,8 +75,11 @@ void number_field(const Theme& theme, ImportForm::Number& n, bool focus, bool& e
     ImGui::SameLine(theme.px(kLabels + kAnswer + 64.0F));
     const bool valid = n.value().has_value() || n.typed[0] == 0;
     ImGui::PushTextWrapPos(0.0F);
+    const bool recalled = valid && !n.recalled.empty() && n.recalled == n.typed.data();
     text_small(theme, valid ? colour::kDim : colour::kWatch,
-               valid ? n.help : format("A number from %g to %g %s.", n.low, n.high, n.unit.c_str()));
+               recalled ? n.recalled_from + " " + n.help
+               : valid  ? n.help
+                        : format("A number from %g to %g %s.", n.low, n.high, n.unit.c_str()));
     ImGui::PopTextWrapPos();
     ImGui::PopID();
 }
@@ -97,6 +100,10 @@ void choice_list(const Theme& theme, ImportForm::Choice& choice, bool& other) {
             ImGui::PopID();
         }
         ImGui::EndCombo();
+    }
+    if (!choice.recalled_from.empty()) {
+        ImGui::SetCursorPosX(theme.px(kLabels));
+        text_small(theme, colour::kDim, choice.recalled_from);
     }
     ImGui::PopID();
 }

@@ -26,7 +26,8 @@ nlohmann::ordered_json import_report_json(const ImportReport& report) {
              {"low", n.low},
              {"high", n.high},
              {"proposed", n.proposed ? nlohmann::ordered_json(*n.proposed) : nlohmann::ordered_json(nullptr)},
-             {"in_histogram", n.in_histogram}});
+             {"in_histogram", n.in_histogram},
+             {"of_file", n.of_file}});
     for (const auto& c : report.choices) {
         nlohmann::ordered_json rows = nlohmann::ordered_json::array();
         for (const auto& row : c.rows) rows.push_back({{"value", row.value}, {"text", row.text}});

@@ -1,7 +1,7 @@
 // What the files of an import are, and what their import asks: printed as JSON by `--examine`, for a dialog.
 //
 // JSON      lines [{label, value}], histogram {low, high, count[]}, numbers [{option, label, unit, help, low, high,
-//           proposed, in_histogram}], choices [{option, label, chosen, rows [{value, text}]}], warnings [text],
+//           proposed, in_histogram, of_file}], choices [{option, label, chosen, rows [{value, text}]}], warnings [text],
 //           structures [{label, colour, name, critical, voxels}], structure_table
 // Answers   a number or the value of a row, as the value of its option of the same command
 #pragma once
@@ -28,6 +28,7 @@ struct ImportReport {
         double low = 0.0, high = 0.0;    // of an answer
         std::optional<double> proposed;  // none: a person must answer
         bool in_histogram = false;       // a value of the files
+        bool of_file = false;            // says nothing about the next file of the same kind
     };
     struct Choice {
         struct Row {

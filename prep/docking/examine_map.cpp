@@ -52,9 +52,9 @@ ImportReport examine_map(const std::string& map, const std::vector<std::string>&
     }
     out.histogram = map_histogram(imported.grid, statistics);
     out.numbers.push_back({"--resolution-a", "Resolution of the map", "Å", kResolutionHelp, kResolutionLeastA,
-                           kResolutionMostA, std::nullopt, false});
+                           kResolutionMostA, std::nullopt, false, true});
     out.numbers.push_back({"--contour", "Contour", "", kContourHelp, statistics.low, statistics.high,
-                           choose_contour(imported.grid, statistics).level, true});
+                           choose_contour(imported.grid, statistics).level, true, true});
     return out;
 }
 

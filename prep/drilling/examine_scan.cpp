@@ -66,8 +66,10 @@ void add_bone_values(ImportReport& out, const Scan& scan, const Progress& progre
              hounsfield ? printed("%.4g to %.4g HU", histogram->low, histogram->most)
                         : printed("%.4g to %.4g, of no known unit", histogram->low, histogram->most));
     out.histogram = {histogram->low, histogram->high, histogram->count};
-    out.numbers.push_back({"--threshold-hu", "Bone above", unit, kThresholdHelp, -1e6, 1e6, threshold, true});
-    out.numbers.push_back({"--solid-hu", "Solid bone from", unit, kSolidHelp, -1e6, 1e6, solid, true});
+    out.numbers.push_back(
+        {"--threshold-hu", "Bone above", unit, kThresholdHelp, -1e6, 1e6, threshold, true, !hounsfield});
+    out.numbers.push_back(
+        {"--solid-hu", "Solid bone from", unit, kSolidHelp, -1e6, 1e6, solid, true, !hounsfield});
     if (!hounsfield)
         out.warnings.emplace_back(
             "the values have no known unit: where bone begins is proposed from the histogram; look at the "

@@ -7,6 +7,9 @@ tact_fuzz(window_state_fuzz SOURCES fuzz/window_state_fuzz.cpp ${CMAKE_SOURCE_DI
     USES base SYSTEM tomlplusplus::tomlplusplus)
 tact_fuzz(recents_fuzz SOURCES fuzz/recents_fuzz.cpp ${CMAKE_SOURCE_DIR}/gui/window/recent_scenes.cpp
     USES base SYSTEM nlohmann_json::nlohmann_json)
+tact_fuzz(import_answers_fuzz SOURCES fuzz/import_answers_fuzz.cpp ${CMAKE_SOURCE_DIR}/gui/window/import_answers.cpp
+        ${CMAKE_SOURCE_DIR}/gui/window/import_form.cpp
+    USES base scene_bone SYSTEM nlohmann_json::nlohmann_json)
 tact_fuzz(stage_fuzz SOURCES fuzz/stage_fuzz.cpp ${CMAKE_SOURCE_DIR}/gui/stereo/stage_file.cpp
         ${CMAKE_SOURCE_DIR}/gui/stereo/stage_file_write.cpp ${CMAKE_SOURCE_DIR}/gui/base/toml_keys.cpp
         ${CMAKE_SOURCE_DIR}/gui/render/screen.cpp ${CMAKE_SOURCE_DIR}/gui/render/camera.cpp

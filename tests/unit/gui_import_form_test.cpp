@@ -5,6 +5,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "gui/window/import_answers.hpp"
 #include "gui/window/import_form.hpp"
 
 namespace tact::gui_import_form_test {
@@ -143,6 +144,68 @@ TEST(ImportForm, a_report_that_is_none_or_hostile_gives_no_arguments) {
     EXPECT_EQ(form->numbers.size(), ImportForm::kNumbersMost);
     EXPECT_LE(form->warnings.back().size(), ImportForm::kTextMost + 3);
     EXPECT_TRUE(form->choices.empty());
+}
+
+// What a scan asks: a spacing, a threshold in its own unit, and which series.
+ImportForm scan_form() {
+    auto form = read_import_form(
+        R"({"lines":[],"numbers":[{"option":"--spacing-mm","low":0.001,"high":100},)"
+        R"({"option":"--threshold-hu","low":-1e6,"high":1e6,"proposed":120,"of_file":true}],)"
+        R"("choices":[{"option":"--series","chosen":0,"rows":[{"value":"1.2","text":"a"},{"value":"1.3","text":"b"}]}]})");
+    return form.value_or(ImportForm{});
+}
+
+TEST(ImportAnswers, of_another_file_are_proposed_where_they_are_not_of_that_file_alone) {
+    Recalled recalled{
+        {{"--spacing-mm", "0.15"}, {"--threshold-hu", "300"}, {"--series", "1.3"}}, false, "head.nrrd"};
+    ImportForm form = scan_form();
+    EXPECT_TRUE(propose(recalled, true, form)) << "the files must be examined with the other series";
+    EXPECT_EQ(form.choices[0].chosen, 1U);
+    EXPECT_STREQ(form.numbers[0].typed.data(), "0.15");
+    EXPECT_EQ(form.numbers[0].recalled_from, "As for head.nrrd.");
+    EXPECT_STREQ(form.numbers[1].typed.data(), "120");
+    EXPECT_FALSE(propose(recalled, false, form)) << "once";
+    EXPECT_EQ(answers_of(form),
+              (std::map<std::string, std::string>{{"--spacing-mm", "0.15"}, {"--series", "1.3"}}));
+    recalled.same_file = true;
+    static_cast<void>(propose(recalled, false, form));
+    EXPECT_STREQ(form.numbers[1].typed.data(), "300");
+}
+
+TEST(ImportAnswers, that_do_not_fit_the_dialog_are_left_out) {
+    for (const char* const wrong :
+         {"", "0", "1e9", "-3", "x", "0.1 ", "nan", "0.15000000000000000000000000000001"}) {
+        ImportForm form = scan_form();
+        EXPECT_FALSE(
+            propose({{{"--spacing-mm", wrong}, {"--series", "9"}, {"--other", "1"}}, true, "a"}, true, form));
+        EXPECT_EQ(form.numbers[0].typed[0], 0) << wrong;
+        EXPECT_TRUE(form.numbers[0].recalled.empty() && form.choices[0].recalled_from.empty());
+    }
+}
+
+TEST(ImportAnswers, the_same_file_goes_before_the_newest_of_its_type_in_its_folder) {
+    const ImportAnswers old{{"/d/a.nrrd", 5, 10, "drill"}, {{"--a", "1"}}},
+        newer{{"/d/b.NRRD.gz", 6, 11, "drill"}, {{"--a", "2"}}},
+        other_type{{"/d/c.nii", 6, 11, "drill"}, {{"--a", "3"}}},
+        elsewhere{{"/e/d.nrrd", 6, 11, "drill"}, {{"--a", "4"}}};
+    const auto all = with_answers(with_answers(with_answers({old}, newer), other_type), elsewhere);
+    const auto value = [&](const ImportedFile& file) {
+        const auto found = recall(all, file);
+        return found ? found->answers.at("--a") + (found->same_file ? " same " : " as ") + found->name
+                     : std::string();
+    };
+    EXPECT_EQ(value(old.file), "1 same a.nrrd");
+    EXPECT_EQ(value({"/d/new.nrrd", 1, 1, "drill"}), "2 as b.NRRD.gz");
+    EXPECT_EQ(value({"/d/a.nrrd", 5, 12, "drill"}), "2 as b.NRRD.gz") << "it has changed";
+    EXPECT_EQ(value({"/d/new.mha", 1, 1, "drill"}), "");
+    EXPECT_EQ(value({"/d/new.nrrd", 1, 1, "dock"}), "");
+    std::vector<ImportAnswers> many;
+    for (int i = 0; i < 100; ++i)
+        many = with_answers(
+            std::move(many),
+            {{"/d/" + std::string(4000, 'x') + std::to_string(i), 1, 1, "drill"}, {{"--a", "1"}}});
+    EXPECT_LE(many.size(), kImportsMost);
+    EXPECT_EQ(read_answers_text(answers_text(many), "x"), many) << "what is written can be read";
 }
 
 }  // namespace

@@ -26,6 +26,7 @@ protected:
         char name[] = "/tmp/tact-import-test-XXXXXX";
         folder_ = mkdtemp(name);
         setenv("XDG_CACHE_HOME", (folder_ / "cache").c_str(), 1);
+        setenv("XDG_STATE_HOME", (folder_ / "state").c_str(), 1);
         setenv("PATH", std::string(TACT_FOLDER).append(":").append(std::getenv("PATH")).c_str(), 1);
         std::ofstream(folder_ / "tetra.obj") << "v 0 0 0\nv 9 0 0\nv 0 9 0\nv 0 0 9\n"
                                                 "f 1 3 2\nf 1 2 4\nf 2 3 4\nf 1 4 3\n";
@@ -156,6 +157,58 @@ TEST_F(Import, a_map_is_imported_only_after_its_resolution_is_typed) {
     EXPECT_FALSE(state_.form);
     until_done(dashboard);
     EXPECT_EQ(scenes(), 1U) << state_.message;
+}
+
+TEST_F(Import, answers_are_proposed_again_for_the_same_file_and_wait_for_a_person) {
+    const std::string map = (folder_ / "map.mrc").string(), other = (folder_ / "other.mrc").string(),
+                      model = (folder_ / "a.pdb").string();
+    write_map(map);
+    write_map(other);
+    std::ofstream(model)
+        << "ATOM      1  CA  ALA A   1       6.000   6.000   6.000  1.00  0.00           C\n"
+           "ATOM      2  CA  ALA A   2       8.000   7.000   6.000  1.00  0.00           C\n";
+    const auto file = folder_ / "state" / "tact" / "import_answers.json";
+    const auto ask = [&](BrowserController& dashboard, const std::string& of) -> ImportForm& {
+        state_.form.reset();
+        dashboard.drop({of, model}, state_);
+        until_done(dashboard);
+        EXPECT_TRUE(state_.form) << state_.message;
+        return *state_.form;
+    };
+    {
+        BrowserController dashboard({});
+        ImportForm& form = ask(dashboard, map);
+        EXPECT_EQ(form.numbers[0].typed[0], 0) << "nothing is known";
+        std::snprintf(form.numbers[0].typed.data(), form.numbers[0].typed.size(), "7.25");
+        form.answered = true;
+        dashboard.follow(state_);
+        until_done(dashboard);
+    }  // waits for the file to be written
+    ASSERT_EQ(read_answers(file).size(), 1U);
+    const std::size_t baked = scenes();
+    BrowserController dashboard({});
+    {
+        const ImportForm& form = ask(dashboard, map);
+        EXPECT_STREQ(form.numbers[0].typed.data(), "7.25");
+        EXPECT_EQ(form.numbers[0].recalled_from, "As answered for this file before.");
+        EXPECT_TRUE(form.numbers[1].recalled.empty()) << "the contour was left as proposed";
+        EXPECT_EQ(form.arguments(), (std::vector<std::string>{"--resolution-a", "7.25"}));
+        for (int i = 0; i < 20; ++i) dashboard.follow(state_);
+        EXPECT_TRUE(state_.form && !state_.importing && scenes() == baked) << "a person confirms it";
+    }
+    EXPECT_EQ(ask(dashboard, other).numbers[0].typed[0], 0) << "the resolution is of one map alone";
+    write_map(map);
+    EXPECT_EQ(ask(dashboard, map).numbers[0].typed[0], 0) << "it is another file now";
+    std::ofstream(file) << "{\"imports\": 3}";
+    EXPECT_EQ(ask(dashboard, map).numbers[0].typed[0], 0);
+    EXPECT_NE(state_.message.find("answers of earlier imports"), std::string::npos) << state_.message;
+    state_.form->numbers[0].set(8.0);
+    state_.form->answered = true;
+    dashboard.follow(state_);
+    until_done(dashboard);
+    for (int i = 0; i < 400 && !std::filesystem::exists(file.string() + ".damaged"); ++i)
+        std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    EXPECT_TRUE(std::filesystem::exists(file.string() + ".damaged")) << "what a person wrote is kept";
 }
 
 TEST_F(Import, a_structure_is_added_to_the_scene_that_is_shown_once_a_person_says_so) {
