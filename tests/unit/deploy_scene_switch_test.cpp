@@ -40,8 +40,8 @@ TEST_F(OtherScene, the_launcher_switches_to_the_other_scene_unarmed_with_the_sam
     const auto controllers = lines("controllers");
     ASSERT_EQ(controllers.size(), 2U) << said_;
     EXPECT_EQ(controllers[0],
-              scene_.string() + " --session default --arm-with-gui --rate 500 --start-offset-a 15");
-    EXPECT_EQ(controllers[1], other_.string() + " --session default --rate 500");
+              scene_.string() + " --session default --arm-with-gui --rate 500 --start-offset-a 15 --mouse");
+    EXPECT_EQ(controllers[1], other_.string() + " --session default --rate 500 --mouse");
     EXPECT_EQ(lines("told"), (std::vector<std::string>{scene_, other_}));
     EXPECT_NE(said_.find("another scene was requested"), std::string::npos) << said_;
 }
@@ -134,7 +134,7 @@ TEST_F(MoreStructures, go_on_in_a_run_with_a_report_and_without_typed_start_pose
     ASSERT_EQ(run(), 0) << said_;
     const auto controllers = lines("controllers");
     ASSERT_EQ(controllers.size(), 2U) << said_;
-    EXPECT_EQ(controllers[1], other_.string() + " --session default --poses " + session_.string());
+    EXPECT_EQ(controllers[1], other_.string() + " --session default --mouse --poses " + session_.string());
     EXPECT_NE(lines("windows")[1].find("--open-session " + session_.string()), std::string::npos);
 }
 
@@ -163,7 +163,7 @@ TEST_F(MoreStructures, that_do_not_start_lead_back_to_the_bodies_as_they_were) {
     unsetenv("GOES_BACK_TO");
     const auto controllers = lines("controllers");
     ASSERT_EQ(controllers.size(), 2U) << said_;
-    EXPECT_TRUE(controllers[1].starts_with(scene_.string() + " --session default --poses "))
+    EXPECT_TRUE(controllers[1].starts_with(scene_.string() + " --session default --mouse --poses "))
         << controllers[1];
     EXPECT_TRUE(controllers[1].ends_with(kShownSession)) << controllers[1];
 }
@@ -244,10 +244,10 @@ TEST_F(OtherScene, a_session_starts_its_scene_with_its_bodies_and_the_window_wit
     options_.seconds = 0.3;
     scene_ = file;
     ASSERT_EQ(run(), 0) << said_;
-    EXPECT_EQ(
-        lines("controllers"),
-        (std::vector<std::string>{other_.string() + " --session default --arm-with-gui --rate 500 --poses " +
-                                  file.string()}));
+    EXPECT_EQ(lines("controllers"),
+              (std::vector<std::string>{other_.string() +
+                                        " --session default --arm-with-gui --rate 500 --mouse --poses " +
+                                        file.string()}));
     ASSERT_EQ(lines("windows").size(), 1U);
     EXPECT_NE(lines("windows")[0].find("--open-session " + file.string()), std::string::npos);
 }
