@@ -80,6 +80,38 @@ def add(o, name):
     o.wait("the controller runs again", lambda s: s["gui"]["attached"] and s["gui"]["frames"] and s["gui"]["frames"]["count"] > 20)
 
 
+def remembers_answers(o):
+    """Imports a map twice: the second time, the answer of the first is proposed, and waits."""
+    def ask():
+        if o.find("Recently used") is None:
+            o.click("Scenes (")
+        o.click("Folder", "Scenes")
+        for name in ("map.mrc", "b.pdb"):
+            o.click(name, "Scenes")
+        o.see("Dock b.pdb into map.mrc", "Scenes")
+        o.click("Import", "Scenes")
+        o.see("Resolution of the map", "Scenes")
+        o.until("the dialog takes keys", lambda: o.said().count("asking about") > ask.asked)
+        ask.asked += 1
+    ask.asked = 0
+    ask()
+    bad = expect("the first time, nothing is remembered", o.find("As answered for this file before") is None)
+    o.xdotool("type", "8.5")
+    o.key("Return")
+    o.see("this run writes files", "Scenes")  # the run keeps its scene, because of --json
+    ask()
+    o.see("As answered for this file before", "Scenes")
+    picture(o, "remembered")
+    time.sleep(1.0)
+    bad += expect("nothing is imported without a person", o.find("Resolution of the map") is not None)
+    faults = o.layout_faults()
+    bad += expect("no text of the dialog is cut: %s" % sorted(faults), not faults)
+    o.click("Cancel", "Scenes")
+    o.see_no_more("Resolution of the map", "Scenes")
+    o.click("Close", "Scenes")
+    return bad
+
+
 def main():
     bin_dir = arguments(__doc__, 1)[0]
     bad = 0
@@ -107,7 +139,8 @@ def main():
             picture(o, "added_beside")
             faults = o.layout_faults()
             bad += expect("no text is cut: %s" % sorted(faults), not faults)
-            # A file that is no structure, and a map that has changed, are refused; the run goes on.
+            bad += remembers_answers(o)
+            # A map that has changed is refused; the run goes on.
             with open(os.path.join(folder, "map.mrc"), "ab") as f:
                 f.write(b"changed")
             mark(o, "b.pdb")
