@@ -4,6 +4,7 @@
 #include <array>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "gui/dashboard/pixel_rect.hpp"
@@ -41,6 +42,10 @@ struct BrowserState {
     std::optional<ImportForm> form;  // drawn in place of the rows until it is answered or cancelled
     std::string message;
     Grade message_grade = Grade::unknown;
+    void say(Grade grade, std::string words) {
+        message = std::move(words);
+        message_grade = grade;
+    }
     // The user's choices; emptied by the application.
     std::string scene_wanted, folder_wanted, mark_wanted;
     bool import_wanted = false, clear_wanted = false, session_wanted = false;

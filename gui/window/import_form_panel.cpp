@@ -76,7 +76,10 @@ void number_field(const Theme& theme, ImportForm::Number& n, bool focus, bool& e
     const bool valid = n.value().has_value() || n.typed[0] == 0;
     ImGui::PushTextWrapPos(0.0F);
     const bool recalled = valid && !n.recalled.empty() && n.recalled == n.typed.data();
-    text_small(theme, valid ? colour::kDim : colour::kWatch,
+    text_small(theme,
+               recalled ? colour::kAccent
+               : valid  ? colour::kDim
+                        : colour::kWatch,
                recalled ? n.recalled_from + " " + n.help
                : valid  ? n.help
                         : format("A number from %g to %g %s.", n.low, n.high, n.unit.c_str()));
@@ -103,7 +106,7 @@ void choice_list(const Theme& theme, ImportForm::Choice& choice, bool& other) {
     }
     if (!choice.recalled_from.empty()) {
         ImGui::SetCursorPosX(theme.px(kLabels));
-        text_small(theme, colour::kDim, choice.recalled_from);
+        text_small(theme, colour::kAccent, choice.recalled_from);
     }
     ImGui::PopID();
 }
