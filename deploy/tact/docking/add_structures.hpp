@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "deploy/tact/baked_run.hpp"
+#include "ipc/scene/file/scene_file.hpp"
 
 namespace tact::launch {
 

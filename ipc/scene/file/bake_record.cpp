@@ -8,6 +8,7 @@
 #include <cstring>
 #include <memory>
 #include <sstream>
+#include <string_view>
 #include <utility>
 
 #include "ipc/base/error.hpp"
@@ -27,6 +28,15 @@ bool is_option_word(const std::string& word) {
     return name ? inside("abcdefghijklmnopqrstuvwxyz0123456789-", 2) : inside("0123456789.+-e", 0);
 }
 
+// "312255 bytes, crc32 1a2b3c4d"
+bool is_mark(const std::string& text) {
+    constexpr std::string_view kMiddle = " bytes, crc32 ";
+    const auto digits = text.find_first_not_of("0123456789");
+    return digits != std::string::npos && digits > 0 && digits <= 20 &&
+           text.compare(digits, kMiddle.size(), kMiddle) == 0 && text.size() == digits + kMiddle.size() + 8 &&
+           text.find_first_not_of("0123456789abcdef", digits + kMiddle.size()) == std::string::npos;
+}
+
 // "map, 312255 bytes, crc32 1a2b3c4d, /data/emd.mrc"; the path may hold commas.
 std::optional<BakeInput> read_input(const std::string& text) {
     const auto role_end = text.find(", ");
@@ -35,13 +45,7 @@ std::optional<BakeInput> read_input(const std::string& text) {
     if (path_at == std::string::npos || path_at < role_end + 2) return std::nullopt;
     BakeInput input{text.substr(0, role_end), text.substr(role_end + 2, path_at - role_end - 2),
                     text.substr(path_at + 2)};
-    unsigned long long bytes = 0;
-    unsigned int sum = 0;
-    int end = 0;
-    const bool marked =
-        std::sscanf(input.mark.c_str(), "%20llu bytes, crc32 %8x%n", &bytes, &sum, &end) == 2 &&
-        static_cast<std::size_t>(end) == input.mark.size();
-    if (!marked || input.path.native().size() > 4096) return std::nullopt;
+    if (!is_mark(input.mark) || input.path.native().size() > 4096) return std::nullopt;
     return input;
 }
 
