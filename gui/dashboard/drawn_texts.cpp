@@ -73,7 +73,12 @@ void add_utf8(std::string& text, unsigned c) {
         text += static_cast<char>(0xC0U | (c >> 6U));
         text += static_cast<char>(0x80U | (c & 0x3FU));
     } else {
-        text += static_cast<char>(0xE0U | (c >> 12U));
+        if (c < 0x10000U) {
+            text += static_cast<char>(0xE0U | (c >> 12U));
+        } else {
+            text += static_cast<char>(0xF0U | (c >> 18U));
+            text += static_cast<char>(0x80U | ((c >> 12U) & 0x3FU));
+        }
         text += static_cast<char>(0x80U | ((c >> 6U) & 0x3FU));
         text += static_cast<char>(0x80U | (c & 0x3FU));
     }

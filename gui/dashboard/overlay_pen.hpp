@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <string>
 
+#include "gui/dashboard/letters.hpp"
 #include "gui/dashboard/theme.hpp"
 
 namespace tact {
@@ -22,7 +23,7 @@ struct OverlayPen {
     }
     void text(ImFont* font, ImVec2 at, ImU32 c, const std::string& text) const {
         const ImU32 shadow = on_white ? IM_COL32(255, 255, 255, 200) : IM_COL32(0, 0, 0, 160);
-        draw->AddText(font, font->FontSize, {at.x + 1.0F, at.y + 1.0F}, shadow, text.c_str());
+        draw->AddText(font, font->FontSize, {at.x + 1.0F, at.y + 1.0F}, shadow, noted(text));
         draw->AddText(font, font->FontSize, at, ink(c), text.c_str());
     }
     // Colours are chosen for a dark background; on a white one they are darker by a factor that keeps their hue.

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "gui/dashboard/letters.hpp"
 #include "gui/dashboard/timeline.hpp"
 #include "gui/dashboard/widgets.hpp"
 
@@ -39,8 +40,8 @@ void draw_past(const Theme& theme, PastState& state, const PixelRect& card) {
         if (near != nullptr) ago_s = near->ago_s;
         draw->AddCircle({x(ago_s), middle}, theme.px(6.0F), colour::kText, 16);
         ImGui::SetTooltip(
-            "%s%.1f s ago; a click looks back to it in a window of its own, while the run goes on",
-            near != nullptr ? (near->text + ", ").c_str() : "", ago_s);
+            "%s%s%.1f s ago; a click looks back to it in a window of its own, while the run goes on",
+            near != nullptr ? noted(near->text) : "", near != nullptr ? ", " : "", ago_s);
     }
     if (pressed) state.wanted_ago_s = ago_s;
     ImGui::SameLine(0.0F, theme.px(10.0F));

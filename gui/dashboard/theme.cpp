@@ -1,9 +1,13 @@
 #include "gui/dashboard/theme.hpp"
 
+#include <spdlog/spdlog.h>
+
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <utility>
+
+#include "gui/dashboard/letters.hpp"
 
 namespace tact {
 namespace {
@@ -19,9 +23,65 @@ constexpr FontPair kFonts[] = {
     {"/usr/share/fonts/truetype/dejavu/DejaVuSans.ttf",
      "/usr/share/fonts/truetype/dejavu/DejaVuSans-Bold.ttf", 13.0F},
 };
-// Latin, Greek, dashes, dots, primes, minus and comparisons: the glyphs of units and numbers.
-constexpr ImWchar kGlyphs[] = {0x0020, 0x00FF, 0x0370, 0x03FF, 0x2010, 0x2033,
-                               0x2212, 0x2212, 0x2248, 0x2265, 0};
+constexpr float kTextLinePerEm = 1.17F;  // of both families
+constexpr Duration kLettersAfter = std::chrono::milliseconds(500);
+// Of the atlas for letters of other fonts: with the text's own glyphs it stays below textures of 8192 x 8192.
+constexpr float kLetterPixelsMost = 16e6F;
+
+// Ranges of ImGui for single letters; valid until the atlas is built.
+std::vector<ImWchar> letter_ranges(const std::vector<ImWchar>& letters, std::size_t most) {
+    std::vector<ImWchar> ranges;
+    for (std::size_t i = 0; i < std::min(letters.size(), most); ++i)
+        ranges.insert(ranges.end(), {letters[i], letters[i]});
+    ranges.push_back(0);
+    return ranges;
+}
+
+// Sizes of the text font, each with the letters of other fonts. Must outlive the building of the atlas.
+class FontMaker {
+public:
+    FontMaker(const Theme& theme, float text_px) : fonts_(theme.letter_fonts) {
+        const float pixels = 5.4F * text_px * text_px;  // of one letter in the four sizes
+        auto room = static_cast<std::size_t>(kLetterPixelsMost / pixels);
+        text_.assign(std::begin(kTextGlyphs), std::end(kTextGlyphs) - 1);
+        const auto& own = letters_on_screen().letters();
+        const auto more = letter_ranges(own, room);
+        text_.insert(text_.end(), more.begin(), more.end());
+        for (const LetterFont& font : fonts_) {
+            ranges_.push_back(letter_ranges(font.letters, room));
+            room -= std::min(room, font.letters.size());
+        }
+    }
+    [[nodiscard]] ImFont* make(const char* file, float px) const {
+        ImFontAtlas& atlas = *ImGui::GetIO().Fonts;
+        ImFontConfig text;
+        if (px > 60.0F) text.OversampleH = 1;
+        ImFont* const font = atlas.AddFontFromFileTTF(file, px, &text, text_.data());
+        if (font != nullptr) merge_letters(px);
+        return font;
+    }
+    // Into the font that was added last.
+    void merge_letters(float px) const {
+        ImFontAtlas& atlas = *ImGui::GetIO().Fonts;
+        for (std::size_t i = 0; i < fonts_.size(); ++i) {
+            ImFontConfig other;
+            other.MergeMode = true;
+            other.FontDataOwnedByAtlas = false;
+            other.FontNo = fonts_[i].index;
+            other.OversampleH = 1;
+            other.PixelSnapH = true;
+            FontData& data = *fonts_[i].data;
+            const float same_em = std::round(px * fonts_[i].line_per_em / kTextLinePerEm);
+            atlas.AddFontFromMemoryTTF(data.data(), static_cast<int>(data.size()), same_em, &other,
+                                       ranges_[i].data());
+        }
+    }
+
+private:
+    const std::vector<LetterFont>& fonts_;
+    std::vector<ImWchar> text_;
+    std::vector<std::vector<ImWchar>> ranges_;
+};
 
 ImVec4 vec(ImU32 c) { return ImGui::ColorConvertU32ToFloat4(c); }
 
@@ -62,6 +122,34 @@ void style_for(float scale) {
     ImGui::GetStyle() = style;
 }
 
+void add_fonts(Theme& theme, float scale, const FontMaker& maker) {
+    ImGuiIO& io = ImGui::GetIO();
+    io.Fonts->Clear();
+    theme.scale = scale;
+    theme.font_file.clear();
+    theme.text = theme.small = theme.bold = theme.large = nullptr;
+    for (const FontPair& pair : kFonts) {
+        std::error_code ignored;
+        if (!std::filesystem::exists(pair.regular, ignored)) continue;
+        const char* const bold = std::filesystem::exists(pair.bold, ignored) ? pair.bold : pair.regular;
+        const float px = std::round(pair.size * scale);
+        theme.text = maker.make(pair.regular, px);
+        theme.small = maker.make(pair.regular, std::round(0.84F * px));
+        theme.bold = maker.make(bold, px);
+        theme.large = maker.make(bold, std::round(1.65F * px));
+        theme.font_file = pair.regular;
+        break;
+    }
+    if (theme.text == nullptr || theme.small == nullptr || theme.bold == nullptr || theme.large == nullptr) {
+        io.Fonts->Clear();
+        ImFontConfig config;
+        config.SizePixels = std::round(13.0F * scale);
+        theme.text = theme.small = theme.bold = theme.large = io.Fonts->AddFontDefault(&config);
+        maker.merge_letters(config.SizePixels);
+        theme.font_file.clear();
+    }
+}
+
 }  // namespace
 
 ImU32 grade_colour(Grade grade) noexcept {
@@ -89,32 +177,40 @@ float theme_scale(int width_px, int height_px, float density, float requested) {
 }
 
 void build_theme(Theme& theme, float scale) {
-    ImGuiIO& io = ImGui::GetIO();
-    io.Fonts->Clear();
-    theme.scale = scale;
-    theme.font_file.clear();
-    theme.text = theme.small = theme.bold = theme.large = nullptr;
-    for (const FontPair& pair : kFonts) {
-        std::error_code ignored;
-        if (!std::filesystem::exists(pair.regular, ignored)) continue;
-        const bool bold = std::filesystem::exists(pair.bold, ignored);
-        const float px = std::round(pair.size * scale);
-        theme.text = io.Fonts->AddFontFromFileTTF(pair.regular, px, nullptr, kGlyphs);
-        theme.small = io.Fonts->AddFontFromFileTTF(pair.regular, std::round(0.84F * px), nullptr, kGlyphs);
-        theme.bold = io.Fonts->AddFontFromFileTTF(bold ? pair.bold : pair.regular, px, nullptr, kGlyphs);
-        theme.large = io.Fonts->AddFontFromFileTTF(bold ? pair.bold : pair.regular, std::round(1.65F * px),
-                                                   nullptr, kGlyphs);
-        theme.font_file = pair.regular;
-        break;
-    }
-    if (theme.text == nullptr || theme.small == nullptr || theme.bold == nullptr || theme.large == nullptr) {
-        io.Fonts->Clear();
-        ImFontConfig config;
-        config.SizePixels = std::round(13.0F * scale);
-        theme.text = theme.small = theme.bold = theme.large = io.Fonts->AddFontDefault(&config);
-        theme.font_file.clear();
+    const auto build = [&] {
+        const FontMaker maker(theme, kFonts[0].size * scale);
+        add_fonts(theme, scale, maker);
+        return ImGui::GetIO().Fonts->Build();
+    };
+    if (!build() && !theme.letter_fonts.empty()) {
+        theme.letter_fonts.clear();  // ImGui cannot read one of them
+        build();
     }
     style_for(scale);
+}
+
+bool follow_letters(Theme& theme, Instant now) {
+    const std::vector<ImWchar>& letters = letters_on_screen().letters();
+    if (theme.text == nullptr || letters.size() == theme.letters) return false;
+    if (theme.letters_at != Instant{} && now - theme.letters_at < kLettersAfter) return false;
+    theme.letters_at = now;
+    theme.letters = letters.size();
+    theme.letter_fonts = find_letter_fonts(letters, theme.letter_fonts);
+    build_theme(theme, theme.scale);
+    std::vector<ImWchar> found;
+    for (const LetterFont& font : theme.letter_fonts)
+        found.insert(found.end(), font.letters.begin(), font.letters.end());
+    std::sort(found.begin(), found.end());
+    theme.missing.clear();
+    for (const ImWchar letter : letters)
+        if (!std::binary_search(found.begin(), found.end(), letter) &&
+            theme.text->FindGlyphNoFallback(letter) == nullptr)
+            theme.missing.push_back(letter);
+    const std::string packages = letter_packages(theme.missing);
+    if (!packages.empty() && packages != theme.missing_logged)
+        spdlog::warn("{}", missing_letters_text(theme.missing));
+    theme.missing_logged = packages;
+    return true;
 }
 
 }  // namespace tact

@@ -1,14 +1,19 @@
 // Colours, fonts and sizes of the dashboard.
 //
 // Scale    1 at 1280x720; grows with the window, so that the same layout stays readable on a large screen.
-// Fonts    the first existing font of a list from Debian, else ImGui's own (reported once).
+// Fonts    the first existing font of a list from Debian, else ImGui's own (reported once). Letters that it lacks come from the
+//          system's fonts (letter_fonts), once a name with them was drawn.
 #pragma once
 
 #include <imgui.h>
 
+#include <cstddef>
 #include <string>
+#include <vector>
 
+#include "gui/dashboard/letter_fonts.hpp"
 #include "gui/dashboard/status_text.hpp"
+#include "ipc/base/clock.hpp"
 
 namespace tact {
 
@@ -42,6 +47,12 @@ struct Theme {
     ImFont* large = nullptr;
     std::string font_file;  // empty: ImGui's own font
 
+    std::vector<LetterFont> letter_fonts;
+    std::vector<ImWchar> missing;  // letters that no font has
+    std::string missing_logged;    // packages that the log named
+    std::size_t letters = 0;       // of letters_on_screen() that were asked for
+    Instant letters_at{};
+
     [[nodiscard]] float px(float at_scale_1) const { return at_scale_1 * scale; }
 };
 
@@ -52,5 +63,8 @@ struct Theme {
 [[nodiscard]] float theme_scale(int width_px, int height_px, float density = 1.0F, float requested = 1.0F);
 // Clears and fills ImGui's font atlas and style. The caller uploads the atlas.
 void build_theme(Theme& theme, float scale);
+// Finds fonts for letters drawn since the last call and rebuilds the theme with them, at most twice a second; names once in the log a
+// package with letters that no font has. Between frames. True: the atlas is another one.
+bool follow_letters(Theme& theme, Instant now);
 
 }  // namespace tact

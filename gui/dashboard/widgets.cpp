@@ -4,6 +4,7 @@
 #include <cstdarg>
 #include <cstdio>
 
+#include "gui/dashboard/letters.hpp"
 #include "ipc/base/units.hpp"
 
 namespace tact {
@@ -29,7 +30,7 @@ void end_card() { ImGui::End(); }
 void badge(const Theme& theme, const std::string& word, ImU32 fill, ImFont* font) {
     ImGui::PushFont(font != nullptr ? font : theme.bold);
     const ImVec2 at = ImGui::GetCursorScreenPos();
-    const ImVec2 text = ImGui::CalcTextSize(word.c_str());
+    const ImVec2 text = ImGui::CalcTextSize(noted(word));
     const float pad_x = theme.px(8.0F), pad_y = theme.px(2.0F);
     const ImVec2 size(text.x + 2.0F * pad_x, text.y + 2.0F * pad_y);
     ImDrawList* const draw = ImGui::GetWindowDrawList();
@@ -41,7 +42,7 @@ void badge(const Theme& theme, const std::string& word, ImU32 fill, ImFont* font
 
 void text_coloured(ImU32 c, const std::string& text) {
     ImGui::PushStyleColor(ImGuiCol_Text, c);
-    ImGui::TextUnformatted(text.c_str());
+    ImGui::TextUnformatted(noted(text));
     ImGui::PopStyleColor();
 }
 
@@ -49,7 +50,7 @@ void text_small(const Theme& theme, ImU32 c, const std::string& text, bool wrap)
     ImGui::PushFont(theme.small);
     ImGui::PushStyleColor(ImGuiCol_Text, c);
     if (wrap) ImGui::PushTextWrapPos(0.0F);
-    ImGui::TextUnformatted(text.c_str());
+    ImGui::TextUnformatted(noted(text));
     if (wrap) ImGui::PopTextWrapPos();
     ImGui::PopStyleColor();
     ImGui::PopFont();
@@ -82,7 +83,7 @@ void row(const Theme& theme, const char* what, const std::string& value, const s
     ImGui::SameLine(0.0F, theme.px(6.0F));
     const std::string shown = cut_text(ImGui::GetFont(), note, ImGui::GetContentRegionAvail().x);
     text_coloured(colour::kDim, shown);
-    if (shown != note && ImGui::IsItemHovered()) ImGui::SetTooltip("%s", note.c_str());
+    if (shown != note && ImGui::IsItemHovered()) ImGui::SetTooltip("%s", noted(note));
 }
 
 void row(const Theme& theme, const char* what, const std::string& value, std::span<const std::string> notes) {
@@ -123,6 +124,7 @@ std::string cut_text(ImFont* font, const std::string& text, float width_px) {
     const auto width = [font](const std::string& t) {
         return font->CalcTextSizeA(font->FontSize, 1e9F, 0.0F, t.c_str()).x;
     };
+    letters_on_screen().note(text);
     if (width(text) <= width_px) return text;
     std::string cut = text;
     while (!cut.empty() && width(cut + "...") > width_px) {

@@ -1,4 +1,5 @@
 // Bodies tab: list of bodies (held, fixed, hidden), force options, undo, refine, snapshots, saving.
+#include "gui/dashboard/letters.hpp"
 #include "gui/dashboard/widgets.hpp"
 #include "gui/docking/docking_panels.hpp"
 #include "ipc/base/units.hpp"
@@ -26,7 +27,7 @@ void list(const Theme& theme, DashboardState& state, FittingState& fitting) {
             state.requests.push_back({CommandKind::select_body, 0.0, {}, b.in_hand ? kNoBody : b.id});
         ImGui::PopStyleColor();
         if (ImGui::IsItemHovered())
-            ImGui::SetTooltip("%s: %s atoms. Click to hold or release.", b.name.c_str(),
+            ImGui::SetTooltip("%s: %s atoms. Click to hold or release.", noted(b.name),
                               grouped(b.atoms).c_str());
         ImGui::SameLine(right - theme.px(106.0F));
         bool fixed = b.fixed, shown = !b.hidden;
@@ -78,7 +79,7 @@ void actions(const DashboardState& state, FittingState& f, std::vector<Request>&
     ImGui::SetNextItemWidth(3.0F * width + 2.0F * gap);
     if (ImGui::BeginCombo("##snapshots", f.snapshots.empty() ? "none yet" : "return to ...")) {
         for (const std::string& name : f.snapshots)
-            if (ImGui::Selectable(name.c_str())) request(FitAction::restore, name);
+            if (ImGui::Selectable(noted(name))) request(FitAction::restore, name);
         ImGui::EndCombo();
     }
     ImGui::EndDisabled();

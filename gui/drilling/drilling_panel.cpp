@@ -3,6 +3,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "gui/dashboard/letters.hpp"
 #include "gui/dashboard/widgets.hpp"
 #include "gui/drilling/burr_menu.hpp"
 #include "gui/drilling/drilling_panel.hpp"
@@ -90,7 +91,7 @@ void structure(const Theme& theme, const DrillingState& d, const DrillingState::
     const bool calm = v.grade == Grade::good;
     const float names_px = theme.px(kNamesPx - 16.0F) - (ImGui::GetCursorScreenPos().x - at.x);
     text_coloured(calm ? colour::kDim : colour::kText, cut_text(ImGui::GetFont(), s.name, names_px));
-    if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", s.name.c_str());
+    if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", noted(s.name));
     ImGui::SameLine(theme.px(kNamesPx));
     text_coloured(calm ? colour::kText : grade_colour(v.grade), mm_text(s.burr_m));
     if (!s.side.empty()) {
@@ -112,7 +113,7 @@ void tip(const DrillingState& d) {
         for (const auto& s : d.structures)
             if (s.suction_tube_m < 2e-3)
                 text += "\nsuction tube: " + mm_text(s.suction_tube_m) + " from the " + s.name;
-    ImGui::SetTooltip("%s", text.c_str());
+    ImGui::SetTooltip("%s", noted(text));
 }
 
 }  // namespace

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <array>
 
+#include "gui/dashboard/letters.hpp"
 #include "gui/dashboard/widgets.hpp"
 #include "gui/stereo/calibration_panel.hpp"
 
@@ -78,7 +79,7 @@ void one_line(const std::string& text, ImU32 ink) {
             shown.pop_back();
     }
     text_coloured(ink, cut && shown.size() < text.find(". ") ? shown + "..." : shown);
-    if (cut && ImGui::IsItemHovered()) ImGui::SetTooltip("%s", text.c_str());
+    if (cut && ImGui::IsItemHovered()) ImGui::SetTooltip("%s", noted(text));
 }
 
 void steps(const Form& form) {
@@ -214,7 +215,7 @@ void draw_calibration(const Theme& theme, CalibrationCardState& f, const PixelRe
     steps(form);
     ImGui::Separator();
     ImGui::PushTextWrapPos(0.0F);
-    ImGui::TextUnformatted(f.instruction.c_str());
+    ImGui::TextUnformatted(noted(f.instruction));
     ImGui::PopTextWrapPos();
     of_step(form);
     if (!f.status.text.empty() && f.step < 4)

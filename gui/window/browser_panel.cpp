@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 
+#include "gui/dashboard/letters.hpp"
 #include "gui/dashboard/widgets.hpp"
 #include "gui/window/import_form_panel.hpp"
 
@@ -42,7 +43,7 @@ void scene_row(const Theme& theme, const SceneRow& row, float width, BrowserStat
     const float pad = theme.px(6.0F);
     const auto text = [&](ImFont* font, float x, float y, ImU32 c, const std::string& words, float most) {
         draw->PushClipRect({x, at.y}, {x + most, at.y + height}, true);
-        draw->AddText(font, font->FontSize, {x, at.y + y}, c, words.c_str());
+        draw->AddText(font, font->FontSize, {x, at.y + y}, c, noted(words));
         draw->PopClipRect();
     };
     if (row.folder) {

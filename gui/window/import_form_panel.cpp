@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "gui/dashboard/letters.hpp"
 #include "gui/dashboard/widgets.hpp"
 
 namespace tact {
@@ -93,10 +94,10 @@ void choice_list(const Theme& theme, ImportForm::Choice& choice, bool& other) {
     text_coloured(colour::kDim, choice.label);
     ImGui::SameLine(theme.px(kLabels));
     ImGui::SetNextItemWidth(-1.0F);
-    if (ImGui::BeginCombo("##choice", choice.rows[choice.chosen].second.c_str())) {
+    if (ImGui::BeginCombo("##choice", noted(choice.rows[choice.chosen].second))) {
         for (std::size_t i = 0; i < choice.rows.size(); ++i) {
             ImGui::PushID(static_cast<int>(i));
-            if (ImGui::Selectable(choice.rows[i].second.c_str(), i == choice.chosen) && i != choice.chosen) {
+            if (ImGui::Selectable(noted(choice.rows[i].second), i == choice.chosen) && i != choice.chosen) {
                 choice.chosen = i;
                 other = true;
             }
@@ -127,6 +128,7 @@ void structures_table(const Theme& theme, ImportForm& form) {
             IM_COL32(s.row.rgb[0], s.row.rgb[1], s.row.rgb[2], 255), theme.px(2.0F));
         ImGui::SetCursorScreenPos({at.x + edge + theme.px(8.0F), at.y});
         ImGui::SetNextItemWidth(theme.px(270.0F));
+        letters_on_screen().note(s.name.data());
         ImGui::InputText("##name", s.name.data(), s.name.size());
         ImGui::SameLine();
         ImGui::Checkbox("critical", &s.critical);

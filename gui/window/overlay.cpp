@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "gui/dashboard/axis_cross.hpp"
+#include "gui/dashboard/letters.hpp"
 #include "gui/dashboard/panels.hpp"
 #include "gui/dashboard/widgets.hpp"
 #include "gui/window/layout.hpp"
@@ -94,8 +95,8 @@ void stop_banner(const OverlayPen& pen, const PanelState& state, const PixelRect
     const std::string fix = state.replay.shown ? "In the recorded run." : notice.fix;
     const float pad = pen.theme.px(16.0F), most = 0.7F * v.width;
     const std::string title = (state.replay.shown ? "Then no force: " : "No force: ") + notice.why;
-    const ImVec2 head = large->CalcTextSizeA(large->FontSize, 1e9F, most, title.c_str()),
-                 body = text->CalcTextSizeA(text->FontSize, 1e9F, most, fix.c_str());
+    const ImVec2 head = large->CalcTextSizeA(large->FontSize, 1e9F, most, noted(title)),
+                 body = text->CalcTextSizeA(text->FontSize, 1e9F, most, noted(fix));
     const float w = std::max(head.x, body.x) + 2.0F * pad, h = head.y + body.y + 2.5F * pad;
     const ImVec2 at{v.x + 0.5F * (v.width - w), v.y + 0.16F * v.height};
     pen.draw->AddRectFilled(at, {at.x + w, at.y + h}, IM_COL32(96, 22, 18, 240), pen.theme.px(8.0F));
@@ -125,7 +126,7 @@ void message(const OverlayPen& pen, const PanelState& state, const PixelRect& v)
     if (text.empty()) return;
     ImFont* const font = pen.theme.text;
     const float most = 0.8F * v.width;
-    const ImVec2 size = font->CalcTextSizeA(font->FontSize, 1e9F, most, text.c_str());
+    const ImVec2 size = font->CalcTextSizeA(font->FontSize, 1e9F, most, noted(text));
     const float px = pen.theme.px(14.0F), py = pen.theme.px(8.0F);
     const float cx = v.x + 0.5F * v.width;
     const float y = state.scene.loaded ? v.y + v.height - size.y - 2.0F * py - pen.theme.px(14.0F)

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "gui/dashboard/letters.hpp"
 #include "gui/dashboard/widgets.hpp"
 
 namespace tact {
@@ -82,7 +83,7 @@ void progress(const Theme& theme, StartPageState& page) {
     const std::string shown = cut_text(ImGui::GetFont(), page.message.text, ImGui::GetContentRegionAvail().x);
     text_coloured(grade_colour(page.message.grade), shown.empty() ? " " : shown);
     if (shown != page.message.text && ImGui::IsItemHovered())
-        ImGui::SetTooltip("%s", page.message.text.c_str());
+        ImGui::SetTooltip("%s", noted(page.message.text));
 }
 
 void recent(const Theme& theme, BrowserState& browser, float width) {
@@ -108,7 +109,7 @@ void recent(const Theme& theme, BrowserState& browser, float width) {
         const float height = theme.px(20.0F);
         ImGui::PushID(row.path.c_str());
         if (ImGui::Selectable("##recent", false, 0, {width, height})) browser.scene_wanted = row.path;
-        if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", row.path.c_str());
+        if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", noted(row.path));
         ImGui::PopID();
         ImDrawList* const draw = ImGui::GetWindowDrawList();
         const float kind = width - theme.px(170.0F), when = width - theme.px(90.0F);
@@ -132,7 +133,7 @@ void finding(const Theme& theme, const char* what, const StartFinding& found, fl
     if (!found.detail.empty() && ImGui::IsItemHovered()) {
         ImGui::BeginTooltip();
         ImGui::PushTextWrapPos(theme.px(560.0F));
-        ImGui::TextUnformatted(found.detail.c_str());
+        ImGui::TextUnformatted(noted(found.detail));
         ImGui::PopTextWrapPos();
         ImGui::EndTooltip();
     }

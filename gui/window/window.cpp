@@ -208,8 +208,8 @@ void Window::begin_panels(Theme& theme) {
     const float scale = theme_scale(s.width, s.height, density(s), ui_scale_);
     if (theme.text == nullptr) {
         build_theme(theme, scale);  // the backend uploads it with its first frame
-    } else if (scale != theme.scale) {
-        build_theme(theme, scale);
+    } else if (follow_letters(theme, Monotonic::now()) || scale != theme.scale) {
+        if (scale != theme.scale) build_theme(theme, scale);
         ImGui_ImplOpenGL3_DestroyFontsTexture();
         ImGui_ImplOpenGL3_CreateFontsTexture();
     }

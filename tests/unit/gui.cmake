@@ -4,7 +4,7 @@ if(TACT_GUI)
     tact_tests(gui_dashboard_tests SOURCES
             unit/gui_plot_series_test.cpp unit/gui_dashboard_test.cpp unit/gui_layout_test.cpp
             unit/gui_traces_test.cpp unit/gui_traces_panel_test.cpp unit/gui_trace_export_test.cpp
-            unit/gui_timeline_test.cpp unit/gui_events_test.cpp
+            unit/gui_timeline_test.cpp unit/gui_events_test.cpp unit/gui_letters_test.cpp
         USES gui_dashboard gui_window gui_docking gui_surface gui_field gui_drilling gui_link topics base)
     tact_test(unit/gui_field_card_test.cpp USES gui_window gui_field gui_docking gui_dashboard topics base)
     tact_test(unit/gui_hours_test.cpp USES gui_window gui_docking gui_dashboard topics shm base TIMEOUT 300)

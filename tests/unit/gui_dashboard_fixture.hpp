@@ -5,6 +5,7 @@
 #include <imgui.h>
 #include <imgui_internal.h>
 
+#include "gui/dashboard/letters.hpp"
 #include "gui/docking/docking_panels.hpp"
 #include "gui/window/layout.hpp"
 
@@ -19,10 +20,9 @@ public:
         io.IniFilename = nullptr;
         io.LogFilename = nullptr;
         io.DisplaySize = {width_, height_};
+        letters_on_screen().clear();
         build_theme(theme, scale);
-        unsigned char* pixels = nullptr;
-        int width = 0, height = 0;
-        io.Fonts->GetTexDataAsAlpha8(&pixels, &width, &height);
+        upload();
         frame();
         frame();
     }
@@ -35,6 +35,12 @@ public:
         ImGui::NewFrame();
         draw_dashboard(theme, state, panels, width_, height_);
         ImGui::Render();
+    }
+    // As the window does before a frame. True: there are new letters.
+    bool find_letters(Instant at) {
+        const bool found = follow_letters(theme, at);
+        if (found) upload();
+        return found;
     }
     void move(ImVec2 to) {
         ImGui::GetIO().MousePos = to;
@@ -92,6 +98,11 @@ public:
     DockingPanels panels;
 
 private:
+    static void upload() {
+        unsigned char* pixels = nullptr;
+        int width = 0, height = 0;
+        ImGui::GetIO().Fonts->GetTexDataAsAlpha8(&pixels, &width, &height);
+    }
     float width_, height_;
 };
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "gui/dashboard/letters.hpp"
 #include "gui/dashboard/widgets.hpp"
 
 namespace tact {
@@ -41,7 +42,7 @@ void draw_training(const OverlayPen& pen, const TrainingShown& shown, const Pixe
     const std::string& words = shown.problem.empty() ? shown.task : shown.problem;
     const bool tell = !shown.problem.empty() || (!shown.begun && !shown.task.empty());
     const float words_h =
-        tell ? small->CalcTextSizeA(small->FontSize, 1e9F, text_w, words.c_str()).y + 0.4F * pad : 0.0F;
+        tell ? small->CalcTextSizeA(small->FontSize, 1e9F, text_w, noted(words)).y + 0.4F * pad : 0.0F;
     const float h = 2.0F * pad + pen.theme.px(22.0F) + words_h +
                     (shown.on ? line * static_cast<float>(shown.score.item.size() + 1) : 0.0F);
     const ImVec2 at{v.x + v.width - w - pen.theme.px(10.0F), v.y + pen.theme.px(kTop)};
