@@ -1,5 +1,6 @@
 // Traces panel: every servo cycle of the last minute, as on an oscilloscope. Controls are here; trace_lanes.cpp
-// draws.
+// draws. Every control has one place in all modes, so that no click meets another one: what only some modes have comes
+// last in its row.
 #include "gui/dashboard/traces.hpp"
 
 #include <algorithm>
@@ -31,10 +32,6 @@ void run_row(const Theme& theme, TracesState& t) {
     ImGui::AlignTextToFramePadding();
     choose(theme, kRuns, run);
     if (run != before) scope.choose_run(static_cast<TraceRun>(run));
-    if (scope.run() == TraceRun::single) {
-        ImGui::SameLine();
-        if (ImGui::Button("Arm trigger")) scope.choose_run(TraceRun::single);
-    }
     ImGui::SameLine();
     ImGui::SetNextItemWidth(theme.px(84.0F));
     if (ImGui::BeginCombo("##span", duration_text(scope.span_s()).c_str())) {
@@ -58,9 +55,14 @@ void run_row(const Theme& theme, TracesState& t) {
     ImGui::BeginDisabled(scope.shown().empty() || t.channels.none());
     if (ImGui::Button("Export")) t.export_wanted = true;
     ImGui::EndDisabled();
+    if (scope.run() == TraceRun::single) {
+        ImGui::SameLine();
+        if (ImGui::Button("Arm trigger")) scope.choose_run(TraceRun::single);
+    }
 }
 
 void trigger_row(const Theme& theme, TraceScope& scope) {
+    ImGui::BeginDisabled(scope.run() == TraceRun::roll);
     TriggerSettings s = scope.trigger();
     bool changed = false;
     text_coloured(colour::kDim, "trigger on");
@@ -86,6 +88,13 @@ void trigger_row(const Theme& theme, TraceScope& scope) {
         }
         ImGui::EndCombo();
     }
+    ImGui::SameLine();
+    ImGui::SetNextItemWidth(theme.px(92.0F));
+    auto before = static_cast<float>(100.0 * s.pre_share);
+    if (ImGui::SliderFloat("##before", &before, 0.0F, 100.0F, "%.0f %% before")) {
+        s.pre_share = 0.01 * static_cast<double>(before);
+        changed = true;
+    }
     if (s.source == TriggerSource::channel) {
         const TraceChannelInfo& info = trace_channel(s.channel);
         ImGui::SameLine();
@@ -100,13 +109,7 @@ void trigger_row(const Theme& theme, TraceScope& scope) {
         ImGui::SameLine(0.0F, theme.px(4.0F));
         text_coloured(colour::kDim, info.unit);
     }
-    ImGui::SameLine();
-    ImGui::SetNextItemWidth(theme.px(92.0F));
-    auto before = static_cast<float>(100.0 * s.pre_share);
-    if (ImGui::SliderFloat("##before", &before, 0.0F, 100.0F, "%.0f %% before")) {
-        s.pre_share = 0.01 * static_cast<double>(before);
-        changed = true;
-    }
+    ImGui::EndDisabled();
     if (changed) scope.set_trigger(s);
 }
 
@@ -140,7 +143,7 @@ void message_row(const Theme& theme, const TracesState& t) {
 void draw_traces(const Theme& theme, DashboardState& state) {
     TracesState& t = state.traces;
     run_row(theme, t);
-    if (t.scope.run() != TraceRun::roll) trigger_row(theme, t.scope);
+    trigger_row(theme, t.scope);
     message_row(theme, t);
     draw_trace_lanes(theme, state, ImGui::GetContentRegionAvail());
 }

@@ -2,7 +2,9 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <map>
 
+#include "gui/dashboard/drawn_texts.hpp"
 #include "ipc/base/run_state.hpp"
 #include "tests/unit/gui_dashboard_fixture.hpp"
 
@@ -67,6 +69,38 @@ TEST_F(TracesPanel, pause_freezes_the_traces_and_run_resumes) {
     dashboard_.click(kCard, "Run");
     EXPECT_FALSE(scope().held());
     EXPECT_GT(scope().end_ns(), end_ns);
+}
+
+TEST_F(TracesPanel, every_control_has_the_same_place_in_all_modes) {
+    open();
+    std::map<std::string, ImVec2> place;
+    const auto check = [&](const std::string& mode) {
+        dashboard_.frame();
+        std::size_t seen = 0;
+        for (const DrawnText& t : drawn_texts(*ImGui::GetDrawData())) {
+            if (t.owner != kCard) continue;
+            for (const char* const name : {"Pause", "roll", "auto", "normal", "single", "Channels", "Cursors",
+                                           "Export", "trigger on", "50 % before", "rising", "Arm trigger"}) {
+                if (t.text != name) continue;
+                ++seen;
+                const ImVec2 first = place.try_emplace(t.text, ImVec2(t.x, t.y)).first->second;
+                EXPECT_EQ(t.x, first.x) << t.text << " in mode " << mode;
+                EXPECT_EQ(t.y, first.y) << t.text << " in mode " << mode;
+            }
+        }
+        EXPECT_GE(seen, 10U) << mode;
+    };
+    for (const TriggerSource source : {TriggerSource::channel, TriggerSource::overrun, TriggerSource::fault})
+        for (int run = 0; run < 4; ++run) {
+            TriggerSettings s = scope().trigger();
+            s.source = source;
+            s.level = 5.0;
+            scope().set_trigger(s);
+            scope().choose_run(static_cast<TraceRun>(run));
+            check(std::to_string(run) + ", source " + std::to_string(static_cast<int>(source)));
+        }
+    EXPECT_EQ(place.count("Arm trigger"), 1U);
+    EXPECT_EQ(place.count("rising"), 1U);
 }
 
 TEST_F(TracesPanel, a_single_capture_waits_for_the_trigger_and_captures_once) {
