@@ -26,6 +26,7 @@ class Operator:
                         XDG_STATE_HOME=os.path.join(folder, "state"), XDG_CONFIG_HOME=os.path.join(folder, "config"),
                         ASAN_OPTIONS="detect_leaks=0")
         self.run = None
+        self.clicked = None  # label and window of the last click, unless a key came after it
         self.texts_file = os.path.join(folder, "texts.json")
 
     def program(self, name):
@@ -86,6 +87,7 @@ class Operator:
         subprocess.run(["xdotool", *words], env=self.env, check=True)
 
     def key(self, key):
+        self.clicked = None
         self.xdotool("key", key)
 
     def layout(self):
@@ -136,18 +138,32 @@ class Operator:
         return self.find(label, within)
 
     def see(self, label, within=None):
+        """Waits until it is shown. The click before is made again after a while, as a person would: a busy window may miss one."""
         self.reveal(label, within)
-        return self.until("'%s' is shown" % label, lambda: self.find(label, within))
+        for _ in range(4):
+            found = self.holds_within(lambda: self.find(label, within), PATIENCE_S / 4)
+            if found:
+                return found
+            if self.clicked is not None and (place := self.find(*self.clicked)) is not None:
+                self.click_at(place)
+        return self.fail("'%s' is not shown after %.0f s" % (label, PATIENCE_S))
 
     def see_no_more(self, label, within=None):
         self.until("'%s' is no longer shown" % label, lambda: self.find(label, within) is None)
 
     def point(self, label, within=None):
-        x, y = self.see(label, within)
-        self.xdotool("mousemove", str(round(x)), str(round(y)))
+        self.move_to(self.see(label, within))
+
+    def move_to(self, place):
+        self.xdotool("mousemove", str(round(place[0])), str(round(place[1])))
 
     def click(self, label, within=None):
-        self.point(label, within)
+        place = self.see(label, within)
+        self.clicked = label, within
+        self.click_at(place)
+
+    def click_at(self, place):
+        self.move_to(place)
         time.sleep(0.15)  # a window in software rendering sees where the mouse is, then the click
         self.xdotool("mousedown", "1")
         time.sleep(0.15)

@@ -44,5 +44,5 @@ sleep 1
 xdotool mousemove 1230 558 click 1  # "Run from here"
 for _ in $(seq 300); do "$bin/tact" status 2>/dev/null | grep -q ready && break; sleep 0.1; done
 "$bin/tact" status 2>/dev/null | grep -q ready || fail "no live run, or it is armed: $("$bin/tact" status 2>&1)"
-grep -q "live from [0-9.]* s of the recording: tact run .* --disarmed --poses " "$scratch/said" || fail "the live run was not named"
+grep -q "live from this moment of the recording: tact run .*/run-[0-9.]*s[.]tact-session --disarmed" "$scratch/said" || fail "the live run was not named"
 grep -o "live from .*" "$scratch/said"
