@@ -188,7 +188,8 @@ TEST_F(KeptBone, of_the_scene_that_is_shown_starts_its_run_anew_with_it) {
     ASSERT_EQ(run(), 0) << said_;
     const auto controllers = lines("controllers");
     ASSERT_EQ(controllers.size(), 2U) << said_;
-    EXPECT_EQ(controllers[1], scene_.string() + " --session default --rate 500 --resume " + bone.string());
+    EXPECT_EQ(controllers[1],
+              scene_.string() + " --session default --rate 500 --mouse --resume " + bone.string());
     EXPECT_NE(said_.find("drilled bone was requested: " + bone.string()), std::string::npos) << said_;
 }
 
