@@ -83,13 +83,11 @@ private:
         if (!first_) {  // they were meant for the scene before
             options_.keep.clear();
             options_.drop_controller_option("--resume");
-            for (const char* const option :
-                 {"--poses", "--copies", "--start-offset-a", "--start-rotation-deg"})
-                if (asked_.bodies) options_.drop_controller_option(option);
+            if (asked_.bodies)  // the session has them where they are to be
+                for (const char* const option :
+                     {"--poses", "--copies", "--start-offset-a", "--start-rotation-deg"})
+                    options_.drop_controller_option(option);
         }
-        if (asked_.bodies)  // the bodies are where the session has them
-            for (const char* const moved : {"--start-offset-a", "--start-rotation-deg", "--copies"})
-                options_.drop_controller_option(moved);
         const auto begin_with = [this](bool wanted, const char* option, const std::filesystem::path& file) {
             if (wanted && !options_.has_controller_option(option))
                 options_.controller.insert(options_.controller.end(), {option, file.string()});

@@ -240,7 +240,7 @@ TEST_F(OtherScene, a_session_starts_its_scene_with_its_bodies_and_the_window_wit
     session.scene_checksum = SceneFile::open(other_).checksum();
     session.bodies = R"([{"id":1}])";
     write_whole(file, session_text(session, file));
-    options_.controller = {"--rate", "500", "--start-offset-a", "15"};
+    options_.controller = {"--rate", "500"};
     unsetenv("ASKS_FOR");
     options_.seconds = 0.3;
     scene_ = file;
