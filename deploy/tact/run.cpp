@@ -264,7 +264,13 @@ private:
              {&record_, &flight_, &keeper_}) {  // they end by themselves after the controller
             if (!*recorder) continue;
             if (!(*recorder)->wait(std::chrono::seconds(10))) (*recorder)->stop();
-            if (const auto& ending = (*recorder)->wait(options_.grace + std::chrono::seconds(1)))
+            const auto& ending = (*recorder)->wait(options_.grace + std::chrono::seconds(1));
+            if (!ending) continue;
+            // A flight recorder that nobody asked for, in a folder that cannot be written, is no failure of the run.
+            if (recorder == &flight_ && !options_.flight_typed && !ending->clean())
+                std::fprintf(stderr, "tact-record %s: this run kept no past to look back to\n",
+                             ending->text().c_str());
+            else
                 note("tact-record", *ending);
         }
         if (x_) {

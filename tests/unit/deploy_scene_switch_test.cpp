@@ -268,6 +268,19 @@ TEST_F(OtherScene, a_run_in_a_window_has_a_flight_recorder_unless_it_is_refused)
     unsetenv("XDG_STATE_HOME");
 }
 
+TEST_F(OtherScene, a_flight_recorder_that_fails_is_a_failure_only_if_it_was_asked_for) {
+    setenv("XDG_STATE_HOME", scratch_.path().c_str(), 1);
+    std::filesystem::create_symlink("/bin/false", scratch_.path() / "tact-record");
+    unsetenv("ASKS_FOR");
+    options_.seconds = 0.3;
+    options_.no_flight = false;
+    EXPECT_EQ(run(), 0) << said_;
+    EXPECT_NE(said_.find("no past to look back to"), std::string::npos) << said_;
+    options_.flight = scratch_.path() / "flights";
+    EXPECT_EQ(run(), 1) << said_;
+    unsetenv("XDG_STATE_HOME");
+}
+
 TEST_F(OtherScene, a_moment_to_look_back_to_is_a_time_that_passed) {
     const auto folder = scratch_.path();
     EXPECT_EQ(take_asked_past(folder), std::nullopt);
