@@ -129,7 +129,7 @@ TEST_F(IgtlReaderTest, without_a_time_stamp_the_arrival_counts) {
 }
 
 TEST_F(IgtlReaderTest, lost_samples_are_counted_and_a_pause_is_none) {
-    const auto at = [&](int period) {
+    const auto at = [&](std::int64_t period) {
         source_.give(transform(kUtcNs + period * 10'000'000));
         step();
     };
