@@ -15,6 +15,7 @@
 #include <atomic>
 #include <cmath>
 #include <cstdlib>
+#include <numeric>
 #include <string_view>
 #include <thread>
 #include <type_traits>
@@ -190,6 +191,51 @@ void Level(benchmark::State& state) {
     state.counters["predicted_n_p99"] = percentile(predicted_n, 0.99);
     state.counters["lagging"] = lagging;
 }
+// A block of 1000 points at a speed in mm/s, without deadline: time (minimum of three passes), moves and queries of a step, and the share of settled steps.
+void ToolSpeed(benchmark::State& state) {
+    static const Baked baked;
+    constexpr int kPasses = 3;
+    const double speed_m_s = 1e-3 * static_cast<double>(state.range(0)),
+                 friction = 0.01 * static_cast<double>(state.range(1));
+    std::vector<double> us(kSteps, 1e300), moves, looked, asked;
+    double settled = 0.0, gliding = 0.0, error_n = 0.0;
+    for (auto _ : state) {
+        for (int pass = 0; pass < kPasses; ++pass) {
+            const auto model = load_tool_model(baked.file, {.friction = friction});
+            const Vec3 middle = read_meta(baked.file).to_world(Vec3::Zero());
+            for (int i = 0; i < kSteps; ++i) {
+                const ToolState tool = tool_at(baked, middle, 4e-3, speed_m_s, i);
+                if (i == 0) model->reset(tool);
+                const Instant begin = Monotonic::now();
+                const StepResult result = model->step(tool, {.fidelity = 1.0F});
+                auto& least = us[static_cast<std::size_t>(i)];
+                least = std::min(least, to_us(Monotonic::now() - begin));
+                if (pass > 0) continue;
+                const ToolTouch& touch = model->tool_touch();
+                moves.push_back(touch.moves);
+                looked.push_back(touch.looked);
+                asked.push_back(touch.asked);
+                settled += touch.state == ContactState::settled ? 1.0 / kSteps : 0.0;
+                gliding += touch.state == ContactState::gliding ? 1.0 / kSteps : 0.0;
+                error_n += result.load.error / kSteps;
+            }
+        }
+    }
+    for (const auto& [name, values] : {std::pair<const char*, const std::vector<double>*>{"us", &us},
+                                       {"moves", &moves},
+                                       {"triangles", &looked},
+                                       {"distances", &asked}}) {
+        state.counters[std::string(name) + "_p50"] = percentile(*values, 0.5);
+        state.counters[std::string(name) + "_p99"] = percentile(*values, 0.99);
+        state.counters[std::string(name) + "_p999"] = percentile(*values, 0.999);
+    }
+    state.counters["us_mean"] = std::accumulate(us.begin(), us.end(), 0.0) / kSteps;
+    state.counters["settled"] = settled;
+    state.counters["gliding"] = gliding;
+    state.counters["error_n_mean"] = error_n;
+}
+BENCHMARK(ToolSpeed)->ArgsProduct({{55, 220}, {0, 20}})->Iterations(1)->Unit(benchmark::kMillisecond);
+
 BENCHMARK(Level)->ArgsProduct({{0, 3, 20}, {5, 25, 50, 100}})->Iterations(1)->Unit(benchmark::kMillisecond);
 
 }  // namespace

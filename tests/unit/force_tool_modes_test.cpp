@@ -42,7 +42,7 @@ const Scene& scene() {
 
 struct Felt {
     std::vector<Wrench> wrench;
-    double touching = 0.0, adaptive = 0.0;  // fractions of the cycles
+    double touching = 0.0, adaptive = 0.0, settled = 0.0;  // fractions of the cycles
 };
 
 // A path around the sphere, up and down and about the tool's axis; the tool presses in after 0.25 s.
@@ -67,6 +67,7 @@ Felt feel(SurfaceMode mode, double speed_m_s, bool has_slow_update = true, int s
         if (has_slow_update && i % kSlowUpdateEvery == 0) model->slow_update(tool, {});
         felt.wrench.push_back(model->step(tool, {}).wrench_world);
         felt.touching += (felt.wrench.back().force_n.norm() > 0.1 ? 1.0 : 0.0) / steps;
+        felt.settled += (model->tool_touch().state == ContactState::settled ? 1.0 : 0.0) / steps;
         felt.adaptive += (model->regime() == TouchRegime::adaptive ? 1.0 : 0.0) / steps;
     }
     return felt;
@@ -108,6 +109,16 @@ TEST(ToolModes, all_triangles_give_the_force_of_the_tree) {
         worst_n = std::max(worst_n, (brute.wrench[i].force_n - tree.wrench[i].force_n).norm());
     EXPECT_GT(brute.touching, 0.3);
     EXPECT_LT(worst_n, 1e-3);
+}
+
+TEST(ToolModes, a_moving_tool_is_at_rest_in_nearly_every_step) {
+    for (const double friction : {0.0, 0.2}) {
+        const Felt slow = feel(SurfaceMode::off_tree, 0.055, false, kSteps, friction),
+                   fast = feel(SurfaceMode::off_tree, 0.22, false, kSteps, friction);
+        EXPECT_GT(slow.touching, 0.7);
+        EXPECT_GT(slow.settled, 0.97) << friction;
+        EXPECT_GT(fast.settled, friction > 0.0 ? 0.94 : 0.98) << friction;
+    }
 }
 
 TEST(ToolModes, chr_without_a_forest_is_refused) {

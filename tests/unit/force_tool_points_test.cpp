@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <random>
 #include <vector>
 
@@ -49,6 +50,35 @@ TEST(ToolPoints, the_points_beyond_their_room_and_the_share_are_those_of_all_poi
         }
         EXPECT_GT(limited, 50) << used;
     }
+}
+
+// Along a path, with every way by which a bound is renewed: none promises more room than the nearest triangle leaves.
+TEST(ToolPoints, what_is_remembered_of_other_places_never_promises_more_than_is_free) {
+    const World& w = box_on_rough();
+    ToolPoints points(w.mesh, w.tool, w.tool.ball_m);
+    Pose at{Vec3(0.0, 0.054 / kWorldPerModel, 0.0), Quat::Identity()};
+    at.p_m = points.seat(at);
+    for (int i = 0; i < 1000 && !points.tried_all(); ++i) points.wake(at, 1000, {}, 500);
+    const double step_m = 0.02 * points.reach_m();
+    std::size_t recalled = 0, asked = 0;
+    for (int i = 0; i < 200; ++i) {
+        points.begin_move(at);
+        for (std::uint32_t p = 0; p < 1000; ++p) {
+            if (!points.is_awake(p) || points.room_m(p) >= step_m) continue;
+            if (points.recall(p, step_m)) {
+                ++recalled;
+                ASSERT_GE(points.room_m(p), step_m) << p << ", step " << i;
+            } else {
+                points.ask(p, step_m);
+                ++asked;
+            }
+            const double free_m = w.mesh.nearest(points.place_m(p), 1.0).distance_m - w.tool.ball_m;
+            ASSERT_LE(points.room_m(p), std::max(free_m, 0.0) + 1e-9) << p << ", step " << i;
+        }
+        at.p_m += step_m * Vec3(std::cos(0.05 * i), 0.1 * std::sin(0.3 * i), std::sin(0.05 * i));
+        at.q = (quat_from_rotation_vector(Vec3(0.0, 0.01, 0.002)) * at.q).normalized();
+    }
+    EXPECT_GT(recalled, asked);  // or they need not be remembered
 }
 
 }  // namespace

@@ -18,6 +18,7 @@ constexpr double kGrows = 4.0;       // growth of the longest move after a cut m
 constexpr double kNextMoves = 3.0;   // longest move after an uncut move, in lengths of that move
 constexpr double kShrinks = 0.5;     // factor after a move without room for its half-spaces
 constexpr double kLeastMargins = 8.0;
+constexpr double kFarM = 1e3;
 
 Vec3 linear(const Vec6& y) { return y.head<3>(); }
 
@@ -180,6 +181,7 @@ ToolContact::Move ToolContact::find_move_within(const Vec6& request, double left
             if (touch.looked >= queries_most_ || touch.asked >= queries_most_) break;
             const double way = points_.way_m(i, v, w);
             // Update the distance bound of far points; query triangles only for near ones.
+            if (points_.recall(i, way)) continue;
             if (points_.asked_m(i) > kAskedRooms * way + settings_.ball_m) {
                 ++touch.asked;
                 points_.ask(i, way);
@@ -206,8 +208,10 @@ ToolTouch ToolContact::follow(const Pose& goal, const Limits& limits, const Dead
     lists_.begin_step(near);
     longest_m_ = std::max(kFirstMoves * last_move_m_, kLeastMargins * settings_.margin_m);
     const Pose to{goal.p_m, goal.q.normalized()};
-    const double lag = seating_ > 0 ? points_.reach_m() / kSeatSteps : settings_.lag_m;
-    const double allowed = kGoneSteps * way_m(goal_, to).norm() + lag;
+    // While it is seated, the proxy comes step by step. Later its way is not limited: the force has a pace of its own.
+    const double gone_goal = kGoneSteps * way_m(goal_, to).norm();
+    const double allowed = seating_ > 0 ? gone_goal + points_.reach_m() / kSeatSteps : kFarM;
+    const double longest = gone_goal + settings_.lag_m;
     goal_ = to;
     if (seating_ > 0) --seating_;
     points_.wake(proxy_, limits.points, std::span(held_).first(held_count_),
@@ -225,7 +229,7 @@ ToolTouch ToolContact::follow(const Pose& goal, const Limits& limits, const Dead
     while (touch.moves < limits.moves && touch.looked < queries_most_ && touch.asked < queries_most_ &&
            !touch.late) {
         ++touch.moves;
-        const Move move = find_move(way_m(proxy_, to), left, touch, deadline);
+        const Move move = find_move(way_m(proxy_, to), std::min(left, longest), touch, deadline);
         const double length = move.y.norm();
         held_count_ = 0;
         for (std::uint32_t i = 0; i < touch.places; ++i) {

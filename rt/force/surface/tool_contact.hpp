@@ -9,7 +9,9 @@
 //           beyond their known free distance are queried and add their half-spaces, until none is left. All other
 //           points cost one addition.
 // Friction  as in contact.hpp, in the same metric: one cone for the whole wrench.
-// Glide     as in contact.hpp: per step at most 1.5 times the goal's displacement, plus lag_m.
+// Way       a move is at most 1.5 times the goal's displacement, plus lag_m; a step has as many as it needs. So the proxy is
+//           at rest although a tool of many points leaves one hollow for the next in a jump; the force follows at its own pace
+//           (contact_force.hpp). Only a seating proxy glides, as in contact.hpp.
 // Lag       A step that runs out of moves, queries or time leaves the proxy at a free pose nearer to the goal and reports
 //           `lagging`. No point leaves its known free region, so the proxy cannot jam.
 // Unit      metres of the model.  Thread  constructed anywhere (allocates); then servo, TACT_RT.

@@ -10,6 +10,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <vector>
 
@@ -63,12 +64,15 @@ public:
                 return {&triangle_[known * kEach], l.count, left_m};
             }
         }
-        for (const double wider : {kWider, 1.0}) {
+        // As wide as the last list was dense: a list that does not fit is searched in vain.
+        const double fits_m = std::sqrt(kFills / per_square_);
+        for (const double list_m : {std::clamp(fits_m, radius_m, kWider * radius_m), radius_m}) {
             std::size_t count = 0;
-            if (!find(place_m, wider * radius_m, count)) continue;
-            if (count > kEach && wider > 1.0) continue;
+            if (!find(place_m, list_m, count)) continue;
+            per_square_ = static_cast<double>(count + 1) / (list_m * list_m);
+            if (count > kEach && list_m > radius_m) continue;
             if (count > kEach) return {found_.data(), count, radius_m};
-            return keep(point, place_m, wider * radius_m, count);
+            return keep(point, place_m, list_m, count);
         }
         return {};
     }
@@ -81,7 +85,7 @@ private:
         double radius_m = -1.0;
         Vec3 place_m = Vec3::Zero();
     };
-    static constexpr double kWider = 3.0;
+    static constexpr double kWider = 3.0, kFills = 0.6 * kEach;
 
     // False: too many triangles.
     bool find(const Vec3& place_m, double radius_m, std::size_t& count) noexcept TACT_RT {
@@ -130,6 +134,7 @@ private:
     std::vector<List> list_;
     std::vector<std::uint32_t> triangle_, leaf_, found_;
     std::uint64_t clock_ = 0;
+    double per_square_ = 1e-300;  // triangles of the last list over the square of its radius
 };
 
 }  // namespace tact

@@ -11,12 +11,13 @@ namespace {
 constexpr double kAskedShare = 0.75;
 constexpr double kFarAway = 1e9;
 constexpr int kQueryTries = 6;
-constexpr double kAtMost = 16.0;           // search radius of a distance query, in displacements of the point
+constexpr double kAtMost = 32.0;           // search radius of a distance query, in displacements of the point
 constexpr std::uint32_t kWayQueries = 24;  // per path between two points
 constexpr double kFreeShare = 0.5;         // fraction of a ball's radius; nearer to the surface is not free
 constexpr std::uint32_t kRootsTried = 8;
 constexpr int kRaises = 16;
 constexpr float kNearlyBeyond = 1.0F - 1e-5F;  // share of the room; covers the rounding of single precision
+constexpr double kKnownCells = 0.12;           // edge of the cells of known places, in reaches of the tool
 constexpr float kRounding = 4e-7F;             // relative rounding of the coordinates
 
 std::size_t filled_up(std::uint32_t count) { return (std::size_t{count} + 3) / 4 * 4; }
@@ -33,7 +34,8 @@ ToolPoints::ToolPoints(const SurfaceMesh& mesh, const TouchTool& tool, double ba
       hint_(count_, SurfacePoint::kNone),
       cover_m_(tool.cover_m),
       bound_(filled_up(count_), -1.0F),
-      room_(filled_up(count_), 0.0F) {
+      room_(filled_up(count_), 0.0F),
+      known_(1.0) {
     for (std::size_t axis = 0; axis < 3; ++axis) {
         for (auto* row : {&local_[axis], &lever_[axis], &asked_[axis]}) row->assign(filled_up(count_), 0.0F);
         for (std::size_t i = 0; i < count_; ++i) local_[axis][i] = tool.point_m[3 * i + axis];
@@ -47,6 +49,7 @@ ToolPoints::ToolPoints(const SurfaceMesh& mesh, const TouchTool& tool, double ba
     // A tool with one point at the hand point rotates freely, but still needs a length scale.
     gyration_m_ = std::max(std::sqrt(sum / count_), ball_m_);
     reach_m_ += ball_m_;
+    known_ = KnownPlaces(kKnownCells * reach_m_);
 }
 
 void ToolPoints::turn_levers(const Pose& pose, std::uint32_t points) noexcept {
@@ -335,10 +338,26 @@ double ToolPoints::share_in_room(const Vec3& v_m, const Vec3& w_rad) const noexc
     return share;
 }
 
+bool ToolPoints::recall(std::uint32_t i, double wanted_m) noexcept {
+    if (brute_) return false;
+    const double distance = known_.distance_m(place_m(i));
+    if (distance - ball_m_ < wanted_m) return false;
+    put(i, distance, SurfacePoint::kNone);
+    room_[i] = static_cast<float>((distance - ball_m_) * (1.0 - 1e-6));
+    return true;
+}
+
 void ToolPoints::ask(std::uint32_t i, double wanted_m) noexcept {
     const double at_most = kAtMost * wanted_m + ball_m_;
-    const double distance =
+    double distance =
         brute_ ? all_.clearance_m(place_m(i), at_most) : mesh_.clearance_m(place_m(i), at_most, kVisits);
+    // Nearer to a box than to what is in it.
+    if (!brute_ && distance <= ball_m_) {
+        const Seen seen = query(place_m(i), hint_[i]);
+        hint_[i] = seen.triangle;
+        distance = std::max(distance, seen.distance_m);
+    }
+    known_.remember(place_m(i), distance);
     // With large triangles, the bound from boxes can be worse than the known one.
     if (distance - ball_m_ <= room_m(i)) return;
     put(i, distance, SurfacePoint::kNone);
@@ -347,6 +366,7 @@ void ToolPoints::ask(std::uint32_t i, double wanted_m) noexcept {
 
 void ToolPoints::saw(std::uint32_t i, double distance_m, double guarded_m) noexcept {
     put(i, distance_m, SurfacePoint::kNone);
+    known_.remember(place_m(i), distance_m);
     room_[i] = static_cast<float>(std::max(guarded_m, distance_m - ball_m_));
 }
 

@@ -2,6 +2,7 @@
 //
 // Bound     the distance at the last query minus the displacement since. Points far from the surface cost nothing; a
 //           renewal costs one bounded query of the tree.
+//           Before that, the places known are looked up (known_places.hpp): where one point of the tool was, others soon come.
 // Awake     A point is awake (in use) once it is known to be on the tool's side of the surface: by the bound of its
 //           parent (the nearest point before it in the order), or by a path from the parent along which free balls
 //           overlap. A point on the other side (the knob rose while the surface was between the points) sleeps: it has
@@ -21,6 +22,7 @@
 #include "ipc/scene/mesh/surface_mesh.hpp"
 #include "ipc/scene/mesh/touch_tool.hpp"
 #include "rt/force/surface/all_triangles.hpp"
+#include "rt/force/surface/known_places.hpp"
 
 namespace tact {
 
@@ -69,6 +71,8 @@ public:
     [[nodiscard]] double asked_m(std::uint32_t i) const noexcept TACT_RT {
         return static_cast<double>(bound_[i]);
     }
+    // Renews the bound of a point by what is remembered of places near it. True: its room is at least wanted_m.
+    bool recall(std::uint32_t i, double wanted_m) noexcept TACT_RT;
     // Renews the bound of a point by a query; the room may become larger than wanted_m.
     void ask(std::uint32_t i, double wanted_m) noexcept TACT_RT;
     // Sets the result of a triangle query: nothing is nearer than distance_m. Within guarded_m half-spaces keep the ball
@@ -109,6 +113,7 @@ private:
     std::vector<float> local_[3], lever_[3], asked_[3];
     std::vector<float> bound_;  // distance at the last query; below 0: asleep
     std::vector<float> room_;   // displacement of the centre known to be free
+    KnownPlaces known_;
     Vec3 hand_m_ = Vec3::Zero(), anchor_m_ = Vec3::Zero();
     std::uint32_t points_ = 0, awake_ = 0, next_ = 0;
     std::uint32_t root_ = 0;  // the first awake point; in use only if among the first points or kept
