@@ -22,6 +22,8 @@ struct CertifySettings {
 
 void certify_docking(const SceneFile& scene, const CertifySettings& settings, reference::Promises& promises);
 void certify_surface(const SceneFile& scene, const CertifySettings& settings, reference::Promises& promises);
+// The mesh tool of a surface scene.
+void certify_tool(const SceneFile& scene, const CertifySettings& settings, reference::Promises& promises);
 void certify_drilling(const SceneFile& scene, const CertifySettings& settings, reference::Promises& promises);
 
 }  // namespace tact

@@ -22,9 +22,10 @@ tact_tests(force_drilling_tests SOURCES
 tact_test(unit/force_drill_test.cpp USES force)
 tact_tests(certify_tests SOURCES
         unit/certify_drilling_test.cpp unit/certify_docking_test.cpp unit/certify_surface_test.cpp
+        unit/certify_tool_test.cpp
     USES certify scene prep_surface prep_synthetic prep_mesh_file)
 tact_test(unit/force_refinement_test.cpp USES scene force prep_mesh prep_surface prep_synthetic LABELS tsan)
 tact_test(unit/force_field_test.cpp USES base scene force prep_field)
 # Not under sanitizers, where they take minutes: campaigns of numbers over code that the other tests run too.
 set_tests_properties(force_docking_stiffness_test force_surface_energy_test force_surface_settled_test
-    force_tool_energy_test certify_drilling_test certify_surface_test PROPERTIES LABELS long)
+    force_tool_energy_test certify_drilling_test certify_surface_test certify_tool_test PROPERTIES LABELS long)

@@ -125,7 +125,7 @@ TEST(TwistHalfSpaces, the_solution_is_the_nearest_twist_inside_all_half_spaces) 
         Vec6 goal;
         for (double& x : goal) x = number();
         TwistHalfSpaces::Solution s = TwistHalfSpaces::fresh(goal);
-        half_spaces.solve(goal, 1e-6, s);
+        half_spaces.solve(goal, {1e-6}, s);
         ASSERT_TRUE(s.exact);
         Vec6 pushed = goal;
         for (std::size_t i = 0; i < s.active_count; ++i) {

@@ -18,6 +18,9 @@ constexpr double kGrows = 4.0;       // growth of the longest move after a cut m
 constexpr double kNextMoves = 3.0;   // longest move after an uncut move, in lengths of that move
 constexpr double kShrinks = 0.5;     // factor after a move without room for its half-spaces
 constexpr double kLeastMargins = 8.0;
+constexpr double kTouchMargins = 2.0;  // a triangle no farther than this bears
+constexpr double kAtRestMargins = 0.1;
+constexpr double kReturns = 0.5;  // of the last move, or less: the move before it is undone
 constexpr double kFarM = 1e3;
 
 Vec3 linear(const Vec6& y) { return y.head<3>(); }
@@ -89,23 +92,21 @@ bool ToolContact::query(std::uint32_t point, double reach_m, ToolTouch& touch) n
     return false;
 }
 
-Vec6 ToolContact::held_back(const TwistHalfSpaces::Solution& free, const Vec6& goal_m,
-                            double tolerance_m) const noexcept {
-    const Vec6 lift = free.move_m - goal_m;
+// Friction is that of the triangles touched now. Those that the tool would touch at the end of the move bear nothing yet: with
+// them the cone would be too wide, and a tool would stick to one wall because another is near.
+Vec6 ToolContact::held_back(const TwistHalfSpaces::Solution& touched, const Vec6& goal_m,
+                            const TwistHalfSpaces::Rules& rules,
+                            TwistHalfSpaces::Solution& held) const noexcept {
+    const Vec6 lift = touched.move_m - goal_m;
     const double depth = lift.norm();
-    if (!(depth > 0.0) || free.active_count == 0) return free.move_m;
-    // No friction before contact.
-    bool touches = false;
-    for (std::size_t i = 0; i < free.active_count; ++i)
-        touches |= free.active[i].slack_m <= 2.0 * settings_.margin_m + 0.01 * depth;
-    if (!touches) return free.move_m;
     const Vec6 normal = lift / depth;
-    const Vec6 along = free.move_m - normal.dot(free.move_m) * normal;
-    const double way = along.norm(), held = settings_.friction * depth;
-    const Vec6 wanted = way > held ? Vec6(free.move_m - (held / way) * along) : Vec6(free.move_m - along);
-    TwistHalfSpaces::Solution s = TwistHalfSpaces::fresh(wanted);
-    half_spaces_.solve(wanted, tolerance_m, s);
-    return s.move_m;
+    const Vec6 along = touched.move_m - normal.dot(touched.move_m) * normal;
+    const double way = along.norm(), most = settings_.friction * depth;
+    const Vec6 wanted =
+        way > most ? Vec6(touched.move_m - (most / way) * along) : Vec6(touched.move_m - along);
+    held = TwistHalfSpaces::fresh(wanted);
+    half_spaces_.solve(wanted, rules, held);
+    return held.move_m;
 }
 
 void ToolContact::list_places(const TwistHalfSpaces::Solution& solution, ToolTouch& touch) const noexcept {
@@ -115,6 +116,19 @@ void ToolContact::list_places(const TwistHalfSpaces::Solution& solution, ToolTou
         const std::uint32_t point = half_spaces_.point(a.half_space);
         touch.place[touch.places++] = {points_.lever_m(point).cast<double>(), linear(a.normal), a.weight_m,
                                        point, half_spaces_.triangle(a.half_space)};
+    }
+}
+
+// The points to begin the next move with: those that bear, and those that end this move.
+void ToolContact::hold(const TwistHalfSpaces::Solution& bears,
+                       const TwistHalfSpaces::Solution& ends) noexcept {
+    held_count_ = 0;
+    for (const auto* s : {&bears, &ends}) {
+        for (std::size_t i = 0; i < s->active_count; ++i) {
+            const std::uint32_t point = half_spaces_.point(s->active[i].half_space);
+            const auto end = held_.begin() + static_cast<std::ptrdiff_t>(held_count_);
+            if (std::find(held_.begin(), end, point) == end) held_[held_count_++] = point;
+        }
     }
 }
 
@@ -150,18 +164,32 @@ ToolContact::Move ToolContact::find_move_within(const Vec6& request, double left
     }
     // Single precision of a half-space over the length of the request.
     const double tolerance = 6e-7 * (request.norm() + settings_.ball_m) + 1e-3 * settings_.margin_m;
+    const TwistHalfSpaces::Rules rules{tolerance},
+        touching{tolerance, static_cast<float>(kTouchMargins * settings_.margin_m)};
     TwistHalfSpaces::Solution free = TwistHalfSpaces::fresh(request);
     Move move;
     for (int round = 0;; ++round) {
-        half_spaces_.solve(request, tolerance, free);
+        half_spaces_.solve(request, rules, free);
         if (!free.exact) {
             half_spaces_.allow_staying();
             free = TwistHalfSpaces::fresh(request);
-            half_spaces_.solve(request, tolerance, free);
+            half_spaces_.solve(request, rules, free);
         }
         TwistHalfSpaces::Solution best = free;
-        half_spaces_.turn(request, tolerance, best);
-        move.y = settings_.friction > 0.0 ? held_back(best, request, tolerance) : best.move_m;
+        half_spaces_.turn(request, rules, best);
+        move.y = best.move_m;
+        move.exact = best.exact;
+        TwistHalfSpaces::Solution held;
+        if (settings_.friction > 0.0) {
+            TwistHalfSpaces::Solution touched = TwistHalfSpaces::fresh(request);
+            half_spaces_.solve(request, touching, touched);
+            half_spaces_.turn(request, touching, touched);
+            if (touched.exact && touched.active_count > 0) {
+                move.y = held_back(touched, request, rules, held);
+                best = touched;
+            }
+            move.exact &= touched.exact && held.exact;
+        }
         const double length = move.y.norm(), turned = move.y.tail<3>().norm() / gyration;
         const double share =
             std::min({1.0, left_m / std::max(length, 1e-300), turn_max_rad_ / std::max(turned, 1e-300)});
@@ -169,6 +197,7 @@ ToolContact::Move ToolContact::find_move_within(const Vec6& request, double left
         if (move.cut) move.y *= share;
         const auto [v, w] = twist(move.y);
         list_places(best, touch);
+        hold(best, held);
         const std::size_t count = points_.beyond(v, w, beyond_);
         if (count == 0) return move;
         const bool late = deadline.passed();
@@ -223,7 +252,7 @@ ToolTouch ToolContact::follow(const Pose& goal, const Limits& limits, const Dead
         return touch;
     }
     const Pose begin = proxy_;
-    Pose one_ago = proxy_, two_ago{Vec3::Constant(1e100), Quat::Identity()};
+    Pose one_ago = proxy_, two_ago{Vec3::Constant(kFarM), Quat::Identity()};
     double left = allowed;
     double gone = 0.0;
     while (touch.moves < limits.moves && touch.looked < queries_most_ && touch.asked < queries_most_ &&
@@ -231,12 +260,6 @@ ToolTouch ToolContact::follow(const Pose& goal, const Limits& limits, const Dead
         ++touch.moves;
         const Move move = find_move(way_m(proxy_, to), std::min(left, longest), touch, deadline);
         const double length = move.y.norm();
-        held_count_ = 0;
-        for (std::uint32_t i = 0; i < touch.places; ++i) {
-            const auto end = held_.begin() + static_cast<std::ptrdiff_t>(held_count_);
-            if (std::find(held_.begin(), end, touch.place[i].point) == end)
-                held_[held_count_++] = touch.place[i].point;
-        }
         if (move.cut || move.short_ || length > SurfaceContact::kRestingMargins * settings_.margin_m) {
             proxy_.p_m += move.y.head<3>();
             proxy_.q =
@@ -249,12 +272,18 @@ ToolTouch ToolContact::follow(const Pose& goal, const Limits& limits, const Dead
             if (length <= settings_.margin_m) break;
             continue;
         }
-        const bool to_and_fro =
-            (proxy_.p_m - two_ago.p_m).norm() < 1e10 && way_m(two_ago, proxy_).norm() <= settings_.margin_m;
+        const double back = way_m(two_ago, proxy_).norm();
         two_ago = one_ago;
         one_ago = proxy_;
-        if (!move.cut && (touch.places == 0 || to_and_fro || length <= settings_.margin_m)) {
-            touch.state = ContactState::settled;
+        // At rest, or to and fro within a margin. A move that is merely short may end beyond an edge over which the tool then
+        // falls, or be one of many: the next one shows it.
+        const bool is_short = length <= settings_.margin_m, returned = back <= kReturns * length;
+        const bool ends =
+            touch.places == 0 || length <= kAtRestMargins * settings_.margin_m || (is_short && returned);
+        if (!move.cut && (ends || (!is_short && back <= settings_.margin_m))) {
+            // A tool that goes to and fro farther, or whose half-spaces could not be solved, may have a rest elsewhere.
+            touch.state = ends && move.exact ? ContactState::settled : ContactState::gliding;
+            seating_ = 0;
             break;
         }
         if (left <= settings_.margin_m) {
@@ -262,7 +291,6 @@ ToolTouch ToolContact::follow(const Pose& goal, const Limits& limits, const Dead
             break;
         }
     }
-    if (touch.state == ContactState::settled) seating_ = 0;
     last_move_m_ = gone;  // for the first move of the next step
     touch.adaptive = near != nullptr && !lists_.elsewhere();
     touch.T_model_proxy = proxy_;

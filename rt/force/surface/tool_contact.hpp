@@ -8,7 +8,7 @@
 // Lazy      A move starts with the half-spaces of the few points active in the last move. Points that the solution moves
 //           beyond their known free distance are queried and add their half-spaces, until none is left. All other
 //           points cost one addition.
-// Friction  as in contact.hpp, in the same metric: one cone for the whole wrench.
+// Friction  as in contact.hpp, in the same metric: one cone for the whole wrench, of the triangles that are touched now.
 // Way       a move is at most 1.5 times the goal's displacement, plus lag_m; a step has as many as it needs. So the proxy is
 //           at rest although a tool of many points leaves one hollow for the next in a jump; the force follows at its own pace
 //           (contact_force.hpp). Only a seating proxy glides, as in contact.hpp.
@@ -98,6 +98,7 @@ private:
         bool cut = false;     // shortened to the maximum of a move or step
         bool short_ = false;  // shortened to the region known to be free
         bool full = false;    // no room for all half-spaces
+        bool exact = true;    // the half-spaces were solved
     };
     // Finds a move no longer than left_m and longest_m_ that has room for its half-spaces.
     Move find_move(const Vec6& request, double left_m, ToolTouch& touch,
@@ -105,8 +106,10 @@ private:
     Move find_move_within(const Vec6& request, double left_m, ToolTouch& touch,
                           const Deadline& deadline) noexcept TACT_RT;
     bool query(std::uint32_t point, double reach_m, ToolTouch& touch) noexcept TACT_RT;
-    [[nodiscard]] Vec6 held_back(const TwistHalfSpaces::Solution& free, const Vec6& goal_m,
-                                 double tolerance_m) const noexcept TACT_RT;
+    [[nodiscard]] Vec6 held_back(const TwistHalfSpaces::Solution& touched, const Vec6& goal_m,
+                                 const TwistHalfSpaces::Rules& rules,
+                                 TwistHalfSpaces::Solution& held) const noexcept TACT_RT;
+    void hold(const TwistHalfSpaces::Solution& bears, const TwistHalfSpaces::Solution& ends) noexcept TACT_RT;
     void list_places(const TwistHalfSpaces::Solution& solution, ToolTouch& touch) const noexcept TACT_RT;
 
     SurfaceMesh mesh_;  // a view
@@ -116,7 +119,7 @@ private:
     const QueryKernel* kernel_;
     ToolLists lists_;
     std::vector<std::uint32_t> beyond_;
-    std::array<std::uint32_t, 6> held_{};  // points active in the last move
+    std::array<std::uint32_t, 12> held_{};  // points active in the last move
     std::size_t held_count_ = 0;
     double turn_max_rad_;
     double last_move_m_ = 0.0;

@@ -41,7 +41,7 @@ void TwistHalfSpaces::allow_staying() noexcept {
         for (std::size_t i = 0; i < count_; ++i) row(slack)[i] = std::max(row(slack)[i], 0.0F);
 }
 
-std::size_t TwistHalfSpaces::most_violated(const Vec6& move_m, double& value) const noexcept {
+std::size_t TwistHalfSpaces::most_violated(const Vec6& move_m, float within_m, double& value) const noexcept {
     const Eigen::Matrix<float, 6, 1> y = move_m.cast<float>();
     float least = 1e30F;
     std::size_t at = 0;
@@ -59,6 +59,7 @@ std::size_t TwistHalfSpaces::most_violated(const Vec6& move_m, double& value) co
         for (std::size_t i = 0; i < n; ++i) {
             const float facet = value_of(kRowsEach, i);
             kept[i] = facet > kept[i] ? facet : kept[i];
+            kept[i] = row(kSlackRow)[begin + i] <= within_m ? kept[i] : 1e30F;
         }
         for (std::size_t i = 0; i < n; ++i) {
             if (kept[i] < least) {
@@ -160,26 +161,26 @@ TwistHalfSpaces::Solution TwistHalfSpaces::fresh(const Vec6& goal_m) noexcept {
     return s;
 }
 
-void TwistHalfSpaces::solve_with(double tolerance_m, std::span<const Active> turned,
+void TwistHalfSpaces::solve_with(const Rules& rules, std::span<const Active> turned,
                                  Solution& s) const noexcept {
     for (int round = 0; round < kRoundsMax && count_ > 0; ++round) {
         double value = 0.0;
-        const std::size_t worst = most_violated(s.move_m, value);
-        if (value >= -tolerance_m) return;
+        const std::size_t worst = most_violated(s.move_m, rules.within_m, value);
+        if (value >= -rules.tolerance_m) return;
         if (!bring_in(asked_least(worst, s.move_m, turned), s)) break;
     }
     if (count_ == 0) return;
     s.exact = false;
-    s.move_m *= free_share(s.move_m);
+    s.move_m *= free_share(s.move_m, rules.within_m);
 }
 
-void TwistHalfSpaces::solve(const Vec6& goal_m, double tolerance_m, Solution& before) const noexcept {
+void TwistHalfSpaces::solve(const Vec6& goal_m, const Rules& rules, Solution& before) const noexcept {
     if (!before.exact) before = fresh(goal_m);
-    solve_with(tolerance_m, {}, before);
+    solve_with(rules, {}, before);
 }
 
 // As in HalfSpaces::solve.
-void TwistHalfSpaces::turn(const Vec6& goal_m, double tolerance_m, Solution& best) const noexcept {
+void TwistHalfSpaces::turn(const Vec6& goal_m, const Rules& rules, Solution& best) const noexcept {
     std::array<Active, kTurnsMax> turned;
     std::size_t turns = 0;
     while (turns < kTurnsMax && best.exact) {
@@ -187,7 +188,7 @@ void TwistHalfSpaces::turn(const Vec6& goal_m, double tolerance_m, Solution& bes
         for (std::size_t i = 0; i < best.active_count && turns < kTurnsMax; ++i) {
             const Active& held = best.active[i];
             const Active other = half_space(held.half_space, !held.facet);
-            if (other.normal.dot(best.move_m) + other.slack_m <= tolerance_m) continue;
+            if (other.normal.dot(best.move_m) + other.slack_m <= rules.tolerance_m) continue;
             if (std::any_of(turned.begin(), turned.begin() + static_cast<std::ptrdiff_t>(turns),
                             [&](const Active& t) { return t.half_space == held.half_space; }))
                 continue;
@@ -195,7 +196,7 @@ void TwistHalfSpaces::turn(const Vec6& goal_m, double tolerance_m, Solution& bes
         }
         if (turns == before) break;
         Solution next = fresh(goal_m);
-        solve_with(tolerance_m, std::span(turned).first(turns), next);
+        solve_with(rules, std::span(turned).first(turns), next);
         if (!next.exact || (next.move_m - goal_m).squaredNorm() >= (best.move_m - goal_m).squaredNorm())
             break;
         best = next;
@@ -203,9 +204,10 @@ void TwistHalfSpaces::turn(const Vec6& goal_m, double tolerance_m, Solution& bes
 }
 
 // The largest fraction of a move, at most 1, whose end satisfies every half-space.
-double TwistHalfSpaces::free_share(const Vec6& move_m) const noexcept {
+double TwistHalfSpaces::free_share(const Vec6& move_m, float within_m) const noexcept {
     double share = 1.0;
     for (std::size_t i = 0; i < count_; ++i) {
+        if (row(kSlackRow)[i] > within_m) continue;
         const auto reach = [&](bool facet) {
             const Active h = half_space(i, facet);
             const double along = h.normal.dot(move_m);

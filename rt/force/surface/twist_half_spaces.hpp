@@ -64,12 +64,17 @@ public:
     // Sets negative slacks to zero, so that every half-space permits a zero move.
     void allow_staying() noexcept TACT_RT;
 
-    // tolerance_m: violation up to which a half-space counts as satisfied. before: solution for the same goal and fewer
-    // half-spaces, or fresh().
+    // Which half-spaces count, and when: tolerance_m: violation up to which one is satisfied. within_m: triangles whose distance
+    // leaves more slack than this are left out.
+    struct Rules {
+        double tolerance_m = 0.0;
+        float within_m = 1e30F;
+    };
+    // before: solution for the same goal and fewer half-spaces, or fresh().
     [[nodiscard]] static Solution fresh(const Vec6& goal_m) noexcept TACT_RT;
-    void solve(const Vec6& goal_m, double tolerance_m, Solution& before) const noexcept TACT_RT;
+    void solve(const Vec6& goal_m, const Rules& rules, Solution& before) const noexcept TACT_RT;
     // Switches active triangles whose other half-space is satisfied to that one.
-    void turn(const Vec6& goal_m, double tolerance_m, Solution& best) const noexcept TACT_RT;
+    void turn(const Vec6& goal_m, const Rules& rules, Solution& best) const noexcept TACT_RT;
 
 private:
     // One extra cache line per row, so that the rows of one half-space do not map to the same cache set.
@@ -77,13 +82,14 @@ private:
     // Two groups of 7 rows (nearest points, planes): three for displacement, three for rotation, slack.
     [[nodiscard]] float* row(std::size_t r) noexcept { return float_.data() + r * kRow; }
     [[nodiscard]] const float* row(std::size_t r) const noexcept { return float_.data() + r * kRow; }
-    [[nodiscard]] std::size_t most_violated(const Vec6& move_m, double& value) const noexcept TACT_RT;
+    [[nodiscard]] std::size_t most_violated(const Vec6& move_m, float within_m,
+                                            double& value) const noexcept TACT_RT;
     [[nodiscard]] Active half_space(std::size_t half_space, bool facet) const noexcept TACT_RT;
     [[nodiscard]] Active asked_least(std::size_t half_space, const Vec6& move_m,
                                      std::span<const Active> turned) const noexcept TACT_RT;
     static bool bring_in(const Active& wanted, Solution& s) noexcept TACT_RT;
-    void solve_with(double tolerance_m, std::span<const Active> turned, Solution& s) const noexcept TACT_RT;
-    [[nodiscard]] double free_share(const Vec6& move_m) const noexcept TACT_RT;
+    void solve_with(const Rules& rules, std::span<const Active> turned, Solution& s) const noexcept TACT_RT;
+    [[nodiscard]] double free_share(const Vec6& move_m, float within_m) const noexcept TACT_RT;
 
     std::vector<float> float_;
     std::vector<std::uint32_t> triangle_, point_;
