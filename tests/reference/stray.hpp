@@ -59,6 +59,22 @@ public:
         return some;
     }
 
+    // No triangle within reach_m.
+    [[nodiscard]] bool is_clear(const Vec3& place_m, double reach_m) const {
+        bool clear = true;
+        const auto look = [&](std::int64_t cell) {
+            const auto at = clear ? in_.find(cell) : in_.end();
+            if (at == in_.end()) return;
+            clear = std::all_of(at->second.begin(), at->second.end(), [&](std::uint32_t t) {
+                const auto& c = all_.corner[t];
+                return reference::nearest(all_.vertex[c[0]], all_.vertex[c[1]], all_.vertex[c[2]], place_m)
+                           .distance > reach_m;
+            });
+        };
+        each(place_m.array() - reach_m, place_m.array() + reach_m, look);
+        return clear;
+    }
+
 private:
     [[nodiscard]] Vec3 low_m(std::uint32_t t) const {
         const auto& c = all_.corner[t];
@@ -94,7 +110,7 @@ public:
         clear_ = false;
         for (int tries = 0; tries < 200 && !clear_; ++tries) {
             if (tries > 0) std::tie(foot, normal) = place();
-            clear_ = is_clear(foot + (clear_m + kLiftM) * normal, clear_m + 1e-4);
+            clear_ = cells_.is_clear(foot + (clear_m + kLiftM) * normal, clear_m + 1e-4);
         }
         moved_.setZero();
         goal_ = foot + (clear_m + kLiftM) * normal;
@@ -130,13 +146,6 @@ public:
     }
 
 private:
-    [[nodiscard]] bool is_clear(const Vec3& at_m, double radius_m) const {
-        const reference::Triangles near = cells_.near(at_m, radius_m);
-        return std::all_of(near.corner.begin(), near.corner.end(), [&](const auto& c) {
-            return reference::nearest(near.vertex[c[0]], near.vertex[c[1]], near.vertex[c[2]], at_m)
-                       .distance > radius_m;
-        });
-    }
     std::pair<Vec3, Vec3> place() {
         for (;;) {
             const auto& c = mesh_.corner[random_.below(mesh_.corner.size())];
