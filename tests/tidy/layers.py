@@ -24,6 +24,7 @@ LAUNCHER = ["deploy/tact/baked_run", "deploy/tact/child", "deploy/tact/exec", "d
 BELOW = {
     "ipc/base": [],
     "ipc/igtl": ["ipc/base"],
+    "ipc/spacenav": ["ipc/base"],
     "ipc/image": ["ipc/base"],
     "ipc/version": [],
     "ipc/manual": ["ipc/base"],
@@ -39,7 +40,7 @@ BELOW = {
     "ipc/record": ["ipc/base", "ipc/shm", "ipc/topics"],
     "ipc/recorder": ["ipc/base", "ipc/version", "ipc/manual", "ipc/shm", "ipc/topics", "ipc/record", "ipc/scene/bone", "ipc/scene/file"],
     "ipc/station": ["ipc/base"],
-    "hal": ["ipc/base", "ipc/igtl", "ipc/shm", "ipc/version"],  # shm: mailboxes between a bus pump and the servo
+    "hal": ["ipc/base", "ipc/igtl", "ipc/spacenav", "ipc/shm", "ipc/version"],  # shm: mailboxes between a bus pump and the servo
     "rt/force": ["ipc/base", "ipc/scene"],
     # Force models do not include each other. Each includes the topic that it publishes and the commands that it accepts.
     "rt/force/docking": ["ipc/base", "ipc/scene", "ipc/shm/latest", "ipc/topics/bodies", "ipc/topics/command", "ipc/topics/shapes",
@@ -62,6 +63,7 @@ BELOW = {
     "gui/link": ["ipc/base", "ipc/shm", "ipc/topics", "ipc/scene/file"],
     "gui/render": ["ipc/base", "ipc/topics", "ipc/scene"],
     "gui/dashboard": ["ipc/base", "ipc/topics", "gui/base"],
+    "gui/input": ["ipc/base", "ipc/spacenav", "gui/dashboard"],
     # The interface between systems and window; systems do not include each other.
     "gui/system": ["ipc", "gui/base", "gui/link", "gui/render", "gui/dashboard"],
     "gui/docking": ["ipc", "gui/base", "gui/link", "gui/render", "gui/dashboard", "gui/system"],
@@ -70,7 +72,7 @@ BELOW = {
     "gui/drilling": ["ipc", "gui/base", "gui/link", "gui/render", "gui/dashboard", "gui/system"],
     "gui/stereo": ["ipc", "gui/base", "gui/link", "gui/render", "gui/dashboard"],
     "gui/window": ["ipc", "gui/base", "gui/link", "gui/render", "gui/dashboard", "gui/system", "gui/docking", "gui/surface", "gui/drilling", "gui/field",
-                   "gui/stereo"],
+                   "gui/stereo", "gui/input"],
     "prep": ["ipc/base", "ipc/image", "ipc/version", "ipc/scene", "ipc/manual"],
     # Systems do not include each other; they share readers, meshes and the console.
     "prep/console": ["ipc/base", "ipc/scene"],
@@ -92,6 +94,7 @@ BELOW = {
 WRAPPED = [
     (r"libusb", ["hal/usb"]),
     (r"gpiod", ["hal/io"]),
+    (r"spnav", ["gui/input/space_mouse", "tests"]),
     (r"igtl[A-Z_]", ["ipc/igtl", "tests"]),
     (r"gemmi/", ["prep", "tests"]),
     (r"fftw3", ["prep/map", "tests"]),

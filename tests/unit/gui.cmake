@@ -6,6 +6,8 @@ if(TACT_GUI)
             unit/gui_traces_test.cpp unit/gui_traces_panel_test.cpp unit/gui_trace_export_test.cpp
             unit/gui_timeline_test.cpp unit/gui_events_test.cpp unit/gui_letters_test.cpp
         USES gui_dashboard gui_window gui_docking gui_surface gui_field gui_drilling gui_link topics base)
+    tact_test(unit/gui_input_test.cpp USES gui_input gui_dashboard spacenav base SYSTEM ${TACT_SPNAV_LIBRARY})
+    target_include_directories(gui_input_test SYSTEM PRIVATE ${TACT_SPNAV_INCLUDE})
     tact_test(unit/gui_field_card_test.cpp USES gui_window gui_field gui_docking gui_dashboard topics base)
     tact_test(unit/gui_hours_test.cpp USES gui_window gui_docking gui_dashboard topics shm base TIMEOUT 300)
     tact_tests(gui_drilling_tests SOURCES
