@@ -8,6 +8,8 @@ if(TACT_GUI)
         USES gui_dashboard gui_window gui_docking gui_surface gui_field gui_drilling gui_link topics base)
     tact_test(unit/gui_input_test.cpp USES gui_input gui_dashboard spacenav base SYSTEM ${TACT_SPNAV_LIBRARY})
     target_include_directories(gui_input_test SYSTEM PRIVATE ${TACT_SPNAV_INCLUDE})
+    tact_test(unit/gui_space_mouse_test.cpp USES gui_input gui_base spacenav base SYSTEM ${TACT_SPNAV_LIBRARY} LABELS tsan)
+    target_include_directories(gui_space_mouse_test SYSTEM PRIVATE ${TACT_SPNAV_INCLUDE})
     tact_test(unit/gui_field_card_test.cpp USES gui_window gui_field gui_docking gui_dashboard topics base)
     tact_test(unit/gui_hours_test.cpp USES gui_window gui_docking gui_dashboard topics shm base TIMEOUT 300)
     tact_tests(gui_drilling_tests SOURCES
