@@ -210,7 +210,8 @@ int run(std::span<char* const> arguments, const StartOptions& o, const StartOver
                                .servo_thread_id = thread.id(),
                                .page_faults_at_start = thread.faults_at_start(),
                                .mouse = {led[0] ? &targets[0] : nullptr, led[1] ? &targets[1] : nullptr},
-                               .T_dev_world = settings.T_world_dev.inverse()},
+                               .T_dev_world = settings.T_world_dev.inverse(),
+                               .lead_device = lead_devices(config)},
                               region, mailbox, *link);
     for (const LevelRequest& w : requests) housekeeping.order(CommandKind::set_level, w.level, w.path);
     if (o.arm) housekeeping.order(CommandKind::arm, 0.0, 0);

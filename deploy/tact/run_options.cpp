@@ -27,9 +27,9 @@ constexpr PassedOption kController[] = {
     {"--core", "N", "Processor core of the servo thread"},
     {"--priority", "P", "Real-time priority of the servo thread"},
     {"--force-scale", "X", "Gain of the displayed force"},
-    {"--hand", "passive|wander|stroke|drill|surgeon|suction-tube|mouse",
-     "Motion of the emulated hand; mouse: led by the mouse in the window"},
-    {"--hand2", "passive|wander|stroke|drill|surgeon|suction-tube|mouse",
+    {"--hand", "passive|wander|stroke|drill|surgeon|suction-tube|mouse|spacemouse|gamepad",
+     "Motion of the emulated hand; mouse, spacemouse, gamepad: led by that device in the window"},
+    {"--hand2", "passive|wander|stroke|drill|surgeon|suction-tube|mouse|spacemouse|gamepad",
      "Motion of a second, emulated hand"},
 };
 

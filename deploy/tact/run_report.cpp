@@ -117,8 +117,10 @@ json mouse(const RtRegion& region) {
     if (!m || !sensible(*m)) return nullptr;
     constexpr const char* kLeads[] = {"none", "may", "leads", "silent"};
     json hands = json::array();
+    json by = json::array();
     for (const std::uint8_t lead : m->lead) hands.push_back(kLeads[lead]);
-    return {{"hands", hands}, {"accepted", m->accepted}, {"refused", m->refused}, {"silences", m->stale}};
+    for (const std::uint8_t device : m->by) by.push_back(kLeadDeviceNames[device]);
+    return {{"hands", hands}, {"devices", by}, {"accepted", m->accepted}, {"refused", m->refused}, {"silences", m->stale}};
 }
 
 // Of the cycles with force since the start.

@@ -41,12 +41,15 @@ void Camera::place(const Eigen::Vector3f& target_a, const Eigen::Quaternionf& q_
 
 void Camera::rotate(float dx_px, float dy_px, float view_height_px) {
     if (!(view_height_px > 0.0F)) return;
-    const float turn = 3.1415927F / view_height_px;  // half a turn over the height of the view
-    const Eigen::Vector3f axis(dy_px, dx_px, 0.0F);
-    const float length = axis.norm();
-    if (!(length > 0.0F)) return;
+    const float per_px = 3.1415927F / view_height_px;  // half a turn over the height of the view
+    turn(per_px * Eigen::Vector3f(dy_px, dx_px, 0.0F));
+}
+
+void Camera::turn(const Eigen::Vector3f& turn_eye_rad) {
+    const float angle = turn_eye_rad.norm();
+    if (!(angle > 0.0F) || !std::isfinite(angle)) return;
     q_eye_scene_ =
-        (Eigen::Quaternionf(Eigen::AngleAxisf(length * turn, axis / length)) * q_eye_scene_).normalized();
+        (Eigen::Quaternionf(Eigen::AngleAxisf(angle, turn_eye_rad / angle)) * q_eye_scene_).normalized();
 }
 
 void Camera::pan(float dx_px, float dy_px, float view_height_px) {

@@ -29,6 +29,8 @@ public:
     // Mouse motion in pixels in a view of this height; y points down.
     void rotate(float dx_px, float dy_px, float view_height_px);
     void pan(float dx_px, float dy_px, float view_height_px);
+    // By a rotation vector in the eye's axes.
+    void turn(const Eigen::Vector3f& turn_eye_rad);
     void zoom(float steps);  // positive: closer, ten per cent a step
 
     [[nodiscard]] Eigen::Matrix4f view() const;  // scene -> eye, the eye looks along -z

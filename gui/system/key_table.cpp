@@ -24,6 +24,7 @@ constexpr std::array<const char*, static_cast<std::size_t>(KeyAction::count)> kA
     "surface_style",
     "cut",
     "picture",
+    "input_devices",
     "swap_eyes",
     "raise_contour",
     "lower_contour",

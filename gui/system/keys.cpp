@@ -44,6 +44,7 @@ constexpr auto kKeyRows = [] {
         {typed_key('s'), 0, always, KeyAction::style, "S", "surface: glass, solid, wire"},
         {typed_key('c'), 0, always, KeyAction::cut, "C", "cut what is near"},
         {typed_key('i'), 0, always, KeyAction::picture, "I", "how the view is drawn; save a picture"},
+        {typed_key('d'), 0, always, KeyAction::input_devices, "D", "what SpaceMouse and gamepad do"},
         {typed_key('x'), 0, stereo, KeyAction::swap_eyes, "X", "stereo: swap the eyes"},
         {typed_key('+'), 0, bodies, KeyAction::raise_contour, "+", "contour level up"},
         {typed_key('-'), 0, bodies, KeyAction::lower_contour, "-", "contour level down"},

@@ -41,6 +41,7 @@ enum class KeyAction : std::uint8_t {
     style,
     cut,
     picture,
+    input_devices,
     swap_eyes,
     raise_contour,
     lower_contour,

@@ -35,6 +35,7 @@ GuiApp::GuiApp(const GuiOptions& options)
         state_.toggles = options.window_state.toggles;
         state_.toggles.style = SceneToggles{}.style;  // of the scene
         state_.span_choice = options.window_state.span_choice;
+        state_.input.choice = options.window_state.input;
         state_.lateness_choice = options.window_state.lateness_choice;
     }
     state_.toggles.smooth_edges = !window_.software();
@@ -95,6 +96,7 @@ void GuiApp::frame(Instant now, bool take_picture) {
     system().follow(context());
     follow_tools();
     if (panels_due_) handle_input();
+    follow_input();
     publish_mouse();
     {
         const PassClock::Scope scope(&passes_, Pass::adapt);

@@ -74,7 +74,10 @@ void GuiApp::perform(KeyAction what, std::size_t place) {
             state_.toggles.cut = !state_.toggles.cut;
             return;
         case KeyAction::picture:
-            state_.picture.open = !state_.picture.open;
+            open_alone(state_.picture.open, state_.input.open);
+            return;
+        case KeyAction::input_devices:
+            open_alone(state_.input.open, state_.picture.open);
             return;
         case KeyAction::swap_eyes:
             return stage_->swap_eyes();

@@ -36,15 +36,16 @@ void GuiApp::follow_tools() {
     }
 }
 
-void GuiApp::take_tool(std::size_t hand, bool by_key) {
-    drag_.take(hand, drag_tools_[hand], content_->meta, by_key);
+void GuiApp::take_tool(std::size_t hand, HeldBy by) {
+    drag_.take(hand, drag_tools_[hand], content_->meta, by);
     state_.mouse.taken = true;
 }
 
 void GuiApp::let_go_of_tool() {
     if (!drag_.holds()) return;
-    camera_waits_ = !drag_.by_key();  // until the button is released, or the drag would turn the view
+    camera_waits_ = drag_.held(HeldBy::button);  // until the button is released, or the drag would turn the view
     drag_.let_go();
+    for (RestGate& gate : input_gates_) gate.close();
     if (controller_.attached())
         region_->mouse.publish(drag_.record(controller_.generation(), to_ns(frame_at_)));
 }
@@ -55,30 +56,33 @@ void GuiApp::lead_or_let_go() {
     const ImVec2 p = ImGui::GetIO().MousePos;
     const std::size_t hand =
         ToolDrag::tool_near(drag_view(), drag_tools_, p.x, p.y, 1e6F).value_or(drag_tools_[0].may ? 0 : 1);
-    if (drag_tools_[hand].may) take_tool(hand, true);
+    if (drag_tools_[hand].may) take_tool(hand, HeldBy::key);
 }
 
 // With the input of a frame. True: the mouse leads a tool, or has just let it go, so it does not move the camera.
 bool GuiApp::lead_by_mouse() {
     const ImGuiIO& io = ImGui::GetIO();
     MouseHint& hint = state_.mouse;
-    hint.may = drag_tools_[0].may || drag_tools_[1].may;
+    hint.may = may_lead();
     near_tool_.reset();
+    const bool taken = hint.taken;
     if (!hint.may || calibration_.open()) {
         let_go_of_tool();
-        hint = {.taken = hint.taken};
+        hint = {};
+        hint.taken = taken;
         return false;
     }
     if (!io.MouseDown[0]) camera_waits_ = false;
     const bool free = !io.WantCaptureMouse && ImGui::IsMousePosValid();
     // The eyes of a stereo display see the tool at other places than a pointer.
-    if (!drag_.holds() && free && !stage_ && !camera_waits_)
+    // A drag of its ring takes the tool over from another device.
+    if (!drag_.by_pointer() && free && !stage_ && !camera_waits_)
         near_tool_ =
             ToolDrag::tool_near(drag_view(), drag_tools_, io.MousePos.x, io.MousePos.y, theme_.px(kNearPx));
-    if (near_tool_ && ImGui::IsMouseClicked(ImGuiMouseButton_Left)) take_tool(*near_tool_, false);
-    if (drag_.holds() && (drag_.by_key() ? !ImGui::IsMousePosValid() : !io.MouseDown[0])) let_go_of_tool();
+    if (near_tool_ && ImGui::IsMouseClicked(ImGuiMouseButton_Left)) take_tool(*near_tool_, HeldBy::button);
+    if (drag_.by_pointer() && (drag_.by_key() ? !ImGui::IsMousePosValid() : !io.MouseDown[0])) let_go_of_tool();
     if (drag_.holds() && !drag_tools_[drag_.hand()].may) let_go_of_tool();
-    if (drag_.holds()) {
+    if (drag_.by_pointer()) {
         const bool at_work = free || !drag_.by_key();  // not while the pointer is over a panel
         const bool begun = ImGui::IsMouseClicked(ImGuiMouseButton_Left) && !drag_.by_key();
         drag_.move(drag_view(), {.dx = at_work && !begun ? io.MouseDelta.x : 0.0F,
@@ -89,8 +93,8 @@ bool GuiApp::lead_by_mouse() {
                                  .drive = at_work && (io.MouseDown[1] || (drag_.by_key() && io.MouseDown[0])),
                                  .clutch = at_work && io.MouseDown[2]});
     }
-    if (drag_.holds() || near_tool_)
-        ImGui::SetMouseCursor(drag_.holds() ? ImGuiMouseCursor_ResizeAll : ImGuiMouseCursor_Hand);
+    if (drag_.by_pointer() || near_tool_)
+        ImGui::SetMouseCursor(drag_.by_pointer() ? ImGuiMouseCursor_ResizeAll : ImGuiMouseCursor_Hand);
     hint.holds = drag_.holds();
     hint.by_key = drag_.by_key();
     hint.near = near_tool_.has_value();
@@ -107,7 +111,8 @@ bool GuiApp::lead_by_mouse() {
             hint.label_y = at->y() + theme_.px(kHandlePx);
         }
     }
-    return drag_.holds() || camera_waits_;
+    hint_of_input();
+    return drag_.by_pointer() || camera_waits_;
 }
 
 // Every frame, also one without input: the controller takes silence for letting go.

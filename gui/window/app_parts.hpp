@@ -9,6 +9,7 @@
 // app_calibration  the screen of the stage during its calibration
 // app_input    mouse and keys
 // app_mouse    the mouse as a hand
+// app_steer    SpaceMouse and gamepad, as hand or as camera
 #pragma once
 
 #include <algorithm>
@@ -20,6 +21,8 @@
 #include <vector>
 
 #include "gui/dashboard/trace_export.hpp"
+#include "gui/input/gamepad.hpp"
+#include "gui/input/space_mouse.hpp"
 #include "gui/link/command_sender.hpp"
 #include "gui/link/controller.hpp"
 #include "gui/render/backdrop.hpp"
@@ -107,12 +110,21 @@ private:
     void mark_under_pointer();
     [[nodiscard]] DragView drag_view() const;
     void follow_tools();
-    void take_tool(std::size_t hand, bool by_key);
+    void take_tool(std::size_t hand, HeldBy by);
     void let_go_of_tool();
     void lead_or_let_go();
     [[nodiscard]] bool lead_by_mouse();
     void publish_mouse();
     void show_handles(ViewFrame& view) const;
+    [[nodiscard]] bool may_lead() const { return drag_tools_[0].may || drag_tools_[1].may; }
+    void follow_input();
+    void adopt_input_roles();
+    void steer_view(std::size_t device, const InputSample& sample, double frame_s);
+    void steer_tool(std::size_t device, const InputSample& sample, double frame_s);
+    [[nodiscard]] bool leads(std::size_t device) const;
+    [[nodiscard]] std::size_t hand_for(std::size_t device) const;
+    void hint_of_input();
+    [[nodiscard]] std::array<InputChoice, kInputDevices> kept_input() const;
     void publish_load();
     void publish_frames();
     [[nodiscard]] double due_s() const;
@@ -169,6 +181,16 @@ private:
     std::array<DragTool, kMouseHands> drag_tools_{};
     std::optional<std::size_t> near_tool_;  // under the pointer
     bool camera_waits_ = false;             // the button that held a tool is still down
+    std::optional<SpaceMouse> space_mouse_;  // while it is to do something
+    GlfwGamepadPort gamepad_port_;           // after the window
+    Gamepad gamepad_{gamepad_port_};
+    std::array<RestGate, kInputDevices> input_gates_;
+    std::array<InputSample, kInputDevices> input_samples_;  // of this frame
+    std::array<int, kInputDevices> input_roles_{};          // of the last frame
+    std::array<std::uint32_t, kInputDevices> input_buttons_{};
+    std::array<std::optional<int>, kInputDevices> input_role_left_;  // before a run asked for a hand
+    std::uint64_t roles_adopted_of_ = 0;                             // generation of a controller
+    Instant input_at_{};
     std::int64_t marked_at_ns_ = std::numeric_limits<std::int64_t>::min() / 2;  // by an instructor
     RingCursor traces_place_;                                                   // in the trace ring
     TraceExport trace_export_;

@@ -109,6 +109,7 @@ WindowState GuiApp::window_state() const {
     window_state.span_choice = state_.span_choice;
     window_state.lateness_choice = state_.lateness_choice;
     window_state.toggles = state_.toggles;
+    window_state.input = kept_input();
     if (content_) {
         window_state.scene = content_->checksum;
         window_state.origin_model_a = content_->centre_model_m / kAngstromM;

@@ -137,6 +137,19 @@ void message(const OverlayPen& pen, const PanelState& state, const PixelRect& v)
                       nullptr, most);
 }
 
+// While a SpaceMouse or a gamepad leads the tool.
+std::string device_hint(const MouseHint& m, const char* let_go) {
+    const char* const name = kInputNames[static_cast<std::size_t>(m.device)];
+    if (m.silent)
+        return format("The controller received nothing from the %s: the hand relaxed.", name);
+    if (m.gone) return format("The %s is gone: the tool's target stays.   %s: let go", name, let_go);
+    const std::string begin = m.drives ? std::string(m.bone ? "The burr runs. " : "Second button pressed. ")
+                                       : format("The %s leads the tool. ", name);
+    const char* const second = m.bone ? "burr" : "second button";
+    if (m.device == 0) return begin + format("Push: move   Twist: turn   Button 2: %s   %s: let go", second, let_go);
+    return begin + format("Left stick: move   Triggers: depth   Shoulder: turn   B: %s   %s: let go", second, let_go);
+}
+
 // One line about the mouse at the lower edge, while the pointer is over a tool or leads it.
 void mouse_hint(const OverlayPen& pen, const PanelState& state, const PixelRect& v) {
     const MouseHint& m = state.mouse;
@@ -149,10 +162,14 @@ void mouse_hint(const OverlayPen& pen, const PanelState& state, const PixelRect&
                                 IM_COL32(18, 22, 29, 205), 0.5F * h);
         pen.draw->AddText(pen.theme.small, pen.theme.small->FontSize, at, colour::kMouse, text.c_str());
     }
-    if (!m.near && !m.holds) return;
+    if (!m.near && !m.holds && m.waits.empty()) return;
+    const bool watch = m.silent || m.gone || (!m.holds && !m.near && m.waits_in_vain);
     const char* const key = state.keys.key_of(KeyAction::lead_tool);
     std::string text = format("Drag to lead the tool, or press %s.", key);
-    if (m.holds) {
+    if (!m.holds && !m.near) text = m.waits;
+    if (m.holds && m.device != MouseHint::kMouse) {
+        text = device_hint(m, state.keys.key_of(KeyAction::let_go_tool));
+    } else if (m.holds) {
         text = m.silent   ? "The controller received nothing from the mouse: the hand relaxed."
                : m.drives ? std::string(m.bone ? "The burr runs. " : "Second button pressed. ")
                           : std::string("The mouse leads the tool. ");
@@ -173,8 +190,8 @@ void mouse_hint(const OverlayPen& pen, const PanelState& state, const PixelRect&
     const ImVec2 at{v.x + 0.5F * (v.width - size.x) - px, v.y + v.height - size.y - 2.0F * py - above};
     const ImVec2 end{at.x + size.x + 2.0F * px, at.y + size.y + 2.0F * py};
     pen.draw->AddRectFilled(at, end, IM_COL32(18, 22, 29, 225), pen.theme.px(6.0F));
-    if (m.holds) pen.draw->AddRect(at, end, m.silent ? colour::kWatch : colour::kMouse, pen.theme.px(6.0F));
-    pen.draw->AddText(font, font->FontSize, {at.x + px, at.y + py}, m.silent ? colour::kWatch : colour::kText,
+    if (m.holds) pen.draw->AddRect(at, end, watch ? colour::kWatch : colour::kMouse, pen.theme.px(6.0F));
+    pen.draw->AddText(font, font->FontSize, {at.x + px, at.y + py}, watch ? colour::kWatch : colour::kText,
                       text.c_str(), nullptr, most - 2.0F * px);
 }
 

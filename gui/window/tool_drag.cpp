@@ -43,9 +43,9 @@ std::optional<std::size_t> ToolDrag::tool_near(const DragView& view, std::span<c
     return nearest;
 }
 
-void ToolDrag::take(std::size_t hand, const DragTool& tool, const SceneMeta& meta, bool by_key) {
+void ToolDrag::take(std::size_t hand, const DragTool& tool, const SceneMeta& meta, HeldBy by) {
     holds_ = true;
-    by_key_ = by_key;
+    by_ = by;
     hand_ = hand;
     buttons_ = 0;
     target_ = tool.T_world_tool;
@@ -78,7 +78,25 @@ void ToolDrag::move(const DragView& view, const DragMotion& motion) {
         meta.world_per_model * kAngstromM * (fine * a_per_px * Eigen::Vector3f(dx, -dy, 0.0F)).cast<double>();
     const Vec3 away_world_m(0.0, 0.0, -kWheelM * static_cast<double>(fine * wheel));
     target_.p_m += back * (across_world_m + away_world_m);
-    target_.p_m = target_.p_m.cwiseMax(-kReachM).cwiseMin(kReachM);
+    bound();
+}
+
+void ToolDrag::steer(const DragView& view, const Vec3& move_eye_m, const Vec3& turn_eye_rad,
+                     std::uint32_t buttons) {
+    if (!holds_) return;
+    buttons_ = buttons & MouseTopic::kButtons;
+    if (!move_eye_m.allFinite() || !turn_eye_rad.allFinite()) return;
+    const Quat back = view.q_eye_scene.conjugate().cast<double>();
+    target_.p_m += back * move_eye_m;
+    target_.q = (quat_from_rotation_vector(back * turn_eye_rad) * target_.q).normalized();
+    bound();
+}
+
+void ToolDrag::bound() { target_.p_m = target_.p_m.cwiseMax(-kReachM).cwiseMin(kReachM); }
+
+LeadDevice ToolDrag::device() const {
+    if (by_ == HeldBy::spacemouse) return LeadDevice::spacemouse;
+    return by_ == HeldBy::gamepad ? LeadDevice::gamepad : LeadDevice::mouse;
 }
 
 MouseTopic ToolDrag::record(std::uint64_t generation, std::int64_t now_ns) const {
@@ -90,6 +108,7 @@ MouseTopic ToolDrag::record(std::uint64_t generation, std::int64_t now_ns) const
     t.buttons = holds_ ? buttons_ : 0U;
     t.hand = static_cast<std::uint8_t>(hand_);
     t.holds = holds_ ? 1 : 0;
+    t.device = static_cast<std::uint8_t>(device());
     return t;
 }
 

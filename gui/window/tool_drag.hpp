@@ -1,8 +1,10 @@
-// The mouse as a hand: turns the motion of the pointer into a pose at which the emulated hand is to be.
+// The mouse as a hand: turns the motion of the pointer into a pose at which the emulated hand is to be. So it does with the motion of a
+// SpaceMouse or a gamepad.
 //
 // Take      begins at the tool's pose; what the pointer does from then on moves the target, not the tool: the hand follows on a spring
 // Move      in the plane of the view at the target's depth, so the target stays under the pointer
 // Wheel     away from the viewer and towards them;  turn: as the camera turns, about the tool;  fine: a fifth
+// Steer     by a SpaceMouse or a gamepad, in the eye's axes: metres of the world and radians
 // Bounded   to kReachM about the workspace's origin; the arm bounds it further
 // Frames    pointer and view in the window's units, y down; poses in the world, SI; places in the model
 // Thread    frame thread; plain arithmetic
@@ -41,6 +43,9 @@ struct DragMotion {
     bool drive = false, clutch = false;  // second and first button of the stylus
 };
 
+// How a tool is held.
+enum class HeldBy : std::uint8_t { button, key, spacemouse, gamepad };
+
 class ToolDrag {
 public:
     static constexpr double kReachM = 0.45;
@@ -55,13 +60,18 @@ public:
                                                               std::span<const DragTool> tools, float x,
                                                               float y, float within);
 
-    // by_key: it holds without a button, until let_go().
-    void take(std::size_t hand, const DragTool& tool, const SceneMeta& meta, bool by_key);
+    // Except by a button of the mouse, it holds until let_go().
+    void take(std::size_t hand, const DragTool& tool, const SceneMeta& meta, HeldBy by);
     void let_go() { holds_ = false; }
     void move(const DragView& view, const DragMotion& motion);
+    // turn, move: of this frame, in the eye's axes; not finite: nothing moves. buttons: of the stylus.
+    void steer(const DragView& view, const Vec3& move_eye_m, const Vec3& turn_eye_rad, std::uint32_t buttons);
 
     [[nodiscard]] bool holds() const { return holds_; }
-    [[nodiscard]] bool by_key() const { return holds_ && by_key_; }
+    [[nodiscard]] bool held(HeldBy by) const { return holds_ && by_ == by; }
+    [[nodiscard]] bool by_key() const { return held(HeldBy::key); }
+    [[nodiscard]] bool by_pointer() const { return held(HeldBy::button) || held(HeldBy::key); }
+    [[nodiscard]] LeadDevice device() const;
     [[nodiscard]] std::size_t hand() const { return hand_; }
     [[nodiscard]] const Pose& target() const { return target_; }
     [[nodiscard]] std::uint32_t buttons() const { return buttons_; }
@@ -73,7 +83,10 @@ public:
     [[nodiscard]] MouseTopic record(std::uint64_t generation, std::int64_t now_ns) const;
 
 private:
-    bool holds_ = false, by_key_ = false;
+    void bound();
+
+    bool holds_ = false;
+    HeldBy by_ = HeldBy::button;
     std::size_t hand_ = 0;
     std::uint32_t buttons_ = 0;
     Pose target_;

@@ -19,6 +19,7 @@ constexpr std::array<const char*, 4> kColourings{"chain", "element", "body", "fi
 constexpr std::array<const char*, WindowState::kSpans> kSpanNames{"1 min", "10 min", "1 h", "6 h", "24 h"};
 constexpr std::array<const char*, WindowState::kLateness> kLatenessNames{"last minute", "whole run",
                                                                          "over time"};
+constexpr std::array<const char*, kInputDevices> kInputKeys{"spacemouse", "gamepad"};
 constexpr double kFarA = 1e13, kNoOrigin = 2.0 * kFarA;
 
 struct Flag {
@@ -78,6 +79,23 @@ WindowState read_window_state_text(std::string_view text, const std::string& nam
         {"scene.distance_a", std::span<double>(&s.distance_a, 1), 0.0, kFarA},
     };
     for (const Flag& flag : kFlags) keys.push_back({flag.name, &(s.toggles.*flag.value)});
+    std::array<std::string, 4 * kInputDevices> input_keys;
+    for (std::size_t i = 0; i < kInputDevices; ++i) {
+        InputChoice& choice = s.input[i];
+        const std::string key = std::string("input.") + kInputKeys[i];
+        std::string* const names = &input_keys[4 * i];
+        names[0] = key;
+        names[1] = key + "_speed";
+        names[2] = key + "_dead_zone";
+        names[3] = key + "_curve";
+        keys.push_back({names[0].c_str(), TomlChoice{&choice.role, kInputRoleNames}});
+        keys.push_back({names[1].c_str(), std::span<double>(&choice.speed, 1), InputChoice::kSpeedLeast,
+                        InputChoice::kSpeedMost});
+        keys.push_back({names[2].c_str(), std::span<double>(&choice.dead_zone, 1),
+                        InputChoice::kDeadZoneLeast, InputChoice::kDeadZoneMost});
+        keys.push_back({names[3].c_str(), std::span<double>(&choice.curve, 1), InputChoice::kCurveLeast,
+                        InputChoice::kCurveMost});
+    }
     static_cast<void>(reader.read(text, keys));
     s.width_px = static_cast<int>(size[0]);
     s.height_px = static_cast<int>(size[1]);
@@ -111,6 +129,14 @@ std::string window_state_text(const WindowState& s) {
     text += line("lateness", quoted(name_of(kLatenessNames, s.lateness_choice)));
     text += "[show]\n";
     for (const Flag& f : kFlags) text += line(f.name + sizeof "show", flag(s.toggles.*f.value));
+    text += "[input]\n";
+    for (std::size_t i = 0; i < kInputDevices; ++i) {
+        const std::string key = kInputKeys[i];
+        text += line(key.c_str(), quoted(name_of(kInputRoleNames, s.input[i].role)));
+        text += line((key + "_speed").c_str(), number(s.input[i].speed));
+        text += line((key + "_dead_zone").c_str(), number(s.input[i].dead_zone));
+        text += line((key + "_curve").c_str(), number(s.input[i].curve));
+    }
     if (s.scene == 0) return text;
     text += "[scene]\n" + line("checksum", quoted(checksum));
     text += line("surface", quoted(name_of(kStyles, s.toggles.style)));

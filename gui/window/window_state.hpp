@@ -3,16 +3,19 @@
 // as safe as without the file.
 //
 // Everywhere  size of the window, choice of plots, visible content
+// Input       what SpaceMouse and gamepad do, and how they respond
 // Of a scene  style and view: only for the scene of that checksum; others start with their defaults
 // Fails       by StartupError with the key, its range and the file
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <filesystem>
 #include <optional>
 #include <string>
 #include <string_view>
 
+#include "gui/dashboard/input_choice.hpp"
 #include "gui/dashboard/scene_toggles.hpp"
 #include "ipc/base/pose.hpp"
 
@@ -25,6 +28,7 @@ struct WindowState {
     int span_choice = 0;      // of the plots, numbered as in the dashboard
     int lateness_choice = 0;  // likewise
     SceneToggles toggles;     // style, molecule and colouring are the scene's
+    std::array<InputChoice, kInputDevices> input = kInputDefaults;  // SpaceMouse, gamepad
     std::uint64_t scene = 0;  // its checksum; 0: none was shown
     std::optional<Vec3>
         origin_model_a;  // of the frame of the scene, which another content moves; none: as it is now

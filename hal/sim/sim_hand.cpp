@@ -47,10 +47,10 @@ SimHand::SimHand(const SimHandSettings& settings, const Vec3& reach_m)
         surgeon_.emplace(SimSurgeonSettings{
             .suction_tube = settings.script == "suction-tube", .seed = settings.seed, .at_m = settings.at_m});
         pose_ = surgeon_->begin();
-    } else if (settings.script != "passive" && settings.script != "mouse" && !wanders_) {
+    } else if (settings.script != "passive" && !is_led_hand(settings.script) && !wanders_) {
         throw StartupError("emulated hand", "no script has the name \"" + settings.script + "\"",
                            "use \"passive\", \"wander\", \"stroke\", \"drill\", \"surgeon\", "
-                           "\"suction-tube\" or \"mouse\" (device.hand)");
+                           "\"suction-tube\", \"mouse\", \"spacemouse\" or \"gamepad\" (device.hand)");
     }
     std::mt19937_64 random(settings.seed);
     const auto uniform = [&random](double low, double high) {

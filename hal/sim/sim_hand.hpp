@@ -4,7 +4,8 @@
 // Step      exact for a force that is constant over the step, so stable at any step and any servo rate
 // Scripts   passive: moved only by the motors. wander: moved by a smooth random motion. stroke: the same,
 //           mostly sideways, and pressed down onto the surface. drill: the same, slowly away from the user.
-//           surgeon, suction-tube: sim_surgeon.hpp. mouse: as passive, until a pointer takes it (mouse_hand.hpp).
+//           surgeon, suction-tube: sim_surgeon.hpp. mouse, spacemouse, gamepad: as passive, until a pointer takes it
+//           (mouse_hand.hpp).
 // Pointer   once one has taken the hand, with any script, the script is over: between two grips the hand is passive
 #pragma once
 
@@ -21,8 +22,12 @@
 
 namespace tact {
 
-inline constexpr std::array kSimHandNames{"passive", "wander",       "stroke", "drill",
-                                          "surgeon", "suction-tube", "mouse"};
+inline constexpr std::array kSimHandNames{"passive",      "wander", "stroke",     "drill",  "surgeon",
+                                          "suction-tube", "mouse",  "spacemouse", "gamepad"};
+// Waits for a pointer in the window.
+[[nodiscard]] inline bool is_led_hand(const std::string& name) {
+    return name == "mouse" || name == "spacemouse" || name == "gamepad";
+}
 // Recordings from before 2026-11-25 hold the former name.
 inline std::string current_hand_name(const std::string& name) {
     return name == "sucker" ? "suction-tube" : name;  // former name

@@ -1,4 +1,4 @@
-// The mouse as a hand: a pointer in the window leads an emulated hand.
+// The mouse as a hand: a pointer in the window leads an emulated hand. So do a SpaceMouse and a gamepad: the window moves the target for them.
 //
 // MouseTopic       from the window, every frame while the pointer holds a tool, and once when it lets go: where the hand is to be
 // MouseStateTopic  from the housekeeping thread, at every change and ten times a second: which hands a pointer may lead, and which it leads
@@ -6,6 +6,7 @@
 // Stale            a record that is not renewed within kMouseStaleNs counts as having let go
 #pragma once
 
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -18,6 +19,10 @@ namespace tact {
 inline constexpr std::size_t kMouseHands = 2;
 inline constexpr std::int64_t kMouseStaleNs = 250'000'000;
 
+// What a person holds at the window instead of an arm.
+enum class LeadDevice : std::uint8_t { mouse, spacemouse, gamepad, count };
+inline constexpr std::array kLeadDeviceNames{"mouse", "spacemouse", "gamepad"};  // in options and reports
+
 struct alignas(64) MouseTopic {
     static constexpr TopicInfo kInfo{.name = "mouse", .version = 1, .writer = Writer::gui};
     static constexpr double kReachM = 1.0;  // no arm's workspace is larger; each arm bounds it further
@@ -29,7 +34,8 @@ struct alignas(64) MouseTopic {
     std::uint32_t buttons;      // of the stylus, as ToolTopic::buttons
     std::uint8_t hand;          // 0 or 1
     std::uint8_t holds;         // 1: the pointer holds the tool; 0: it lets go
-    std::uint8_t reserved[46];  // zero
+    std::uint8_t device;        // LeadDevice that moves the target
+    std::uint8_t reserved[45];  // zero
 };
 static_assert(std::is_trivially_copyable_v<MouseTopic> && sizeof(MouseTopic) == 128);
 
@@ -40,7 +46,7 @@ static_assert(std::is_trivially_copyable_v<MouseTopic> && sizeof(MouseTopic) == 
         if (!(std::abs(p) <= MouseTopic::kReachM)) return false;  // also what is not a number
     for (const double q : t.quat_world_tool_xyzw) square += q * q;
     return square > 0.98 && square < 1.02 && (t.buttons & ~MouseTopic::kButtons) == 0 &&
-           t.hand < kMouseHands && t.holds <= 1;
+           t.hand < kMouseHands && t.holds <= 1 && t.device < static_cast<std::uint8_t>(LeadDevice::count);
 }
 
 enum class MouseLead : std::uint8_t {
@@ -57,14 +63,20 @@ struct alignas(64) MouseStateTopic {
     std::uint64_t
         refused;  // records with an impossible value, for another controller, or for a hand that follows no pointer
     std::uint64_t stale;             // times that a pointer fell silent while it held a hand
-    std::uint8_t lead[kMouseHands];  // MouseLead
-    std::uint8_t reserved[30];       // zero
+    std::uint8_t lead[kMouseHands];    // MouseLead
+    std::uint8_t wanted[kMouseHands];  // LeadDevice that the configuration names for this hand; the mouse if it names none
+    std::uint8_t by[kMouseHands];      // LeadDevice that leads it, or led it last
+    std::uint8_t reserved[26];         // zero
 };
 static_assert(std::is_trivially_copyable_v<MouseStateTopic> && sizeof(MouseStateTopic) == 64);
 
 [[nodiscard]] inline bool sensible(const MouseStateTopic& t) noexcept {
     for (const std::uint8_t lead : t.lead)
         if (lead > static_cast<std::uint8_t>(MouseLead::stale)) return false;
+    for (std::size_t i = 0; i < kMouseHands; ++i)
+        if (t.wanted[i] >= static_cast<std::uint8_t>(LeadDevice::count) ||
+            t.by[i] >= static_cast<std::uint8_t>(LeadDevice::count))
+            return false;
     return true;
 }
 

@@ -322,8 +322,17 @@ DeviceSettings device2_settings_from(const RtConfig& c) {
 
 std::array<bool, 2> mouse_hands(const RtConfig& c) {
     const std::string& second = c.device2.hand == kAsDevice ? c.device.hand : c.device2.hand;
-    return {c.device.driver == "sim" && (c.device.mouse || c.device.hand == "mouse"),
-            c.device2.driver == "sim" && (c.device.mouse || second == "mouse")};
+    return {c.device.driver == "sim" && (c.device.mouse || is_led_hand(c.device.hand)),
+            c.device2.driver == "sim" && (c.device.mouse || is_led_hand(second))};
+}
+
+std::array<LeadDevice, 2> lead_devices(const RtConfig& c) {
+    const auto named = [](const std::string& script) {
+        const auto at = std::find(kLeadDeviceNames.begin(), kLeadDeviceNames.end(), script);
+        return at == kLeadDeviceNames.end() ? LeadDevice::mouse
+                                            : static_cast<LeadDevice>(at - kLeadDeviceNames.begin());
+    };
+    return {named(c.device.hand), named(c.device2.hand == kAsDevice ? c.device.hand : c.device2.hand)};
 }
 
 TrackerSettings tracker_settings_from(const RtConfig& c) {

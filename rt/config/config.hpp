@@ -181,8 +181,10 @@ void check_config(const RtConfig& config, const std::string& where);
 [[nodiscard]] DeviceSettings device_settings_from(const RtConfig& config);
 // Second hand: same arm parameters; its own driver, serial and seed.
 [[nodiscard]] DeviceSettings device2_settings_from(const RtConfig& config);
-// The hands that a pointer in the window may lead: emulated ones, by the script "mouse" or by device.mouse.
+// The hands that a pointer in the window may lead: emulated ones, by a script with the name of a LeadDevice or by device.mouse.
 [[nodiscard]] std::array<bool, 2> mouse_hands(const RtConfig& config);
+// The device that each hand's script names; the mouse for other scripts.
+[[nodiscard]] std::array<LeadDevice, 2> lead_devices(const RtConfig& config);
 [[nodiscard]] LinesSettings lines_settings_from(const RtConfig& config);
 [[nodiscard]] TrackerSettings tracker_settings_from(const RtConfig& config);
 [[nodiscard]] HeadSettings head_settings_from(const RtConfig& config);

@@ -80,14 +80,14 @@ void describe(CLI::App& app, StartOptions& o, StartOverrides& v) {
            "baked with --modes")
         ->check(CLI::IsMember({"on", "off"}))
         ->capture_default_str();
-    app.add_option("--hand", v.hand, "Motion of the emulated hand; mouse: led by the mouse in the window")
-        ->type_name("passive|wander|stroke|drill|surgeon|suction-tube|mouse");
+    app.add_option("--hand", v.hand, "Motion of the emulated hand; mouse, spacemouse, gamepad: led by that device in the window")
+        ->type_name("passive|wander|stroke|drill|surgeon|suction-tube|mouse|spacemouse|gamepad");
     app.add_flag("--mouse", v.mouse,
                  "The mouse in the window may take an emulated hand from its motion, and then leads it");
     app.add_option("--hand2", v.hand2,
                    "Motion of a second, emulated hand, if the configuration has none; suction-tube: "
                    "accompanies the surgeon")
-        ->type_name("passive|wander|stroke|drill|surgeon|suction-tube|mouse");
+        ->type_name("passive|wander|stroke|drill|surgeon|suction-tube|mouse|spacemouse|gamepad");
     app.add_option("--hand-at-mm", v.hand_at_mm, "Position at which an emulated surgeon works (mm)")
         ->delimiter(',')
         ->expected(2);

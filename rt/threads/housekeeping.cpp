@@ -48,7 +48,7 @@ Housekeeping::Housekeeping(HousekeepingSettings settings, OwnedRegion<RtRegion>&
       mailbox_(mailbox),
       link_(link),
       builder_(mailbox, settings_.servo_thread_id),
-      mouse_({settings_.mouse, settings_.T_dev_world, region.generation()}) {
+      mouse_({settings_.mouse, settings_.T_dev_world, region.generation(), settings_.lead_device}) {
     report_.gui_heartbeat_ns = -1;
 }
 

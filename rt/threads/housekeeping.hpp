@@ -38,6 +38,7 @@ struct HousekeepingSettings {
     std::uint64_t page_faults_at_start = 0;
     std::array<Latest<MouseTarget>*, kMouseHands> mouse{};  // of emulated hands that follow a pointer
     Pose T_dev_world;
+    std::array<LeadDevice, kMouseHands> lead_device{};  // that the configuration names for each hand
 };
 
 class Housekeeping {

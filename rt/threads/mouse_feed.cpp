@@ -16,8 +16,10 @@ constexpr Duration kStateEvery = std::chrono::milliseconds(100);
 }  // namespace
 
 MouseFeed::MouseFeed(const MouseFeedSettings& settings) : settings_(settings) {
-    for (std::size_t i = 0; i < kMouseHands; ++i)
+    for (std::size_t i = 0; i < kMouseHands; ++i) {
         state_.lead[i] = code_of(settings_.hand[i] != nullptr ? MouseLead::may : MouseLead::none);
+        state_.wanted[i] = static_cast<std::uint8_t>(settings_.wanted[i]);
+    }
 }
 
 void MouseFeed::publish(std::size_t hand, const MouseTarget& target) {
@@ -48,6 +50,10 @@ std::uint64_t MouseFeed::pass_on(const Latest<MouseTopic>& from, Instant now) {
     std::copy_n(T_dev_tool.q.coeffs().data(), 4, target.quat_dev_tool_xyzw);
     target.buttons = t.holds != 0 ? t.buttons : 0U;
     target.holds = t.holds;
+    if (target.holds != 0) {
+        changed_ = changed_ || state_.by[t.hand] != t.device;
+        state_.by[t.hand] = t.device;
+    }
     publish(t.hand, target);
     // One mouse holds one hand.
     const std::size_t other = 1U - t.hand;
@@ -73,7 +79,8 @@ bool MouseFeed::follow(Instant now) {
         state_.lead[i] = code_of(MouseLead::stale);
         ++state_.stale;
         changed_ = true;
-        spdlog::warn("no target from the mouse for {} ms: hand {} relaxes", kMouseStaleNs / 1'000'000, i + 1);
+        spdlog::warn("no target from the {} for {} ms: hand {} relaxes", kLeadDeviceNames[state_.by[i]],
+                     kMouseStaleNs / 1'000'000, i + 1);
     }
     if (!changed_ && now - told_at_ < kStateEvery) return false;
     changed_ = false;

@@ -42,6 +42,7 @@ if(TACT_GUI)
     if(NOT TACT_SANITIZE)
         add_test(NAME operate_test COMMAND tests/e2e/operate_test.py $<TARGET_FILE_DIR:tact> WORKING_DIRECTORY ${CMAKE_SOURCE_DIR})
         add_test(NAME mouse_hand_test COMMAND tests/e2e/mouse_hand_test.py $<TARGET_FILE_DIR:tact> WORKING_DIRECTORY ${CMAKE_SOURCE_DIR})
+        add_test(NAME space_mouse_test COMMAND tests/e2e/space_mouse_test.py $<TARGET_FILE_DIR:tact> WORKING_DIRECTORY ${CMAKE_SOURCE_DIR})
         add_test(NAME labels_test COMMAND tests/e2e/labels_test.py $<TARGET_FILE_DIR:tact> WORKING_DIRECTORY ${CMAKE_SOURCE_DIR})
         add_test(NAME window_states_test COMMAND tests/e2e/window_states_test.py $<TARGET_FILE_DIR:tact>
             ${CMAKE_BINARY_DIR}/window_states 1280x720 WORKING_DIRECTORY ${CMAKE_SOURCE_DIR})
@@ -50,7 +51,7 @@ if(TACT_GUI)
         add_test(NAME add_structure_test COMMAND tests/e2e/add_structure_test.py $<TARGET_FILE_DIR:tact> WORKING_DIRECTORY ${CMAKE_SOURCE_DIR})
         add_test(NAME session_test COMMAND tests/e2e/session_test.py $<TARGET_FILE_DIR:tact> WORKING_DIRECTORY ${CMAKE_SOURCE_DIR})
         add_test(NAME look_back_test COMMAND tests/e2e/look_back_test.py $<TARGET_FILE_DIR:tact> WORKING_DIRECTORY ${CMAKE_SOURCE_DIR})
-        set_tests_properties(operate_test mouse_hand_test labels_test window_states_test figures_test start_page_test session_test look_back_test add_structure_test
+        set_tests_properties(operate_test mouse_hand_test space_mouse_test labels_test window_states_test figures_test start_page_test session_test look_back_test add_structure_test
             PROPERTIES LABELS e2e TIMEOUT 900 SKIP_RETURN_CODE 77 RUN_SERIAL TRUE)
     endif()
 endif()

@@ -43,7 +43,7 @@ protected:
 };
 
 TEST_F(ToolDragTest, taking_a_tool_begins_at_its_pose_and_where_it_is_drawn) {
-    drag_.take(1, tool(), meta_, false);
+    drag_.take(1, tool(), meta_, HeldBy::button);
     drag_.move(view(), {});
     EXPECT_EQ(drag_.target().p_m, tool().T_world_tool.p_m);
     EXPECT_LT((drag_.target_model_m(meta_) - tool().at_model_m).norm(), 1e-16);
@@ -59,7 +59,7 @@ TEST_F(ToolDragTest, taking_a_tool_begins_at_its_pose_and_where_it_is_drawn) {
 TEST_F(ToolDragTest, the_target_stays_under_the_pointer_at_its_depth_from_any_side) {
     for (const float turned : {0.0F, 90.0F, 400.0F}) {
         camera_.rotate(turned, 0.5F * turned, 500.0F);
-        drag_.take(0, tool(), meta_, false);
+        drag_.take(0, tool(), meta_, HeldBy::button);
         const Eigen::Vector2f begun = target_px();
         const float depth = (view().eye.eye_from_scene *
                              ((drag_.target_model_m(meta_) - centre_m_) * 1e10).cast<float>().homogeneous())
@@ -75,18 +75,18 @@ TEST_F(ToolDragTest, the_target_stays_under_the_pointer_at_its_depth_from_any_si
 }
 
 TEST_F(ToolDragTest, the_wheel_moves_it_along_the_view_and_fine_is_a_fifth) {
-    drag_.take(0, tool(), meta_, false);
+    drag_.take(0, tool(), meta_, HeldBy::button);
     drag_.move(view(), {.wheel = 2.0F});
     const Vec3 away = drag_.target().p_m - tool().T_world_tool.p_m;
     const Vec3 seen = camera_.orientation().cast<double>() * away;
     EXPECT_LT((seen - Vec3(0.0, 0.0, -2.0 * ToolDrag::kWheelM)).norm(), 1e-8);
-    drag_.take(0, tool(), meta_, false);
+    drag_.take(0, tool(), meta_, HeldBy::button);
     drag_.move(view(), {.wheel = 2.0F, .fine = true});
     EXPECT_LT((drag_.target().p_m - tool().T_world_tool.p_m - ToolDrag::kFine * away).norm(), 1e-8);
 }
 
 TEST_F(ToolDragTest, turning_turns_the_tool_as_the_camera_turns_the_scene) {
-    drag_.take(0, tool(), meta_, false);
+    drag_.take(0, tool(), meta_, HeldBy::button);
     const Quat before = camera_.orientation().cast<double>() * drag_.target().q;
     drag_.move(view(), {.dx = 52.0F, .dy = 13.0F, .turn = true});
     Camera turned = camera_;
@@ -96,7 +96,7 @@ TEST_F(ToolDragTest, turning_turns_the_tool_as_the_camera_turns_the_scene) {
     EXPECT_GT(before.angularDistance(as_camera), 0.2);
     EXPECT_EQ(drag_.target().p_m, tool().T_world_tool.p_m);
     // The wheel rolls it about the view.
-    drag_.take(0, tool(), meta_, false);
+    drag_.take(0, tool(), meta_, HeldBy::button);
     drag_.move(view(), {.wheel = 1.0F, .turn = true});
     const Vec3 roll = rotation_vector_rad(drag_.target().q * tool().T_world_tool.q.conjugate());
     EXPECT_LT(
@@ -106,7 +106,7 @@ TEST_F(ToolDragTest, turning_turns_the_tool_as_the_camera_turns_the_scene) {
 }
 
 TEST_F(ToolDragTest, buttons_are_those_of_the_stylus_and_end_with_the_hold) {
-    drag_.take(0, tool(), meta_, true);
+    drag_.take(0, tool(), meta_, HeldBy::key);
     EXPECT_TRUE(drag_.by_key());
     drag_.move(view(), {.drive = true});
     EXPECT_EQ(drag_.record(1, 0).buttons, 2U);
@@ -123,7 +123,7 @@ TEST_F(ToolDragTest, buttons_are_those_of_the_stylus_and_end_with_the_hold) {
 
 TEST_F(ToolDragTest, no_input_leads_to_a_record_that_the_controller_refuses) {
     const float nan = std::numeric_limits<float>::quiet_NaN();
-    drag_.take(0, tool(), meta_, false);
+    drag_.take(0, tool(), meta_, HeldBy::button);
     for (const float wild : {1e30F, -1e30F, 1e6F, nan, HUGE_VALF}) {
         drag_.move(view(), {.dx = wild, .dy = 1.0F, .wheel = wild});
         EXPECT_TRUE(sensible(drag_.record(1, 0))) << wild;
