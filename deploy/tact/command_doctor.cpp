@@ -5,6 +5,7 @@
 #include "deploy/tact/commands.hpp"
 #include "deploy/tact/doctor.hpp"
 #include "deploy/tact/findings.hpp"
+#include "deploy/tact/probe.hpp"
 #include "ipc/version/version.hpp"
 
 namespace tact::launch {
@@ -14,6 +15,8 @@ int doctor(const std::string& session, bool as_json) {
     auto findings = try_surroundings(session);
     const auto machine = judge(read_machine());
     findings.insert(findings.end(), machine.begin(), machine.end());
+    const auto input = judge_input(find_spacenav(), probe::joysticks());
+    findings.insert(findings.end(), input.begin(), input.end());
     const bool good = none_fails(findings);
     if (as_json) {
         const nlohmann::json report = {

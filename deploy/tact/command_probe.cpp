@@ -59,6 +59,8 @@ int run_probe(const std::string& config, const std::string& root, bool as_json) 
             probe::listen_to_igtl(request.tracker_host, request.tracker_port, period, kIgtlPatience),
             request));
     }
+    for (Finding& f : judge_input(find_spacenav(root), probe::joysticks(root)))
+        findings.push_back(std::move(f));
     for (Finding& f : judge(read_machine(root))) {
         for (const char* const name : kMachineRows) {
             if (f.name == name) findings.push_back(std::move(f));

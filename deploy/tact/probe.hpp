@@ -13,6 +13,7 @@
 #include "deploy/tact/rights.hpp"
 #include "hal/probe/buses.hpp"
 #include "hal/probe/igtl_answer.hpp"
+#include "ipc/spacenav/spacenav_socket.hpp"
 
 namespace tact::launch {
 
@@ -43,6 +44,10 @@ struct VendorLibraries {
 
 // What the OpenIGTLink server of the request sends; only for tracker.driver = "openigtlink".
 [[nodiscard]] Finding judge_igtl(const probe::IgtlAnswer& answer, const DeviceRequest& request);
+
+// SpaceMouse and gamepads, which lead an emulated hand or move the view; none is needed.
+[[nodiscard]] std::vector<Finding> judge_input(const SpacenavFound& spacenav,
+                                               const probe::Bus<probe::Joystick>& sticks);
 
 [[nodiscard]] std::vector<Finding> judge_devices(const probe::Buses& buses, const DeviceRequest& request,
                                                  const Person& person, const VendorLibraries& libraries);

@@ -120,7 +120,11 @@ json mouse(const RtRegion& region) {
     json by = json::array();
     for (const std::uint8_t lead : m->lead) hands.push_back(kLeads[lead]);
     for (const std::uint8_t device : m->by) by.push_back(kLeadDeviceNames[device]);
-    return {{"hands", hands}, {"devices", by}, {"accepted", m->accepted}, {"refused", m->refused}, {"silences", m->stale}};
+    return {{"hands", hands},
+            {"devices", by},
+            {"accepted", m->accepted},
+            {"refused", m->refused},
+            {"silences", m->stale}};
 }
 
 // Of the cycles with force since the start.

@@ -52,19 +52,19 @@ struct SceneState {
 // The mouse as a hand, or a SpaceMouse or gamepad.
 struct MouseHint {
     static constexpr int kMouse = -1;
-    bool may = false;     // it may lead a tool
-    bool near = false;    // the pointer is over one
-    bool holds = false;   // it leads one
-    bool by_key = false;  // without a button
-    int device = kMouse;  // that leads it: kMouse, or the number in kInputNames
-    bool gone = false;    // that device is unplugged: the target stays
-    std::string waits;    // for a device that is chosen as hand: what to do; "": nothing
+    bool may = false;            // it may lead a tool
+    bool near = false;           // the pointer is over one
+    bool holds = false;          // it leads one
+    bool by_key = false;         // without a button
+    int device = kMouse;         // that leads it: kMouse, or the number in kInputNames
+    bool gone = false;           // that device is unplugged: the target stays
+    std::string waits;           // for a device that is chosen as hand: what to do; "": nothing
     bool waits_in_vain = false;  // the device is missing
-    bool drives = false;  // the second button of the stylus is pressed
-    bool bone = false;    // which runs a burr
-    bool silent = false;  // the controller received nothing for a while
-    bool taken = false;   // at least once
-    bool label = false;   // the first tool is shown there, below its ring
+    bool drives = false;         // the second button of the stylus is pressed
+    bool bone = false;           // which runs a burr
+    bool silent = false;         // the controller received nothing for a while
+    bool taken = false;          // at least once
+    bool label = false;          // the first tool is shown there, below its ring
     float label_x = 0.0F, label_y = 0.0F;
 };
 

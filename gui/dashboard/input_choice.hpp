@@ -27,7 +27,7 @@ struct InputChoice {
 };
 
 // A gamepad's sticks rest less precisely.
-inline constexpr std::array<InputChoice, kInputDevices> kInputDefaults{
-    InputChoice{}, InputChoice{.dead_zone = 0.15}};
+inline constexpr std::array<InputChoice, kInputDevices> kInputDefaults{InputChoice{},
+                                                                       InputChoice{.dead_zone = 0.15}};
 
 }  // namespace tact

@@ -18,7 +18,7 @@ GamepadSticks sticks_of(const GamepadState& s, const InputChoice& choice) {
     const auto trigger = [&](std::size_t i) {
         return shaped(0.5 * (static_cast<double>(s.axes[i]) + 1.0), choice);
     };
-    return {axis(0), -axis(1),    axis(2), -axis(3), trigger(5) - trigger(4), (s.buttons & kShoulders) != 0};
+    return {axis(0), -axis(1), axis(2), -axis(3), trigger(5) - trigger(4), (s.buttons & kShoulders) != 0};
 }
 
 }  // namespace
@@ -34,8 +34,8 @@ Deflection gamepad_hand(const GamepadState& state, const InputChoice& choice) {
 
 Deflection gamepad_view(const GamepadState& state, const InputChoice& choice) {
     const GamepadSticks s = sticks_of(state, choice);
-    const Vec3 turn = s.shoulder ? Vec3(0.0, 0.0, -s.left_right - s.triggers)
-                                 : Vec3(-s.left_up, s.left_right, 0.0);
+    const Vec3 turn =
+        s.shoulder ? Vec3(0.0, 0.0, -s.left_right - s.triggers) : Vec3(-s.left_up, s.left_right, 0.0);
     return {Vec3(s.right_right, s.right_up, s.shoulder ? 0.0 : s.triggers), turn};
 }
 
@@ -51,8 +51,7 @@ InputSample Gamepad::sample(const InputChoice& choice) const {
     s.present = state_.connected;
     s.connection = connection_;
     if (!s.present) return s;
-    s.deflection =
-        choice.is(InputRole::hand) ? gamepad_hand(state_, choice) : gamepad_view(state_, choice);
+    s.deflection = choice.is(InputRole::hand) ? gamepad_hand(state_, choice) : gamepad_view(state_, choice);
     s.buttons = ((state_.buttons & kA) != 0 ? 1U : 0U) | ((state_.buttons & kB) != 0 ? 2U : 0U);
     return s;
 }

@@ -33,7 +33,7 @@ struct InputSample {
 
 struct RateMotion {
     static constexpr double kFrameMost_s = 0.1;
-    static constexpr double kHand_m_s = 0.06, kHandTurn_rad_s = 1.5;   // at full deflection and speed 1
+    static constexpr double kHand_m_s = 0.06, kHandTurn_rad_s = 1.5;    // at full deflection and speed 1
     static constexpr double kViewTurn_rad_s = 1.8, kViewPan_1_s = 0.8;  // heights of the view per second
     static constexpr double kViewZoom_1_s = 9.0;                        // steps of the wheel per second
 

@@ -154,8 +154,8 @@ void SpaceMouse::Shared::follow(int fd) {
 void SpaceMouse::Shared::publish(SpacenavStream& stream, bool silent) {
     const std::uint32_t pressed = stream.take_pressed();
     const std::lock_guard lock(mutex);
-    const bool left = stream.state().device == SpacenavDevice::absent &&
-                      state.events.device != SpacenavDevice::absent;
+    const bool left =
+        stream.state().device == SpacenavDevice::absent && state.events.device != SpacenavDevice::absent;
     const std::uint32_t before = state.events.pressed;
     state.events = stream.state();
     state.events.pressed = before | pressed;

@@ -43,7 +43,8 @@ void GuiApp::take_tool(std::size_t hand, HeldBy by) {
 
 void GuiApp::let_go_of_tool() {
     if (!drag_.holds()) return;
-    camera_waits_ = drag_.held(HeldBy::button);  // until the button is released, or the drag would turn the view
+    camera_waits_ =
+        drag_.held(HeldBy::button);  // until the button is released, or the drag would turn the view
     drag_.let_go();
     for (RestGate& gate : input_gates_) gate.close();
     if (controller_.attached())
@@ -80,7 +81,8 @@ bool GuiApp::lead_by_mouse() {
         near_tool_ =
             ToolDrag::tool_near(drag_view(), drag_tools_, io.MousePos.x, io.MousePos.y, theme_.px(kNearPx));
     if (near_tool_ && ImGui::IsMouseClicked(ImGuiMouseButton_Left)) take_tool(*near_tool_, HeldBy::button);
-    if (drag_.by_pointer() && (drag_.by_key() ? !ImGui::IsMousePosValid() : !io.MouseDown[0])) let_go_of_tool();
+    if (drag_.by_pointer() && (drag_.by_key() ? !ImGui::IsMousePosValid() : !io.MouseDown[0]))
+        let_go_of_tool();
     if (drag_.holds() && !drag_tools_[drag_.hand()].may) let_go_of_tool();
     if (drag_.by_pointer()) {
         const bool at_work = free || !drag_.by_key();  // not while the pointer is over a panel

@@ -179,8 +179,8 @@ private:
     SecondHand second_hand_;
     ToolDrag drag_;
     std::array<DragTool, kMouseHands> drag_tools_{};
-    std::optional<std::size_t> near_tool_;  // under the pointer
-    bool camera_waits_ = false;             // the button that held a tool is still down
+    std::optional<std::size_t> near_tool_;   // under the pointer
+    bool camera_waits_ = false;              // the button that held a tool is still down
     std::optional<SpaceMouse> space_mouse_;  // while it is to do something
     GlfwGamepadPort gamepad_port_;           // after the window
     Gamepad gamepad_{gamepad_port_};

@@ -48,8 +48,7 @@ void GuiApp::follow_input() {
 
 // A run that was started with --hand spacemouse or gamepad.
 void GuiApp::adopt_input_roles() {
-    if (!controller_.attached() || !controller_.have_mouse ||
-        roles_adopted_of_ == controller_.generation())
+    if (!controller_.attached() || !controller_.have_mouse || roles_adopted_of_ == controller_.generation())
         return;
     roles_adopted_of_ = controller_.generation();
     for (std::size_t i = 0; i < kInputDevices; ++i) {

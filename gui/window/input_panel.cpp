@@ -40,8 +40,8 @@ void input_rows(const Theme& theme, const InputState& input, std::size_t i, Inpu
         text_small(theme, device.present ? colour::kDim : colour::kWatch, device.text);
         if (choice.is(InputRole::hand) && !input.may_lead)
             text_small(theme, colour::kWatch, "No emulated hand to lead: --hand mouse makes one.");
-        input_slider(theme, "Speed", choice.speed, InputChoice::kSpeedLeast, InputChoice::kSpeedMost, "x %.2f",
-                     "of the tool or the view at full deflection");
+        input_slider(theme, "Speed", choice.speed, InputChoice::kSpeedLeast, InputChoice::kSpeedMost,
+                     "x %.2f", "of the tool or the view at full deflection");
         input_slider(theme, "Dead zone", choice.dead_zone, InputChoice::kDeadZoneLeast,
                      InputChoice::kDeadZoneMost, "%.2f", "part of the full deflection that moves nothing");
         input_slider(theme, "Curve", choice.curve, InputChoice::kCurveLeast, InputChoice::kCurveMost, "%.1f",

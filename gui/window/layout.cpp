@@ -87,10 +87,10 @@ void draw_dashboard(const Theme& theme, PanelState& state, SystemPanels& system,
             state.browser.open = true;
         if (state.scene.loaded && button("picture button", "Picture", KeyAction::picture, kPictureButtonTop))
             open_alone(state.picture.open, state.input.open);
-        if (state.scene.loaded && button("input button", "Devices", KeyAction::input_devices, kInputButtonTop))
+        if (state.scene.loaded &&
+            button("input button", "Devices", KeyAction::input_devices, kInputButtonTop))
             open_alone(state.input.open, state.picture.open);
-        if (state.scene.loaded && state.input.open)
-            draw_input_panel(theme, state.input, layout.view);
+        if (state.scene.loaded && state.input.open) draw_input_panel(theme, state.input, layout.view);
         if (state.scene.loaded && state.picture.open)
             draw_picture_panel(theme, state.picture, state.toggles, state.situation.bodies, layout.view);
     }

@@ -140,14 +140,15 @@ void message(const OverlayPen& pen, const PanelState& state, const PixelRect& v)
 // While a SpaceMouse or a gamepad leads the tool.
 std::string device_hint(const MouseHint& m, const char* let_go) {
     const char* const name = kInputNames[static_cast<std::size_t>(m.device)];
-    if (m.silent)
-        return format("The controller received nothing from the %s: the hand relaxed.", name);
+    if (m.silent) return format("The controller received nothing from the %s: the hand relaxed.", name);
     if (m.gone) return format("The %s is gone: the tool's target stays.   %s: let go", name, let_go);
     const std::string begin = m.drives ? std::string(m.bone ? "The burr runs. " : "Second button pressed. ")
                                        : format("The %s leads the tool. ", name);
     const char* const second = m.bone ? "burr" : "second button";
-    if (m.device == 0) return begin + format("Push: move   Twist: turn   Button 2: %s   %s: let go", second, let_go);
-    return begin + format("Left stick: move   Triggers: depth   Shoulder: turn   B: %s   %s: let go", second, let_go);
+    if (m.device == 0)
+        return begin + format("Push: move   Twist: turn   Button 2: %s   %s: let go", second, let_go);
+    return begin +
+           format("Left stick: move   Triggers: depth   Shoulder: turn   B: %s   %s: let go", second, let_go);
 }
 
 // One line about the mouse at the lower edge, while the pointer is over a tool or leads it.

@@ -9,6 +9,7 @@ namespace tact {
 namespace {
 
 constexpr float kPixelsMost = 1e4F;      // in a frame
+constexpr double kSteerMost = 1.0;       // metres and radians in a frame
 constexpr float kHalfTurn = 3.1415927F;  // over the height of the view, as the camera
 
 Eigen::Vector3f in_eye_a(const DragView& view, const Vec3& model_m) {
@@ -87,8 +88,9 @@ void ToolDrag::steer(const DragView& view, const Vec3& move_eye_m, const Vec3& t
     buttons_ = buttons & MouseTopic::kButtons;
     if (!move_eye_m.allFinite() || !turn_eye_rad.allFinite()) return;
     const Quat back = view.q_eye_scene.conjugate().cast<double>();
-    target_.p_m += back * move_eye_m;
-    target_.q = (quat_from_rotation_vector(back * turn_eye_rad) * target_.q).normalized();
+    const auto bounded = [](const Vec3& v) { return Vec3(v.cwiseMax(-kSteerMost).cwiseMin(kSteerMost)); };
+    target_.p_m += back * bounded(move_eye_m);
+    target_.q = (quat_from_rotation_vector(back * bounded(turn_eye_rad)) * target_.q).normalized();
     bound();
 }
 

@@ -9,7 +9,8 @@
 namespace tact {
 
 // So far below the view's upper edge at scale 1: below the lines about frames.
-inline constexpr float kScenesButtonTop = 70.0F, kPictureButtonTop = 104.0F, kInputButtonTop = 138.0F, kViewButtonRight = 10.0F;
+inline constexpr float kScenesButtonTop = 70.0F, kPictureButtonTop = 104.0F, kInputButtonTop = 138.0F,
+                       kViewButtonRight = 10.0F;
 // window: its name, unique. key: shown behind the text. Returns true when it is pressed.
 [[nodiscard]] bool view_button(const Theme& theme, const char* window, const char* text, const char* key,
                                float top, const PixelRect& view);

@@ -29,7 +29,7 @@ struct WindowState {
     int lateness_choice = 0;  // likewise
     SceneToggles toggles;     // style, molecule and colouring are the scene's
     std::array<InputChoice, kInputDevices> input = kInputDefaults;  // SpaceMouse, gamepad
-    std::uint64_t scene = 0;  // its checksum; 0: none was shown
+    std::uint64_t scene = 0;                                        // its checksum; 0: none was shown
     std::optional<Vec3>
         origin_model_a;  // of the frame of the scene, which another content moves; none: as it is now
     Vec3 target_a = Vec3::Zero();  // of the camera, in the frame of the scene

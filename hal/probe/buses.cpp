@@ -3,6 +3,7 @@
 // CAN      /sys/class/net: a type of 280 (ARPHRD_CAN); an MTU of 72 holds CAN FD
 // GPIO     /sys/bus/gpio/devices; the label comes from the chip if it may be opened (one ioctl that changes
 //          nothing), otherwise from the older gpio class beside it
+// Input    /sys/class/input: jsN/device leads to the device with its name and its eventN
 #include "hal/probe/buses.hpp"
 
 #include <fcntl.h>
@@ -210,6 +211,23 @@ Bus<GpioChip> gpio_chips(const fs::path& root) {
         if (!name.starts_with("gpiochip")) continue;
         const fs::path node = root / "dev" / name;
         bus.entries.push_back({plain(name), chip_label(folder / name, node), node_at(node)});
+    }
+    return bus;
+}
+
+Bus<Joystick> joysticks(const fs::path& root) {
+    Bus<Joystick> bus;
+    const fs::path folder = root / "sys/class/input";
+    std::vector<std::string> names;
+    bus.visible = names_in(folder, names, bus.more);
+    for (const std::string& name : names) {
+        if (!name.starts_with("js")) continue;
+        const fs::path device = folder / name / "device";
+        Joystick stick;
+        stick.name = text_of(device / "name");
+        for (const std::string& below : names_in(device))
+            if (below.starts_with("event")) stick.node = node_at(root / "dev/input" / below);
+        bus.entries.push_back(std::move(stick));
     }
     return bus;
 }

@@ -54,6 +54,12 @@ struct GpioChip {
     Node node;
 };
 
+// A joystick or gamepad, also a SpaceMouse.
+struct Joystick {
+    std::string name;  // by the device
+    Node node;         // /dev/input/eventN, which the window reads
+};
+
 template <class T>
 struct Bus {
     bool visible = false;
@@ -70,6 +76,8 @@ struct Buses {
 [[nodiscard]] Bus<UsbDevice> usb_devices(const std::filesystem::path& root);
 [[nodiscard]] Bus<CanInterface> can_interfaces(const std::filesystem::path& root);
 [[nodiscard]] Bus<GpioChip> gpio_chips(const std::filesystem::path& root);
+// Not part of Buses, because no controller uses them. visible: the kernel shows input devices at all.
+[[nodiscard]] Bus<Joystick> joysticks(const std::filesystem::path& root = "/");
 [[nodiscard]] Buses read_buses(const std::filesystem::path& root = "/");
 
 }  // namespace tact::probe

@@ -63,10 +63,11 @@ struct alignas(64) MouseStateTopic {
     std::uint64_t
         refused;  // records with an impossible value, for another controller, or for a hand that follows no pointer
     std::uint64_t stale;             // times that a pointer fell silent while it held a hand
-    std::uint8_t lead[kMouseHands];    // MouseLead
-    std::uint8_t wanted[kMouseHands];  // LeadDevice that the configuration names for this hand; the mouse if it names none
-    std::uint8_t by[kMouseHands];      // LeadDevice that leads it, or led it last
-    std::uint8_t reserved[26];         // zero
+    std::uint8_t lead[kMouseHands];  // MouseLead
+    std::uint8_t wanted
+        [kMouseHands];  // LeadDevice that the configuration names for this hand; the mouse if it names none
+    std::uint8_t by[kMouseHands];  // LeadDevice that leads it, or led it last
+    std::uint8_t reserved[26];     // zero
 };
 static_assert(std::is_trivially_copyable_v<MouseStateTopic> && sizeof(MouseStateTopic) == 64);
 

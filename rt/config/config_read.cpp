@@ -128,9 +128,10 @@ void check_igtl_names(const RtConfig& config, const std::string& where, ConfigEr
 // A pointer leads an emulated hand only: a person holds a real arm, and no window may move it.
 void check_mouse(const RtConfig& config, const std::string& where, ConfigErrors& errors) {
     const auto refuse = [&](const char* key, const std::string& driver, const std::string& device) {
-        errors.emplace_back(
-            where, key, "the " + device + " cannot lead the hand of driver \"" + driver + "\"",
-            "use driver \"sim\", or remove the " + device + ": with a real arm, the hand is the person's own");
+        errors.emplace_back(where, key,
+                            "the " + device + " cannot lead the hand of driver \"" + driver + "\"",
+                            "use driver \"sim\", or remove the " + device +
+                                ": with a real arm, the hand is the person's own");
     };
     const std::string &first = config.device.driver, &second = config.device2.driver;
     if (is_led_hand(config.device.hand) && first != "sim") refuse("device.hand", first, config.device.hand);

@@ -80,7 +80,9 @@ void describe(CLI::App& app, StartOptions& o, StartOverrides& v) {
            "baked with --modes")
         ->check(CLI::IsMember({"on", "off"}))
         ->capture_default_str();
-    app.add_option("--hand", v.hand, "Motion of the emulated hand; mouse, spacemouse, gamepad: led by that device in the window")
+    app.add_option(
+           "--hand", v.hand,
+           "Motion of the emulated hand; mouse, spacemouse, gamepad: led by that device in the window")
         ->type_name("passive|wander|stroke|drill|surgeon|suction-tube|mouse|spacemouse|gamepad");
     app.add_flag("--mouse", v.mouse,
                  "The mouse in the window may take an emulated hand from its motion, and then leads it");

@@ -21,7 +21,7 @@ namespace tact {
 struct MouseFeedSettings {
     std::array<Latest<MouseTarget>*, kMouseHands> hand{};  // null: this hand follows no pointer
     Pose T_dev_world;
-    std::uint64_t generation = 0;  // of the controller's region
+    std::uint64_t generation = 0;                  // of the controller's region
     std::array<LeadDevice, kMouseHands> wanted{};  // by the configuration, for the window
 };
 

@@ -4,11 +4,12 @@ sends what a device would; and the real spacenavd without a device, which is sto
 
 usage: space_mouse_test.py BIN_DIR [hand|camera|daemon...]
 
-Exit code 77: Xvfb or xdotool is missing.
+Exit code 77: Xvfb or xdotool is missing, or a spacenavd of this machine runs.
 """
 import os
 import re
 import shutil
+import socket
 import subprocess
 import sys
 import tempfile
@@ -40,7 +41,7 @@ class SpaceMouse(Mouse):
     def begin_touch(self, hand):
         if not os.path.exists(self.scene()):
             bake_demo(self.bin, "touch", self.scene())
-        self.recording = os.path.join(self.folder, "touch.h5")
+        self.recording = os.path.join(self.folder, "touch%d.h5" % len(os.listdir(self.folder)))
         self.start("--record", self.recording, "--window-state", self.session_state, hand=hand)
         self.wait("the run is armed", lambda s: s["state"] == "active")
 
@@ -132,6 +133,7 @@ def daemon(m):
     """The real spacenavd, without a device: connected, ended, connected again."""
     run = os.path.join(m.folder, "run")
     os.mkdir(run)
+    # Debian's spacenavd makes run/spnav.sock below the folder where it was started.
     words = ["unshare", "-m", "sh", "-c", 'mount --bind "$0" /run && exec spacenavd -d -l "$0/log"', run]
     private = shutil.which("spacenavd") and subprocess.run(["unshare", "-m", "mount", "--bind", run, "/run"], stderr=subprocess.DEVNULL).returncode == 0
     if not private:
@@ -142,7 +144,7 @@ def daemon(m):
     m.begin_touch("spacemouse")
     m.see("SpaceMouse: not found. Install and start spacenavd.")
     for _ in range(2):
-        real = subprocess.Popen(words, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+        real = subprocess.Popen(words, cwd="/", stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
         try:
             m.see("SpaceMouse: spacenavd runs, but no SpaceMouse is plugged in.")
         finally:
@@ -158,7 +160,16 @@ def daemon(m):
 RUNS = {"hand": hand, "camera": camera, "daemon": daemon}
 
 
+def system_daemon():
+    """Whether a spacenavd of this machine runs, to which libspnav falls back."""
+    with socket.socket(socket.AF_UNIX) as s:
+        return s.connect_ex("/var/run/spnav.sock") == 0
+
+
 def main():
+    if system_daemon():
+        print("skipped: a spacenavd of this machine runs")
+        sys.exit(77)
     bin_dir, *names = arguments(__doc__, 1)
     sys.exit(1 if sum(all(run(bin_dir, name) for _ in range(2)) for name in names or RUNS) else 0)
 

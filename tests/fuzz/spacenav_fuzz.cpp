@@ -37,18 +37,21 @@ bool run(std::span<const std::byte> input) {
 
 std::vector<Input> seeds() {
     using Packet = SpacenavStream::Packet;
-    const Packet motion{0, 350, -350, 1, 2, 3, -4, 16}, press{1, 0, 0, 0, 0, 0, 0, 0}, other{1, 31, 0, 0, 0, 0, 0, 0},
-        release{2, 0, 0, 0, 0, 0, 0, 0}, leaves{3, 1, 0, 0, 0, 0, 0, 0}, arrives{3, 0, 0, 0, 0, 0, 0, 0};
+    const Packet motion{0, 350, -350, 1, 2, 3, -4, 16}, press{1, 0, 0, 0, 0, 0, 0, 0},
+        other{1, 31, 0, 0, 0, 0, 0, 0}, release{2, 0, 0, 0, 0, 0, 0, 0}, leaves{3, 1, 0, 0, 0, 0, 0, 0},
+        arrives{3, 0, 0, 0, 0, 0, 0, 0};
     Packet type = SpacenavStream::device_type_request(), none = type, name = type;
     type[1] = 0x20a;
     none[7] = -1;
     name[0] -= 5;
     std::vector<Input> all;
-    for (const std::uint8_t portion : {std::uint8_t{1}, std::uint8_t{7}, std::uint8_t{32}, std::uint8_t{255}}) {
+    for (const std::uint8_t portion :
+         {std::uint8_t{1}, std::uint8_t{7}, std::uint8_t{32}, std::uint8_t{255}}) {
         Input work{static_cast<std::byte>(portion)}, comes = work;
         for (const Packet& p : {type, motion, press, other, motion, release, leaves, none})
             for (const std::byte b : bytes_of(p)) work.push_back(b);
-        for (const Packet& p : {none, arrives, type, name, press, motion, Packet{4, 0, 0, 0, 0, 0, 0, 0}, motion})
+        for (const Packet& p :
+             {none, arrives, type, name, press, motion, Packet{4, 0, 0, 0, 0, 0, 0, 0}, motion})
             for (const std::byte b : bytes_of(p)) comes.push_back(b);
         all.insert(all.end(), {work, comes});
     }

@@ -15,6 +15,7 @@ MODULES = ("virtio_pci 9pnet_virtio 9p overlay virtio_rng "  # the host's files
            "dummy_hcd libcomposite usb_f_fs configfs "       # an emulated USB device
            "can can-dev can-raw vcan "                       # a CAN interface
            "uhid hid-cp2112 "                                # a USB adapter with eight GPIO lines
+           "evdev joydev uinput "                            # a SpaceMouse and a gamepad
            "msr").split()                                    # counter of system management interrupts
 META = "linux-image-rt-amd64"  # depends on the newest real-time kernel of the installed Debian
 SLOW_S = 150                   # longest duration of a command here

@@ -384,7 +384,31 @@ TEST(Config, a_pointer_leads_emulated_hands_only) {
         config.device2.driver = d.name;
         config.device2.hand = "mouse";
         EXPECT_TRUE(says(refused(), {"device2.hand: the mouse cannot lead", d.name}));
+        for (const char* const device : {"spacemouse", "gamepad"}) {
+            config = {};
+            config.device.driver = d.name;
+            config.device.hand = device;
+            EXPECT_TRUE(says(refused(), {"device.hand: the", device, "cannot lead", d.name}));
+            EXPECT_EQ(mouse_hands(config), (std::array{false, false}));
+        }
     }
+}
+
+TEST(Config, a_hand_is_led_by_the_device_that_its_script_names) {
+    using enum LeadDevice;
+    RtConfig config;
+    config.device2.driver = "sim";
+    EXPECT_EQ(lead_devices(config), (std::array{mouse, mouse}));
+    config.device.hand = "spacemouse";
+    EXPECT_EQ(mouse_hands(config), (std::array{true, true}));
+    EXPECT_EQ(lead_devices(config), (std::array{spacemouse, spacemouse})) << "\"same\" as the first";
+    config.device2.hand = "gamepad";
+    EXPECT_EQ(mouse_hands(config), (std::array{true, true}));
+    EXPECT_EQ(lead_devices(config), (std::array{spacemouse, gamepad}));
+    check_config(config, "here");
+    config.device2.hand = "wander";
+    EXPECT_EQ(mouse_hands(config), (std::array{true, false}));
+    EXPECT_EQ(lead_devices(config), (std::array{spacemouse, mouse}));
 }
 
 TEST(Config, the_deadline_of_the_model_follows_the_period) {

@@ -509,5 +509,41 @@ TEST(Probe, the_controllers_reading_of_the_configuration_decides_what_is_probed)
     EXPECT_EQ(device_request_from({{"values", {{"device.driver", 3}}}}).driver, "sim");
 }
 
+TEST(Probe, a_space_mouse_and_gamepads_are_listed_with_what_is_missing) {
+    const Tree tree;
+    const auto rows = [&tree](SpacenavService service) {
+        return judge_input({service, "/run/spnav.sock"}, probe::joysticks(tree.root()));
+    };
+    auto found = rows(SpacenavService::absent);
+    ASSERT_EQ(found.size(), 2U);
+    EXPECT_EQ(found[0].name, "spacenavd");
+    EXPECT_EQ(found[0].level, FindingLevel::ok) << "not needed";
+    EXPECT_TRUE(says(found[0].says, {"not found"}));
+    EXPECT_EQ(found[1].name, "gamepads");
+    EXPECT_EQ(found[1].level, FindingLevel::ok);
+    found = rows(SpacenavService::answers);
+    EXPECT_TRUE(says(found[0].says, {"answers", "/run/spnav.sock"}));
+    for (const SpacenavService bad :
+         {SpacenavService::denied, SpacenavService::refuses, SpacenavService::busy}) {
+        found = rows(bad);
+        EXPECT_EQ(found[0].level, FindingLevel::warn);
+        EXPECT_NE(found[0].fix, "");
+    }
+    tree.file("sys/class/input/js0/device/name", "Pad of\x01 Somebody\n");
+    tree.file("sys/class/input/js0/device/event7/dev", "13:71\n");
+    tree.file("sys/class/input/mouse0/device/name", "Mouse\n");
+    tree.file("dev/input/event7", "");
+    const auto sticks = probe::joysticks(tree.root());
+    ASSERT_EQ(sticks.entries.size(), 1U);
+    EXPECT_EQ(sticks.entries[0].name, "Pad of? Somebody");
+    EXPECT_TRUE(sticks.entries[0].node.usable);
+    EXPECT_TRUE(says(rows(SpacenavService::absent)[1].says, {"Pad of? Somebody", "accessible"}));
+    fs::remove(tree.root() / "dev/input/event7");
+    found = rows(SpacenavService::absent);
+    EXPECT_EQ(found[1].level, FindingLevel::warn);
+    EXPECT_TRUE(says(found[1].says, {"event7", "does not exist"}));
+    EXPECT_NE(found[1].fix, "");
+}
+
 }  // namespace
 }  // namespace tact::launch::deploy_probe_test

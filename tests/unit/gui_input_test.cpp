@@ -34,7 +34,8 @@ TEST(RateControl, nothing_moves_within_the_dead_zone_and_full_deflection_is_full
 }
 
 TEST(RateControl, no_number_is_too_wild) {
-    const double nan = std::numeric_limits<double>::quiet_NaN(), inf = std::numeric_limits<double>::infinity();
+    const double nan = std::numeric_limits<double>::quiet_NaN(),
+                 inf = std::numeric_limits<double>::infinity();
     for (const double wild : {nan, inf, -inf, 1e300, -1e300}) {
         EXPECT_LE(std::abs(shaped(wild, kChoice)), 1.0) << wild;
         InputChoice choice = kChoice;
@@ -67,7 +68,8 @@ TEST(RateControl, a_constant_deflection_integrates_exactly_whatever_the_frame_ra
     EXPECT_LT((coarse.p_m - 2.0 * RateMotion::kHand_m_s * d.move).norm(), 1e-12);
     EXPECT_LT((fine.p_m - coarse.p_m).norm(), 1e-12);
     EXPECT_LT(fine.q.angularDistance(coarse.q), 1e-9);
-    EXPECT_LT(fine.q.angularDistance(quat_from_rotation_vector(2.0 * RateMotion::kHandTurn_rad_s * d.turn)), 1e-9);
+    EXPECT_LT(fine.q.angularDistance(quat_from_rotation_vector(2.0 * RateMotion::kHandTurn_rad_s * d.turn)),
+              1e-9);
 }
 
 TEST(RateControl, a_pause_does_not_jump) {

@@ -276,6 +276,25 @@ TEST_P(Layouts, of_every_state_of_a_run_are_clean) {
         s.picture.open = true;
         s.picture.result = {Grade::good, "saved: /home/somebody/Tact/2026-11-28_113332_picture.png"};
     });
+    expect_clean("what SpaceMouse and gamepad do", [](PanelState& s, DockingPanels&) {
+        s.input.open = true;
+        s.input.choice[0].role = s.input.choice[1].role = static_cast<int>(InputRole::hand);
+        s.input.device[0].text =
+            "spacenavd does not answer at /var/run/spnav.sock. Start it again: sudo systemctl restart "
+            "spacenavd.";
+        s.input.device[1] = {true, "Microsoft Xbox Series S|X Controller"};
+        s.mouse.waits = "SpaceMouse: not found. Install and start spacenavd.";
+        s.mouse.waits_in_vain = true;
+    });
+    for (const int device : {0, 1})
+        expect_clean("a tool that a device leads", [device](PanelState& s, DockingPanels&) {
+            s.mouse.holds = true;
+            s.mouse.device = device;
+        });
+    expect_clean("a device that is gone", [](PanelState& s, DockingPanels&) {
+        s.mouse.holds = s.mouse.gone = true;
+        s.mouse.device = 0;
+    });
     expect_clean("labels over a cut, on white",
                  [](PanelState& s, DockingPanels&) { s.toggles.cut = s.toggles.white_ground = true; });
     expect_clean("the list of scenes", [](PanelState& s, DockingPanels&) {

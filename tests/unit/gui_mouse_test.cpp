@@ -121,6 +121,43 @@ TEST_F(ToolDragTest, buttons_are_those_of_the_stylus_and_end_with_the_hold) {
     EXPECT_EQ(drag_.target().p_m, left.p_m);
 }
 
+TEST_F(ToolDragTest, a_device_steers_in_the_axes_of_the_eye_and_is_named_in_the_record) {
+    drag_.take(0, tool(), meta_, HeldBy::spacemouse);
+    EXPECT_FALSE(drag_.by_pointer());
+    const Vec3 move(1e-3, -2e-3, 3e-3), turn(0.1, 0.2, -0.3);
+    drag_.steer(view(), move, turn, 6);
+    const Quat eye = camera_.orientation().cast<double>();
+    EXPECT_LT((eye * (drag_.target().p_m - tool().T_world_tool.p_m) - move).norm(), 1e-8);
+    const Vec3 turned = rotation_vector_rad(drag_.target().q * tool().T_world_tool.q.conjugate());
+    EXPECT_LT((eye * turned - turn).norm(), 1e-6);
+    MouseTopic t = drag_.record(1, 0);
+    EXPECT_TRUE(sensible(t));
+    EXPECT_EQ(t.device, static_cast<std::uint8_t>(LeadDevice::spacemouse));
+    EXPECT_EQ(t.buttons, 2U);  // the stylus has two
+    // At rest, or unplugged: the target stays, and the buttons open.
+    const Pose at = drag_.target();
+    drag_.steer(view(), Vec3::Zero(), Vec3::Zero(), 0);
+    EXPECT_EQ(drag_.target().p_m, at.p_m);
+    EXPECT_EQ(drag_.record(1, 0).buttons, 0U);
+    EXPECT_EQ(drag_.record(1, 0).holds, 1);
+    drag_.take(0, tool(), meta_, HeldBy::gamepad);
+    EXPECT_EQ(drag_.record(1, 0).device, static_cast<std::uint8_t>(LeadDevice::gamepad));
+    drag_.take(0, tool(), meta_, HeldBy::key);
+    EXPECT_EQ(drag_.record(1, 0).device, static_cast<std::uint8_t>(LeadDevice::mouse));
+}
+
+TEST_F(ToolDragTest, steering_stays_within_reach_and_takes_no_wild_number) {
+    drag_.take(0, tool(), meta_, HeldBy::gamepad);
+    const double nan = std::numeric_limits<double>::quiet_NaN();
+    for (const double wild : {nan, HUGE_VAL, 1e300, -1e300, 1.0}) {
+        drag_.steer(view(), Vec3::Constant(wild), Vec3::Zero(), 0xffffffffU);
+        EXPECT_TRUE(sensible(drag_.record(1, 0))) << wild;
+        drag_.steer(view(), Vec3::Zero(), Vec3(wild, 0.0, 0.0), 0);
+        EXPECT_TRUE(sensible(drag_.record(1, 0))) << wild;
+        for (int i = 0; i < 3; ++i) EXPECT_LE(std::abs(drag_.target().p_m[i]), ToolDrag::kReachM);
+    }
+}
+
 TEST_F(ToolDragTest, no_input_leads_to_a_record_that_the_controller_refuses) {
     const float nan = std::numeric_limits<float>::quiet_NaN();
     drag_.take(0, tool(), meta_, HeldBy::button);

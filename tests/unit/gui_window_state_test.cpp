@@ -29,6 +29,8 @@ WindowState one_of_all() {
                  .microscope = true,
                  .molecule = 3,
                  .colouring = 2};
+    s.input[0] = {.role = static_cast<int>(InputRole::hand), .speed = 1.25, .dead_zone = 0.05, .curve = 3.0};
+    s.input[1].role = static_cast<int>(InputRole::off);
     s.scene = 0xfedcba9876543210ULL;
     s.origin_model_a = Vec3(7.0, -1.0 / 7.0, 4e3);
     s.target_a = Vec3(1.0 / 3.0, -2e3, 0.25);
@@ -55,6 +57,7 @@ TEST(WindowStateFile, a_written_state_reads_back_unchanged) {
     EXPECT_EQ(again.toggles.style, 2);
     EXPECT_EQ(again.toggles.molecule, 3);
     EXPECT_EQ(again.toggles.colouring, 2);
+    EXPECT_EQ(again.input, s.input);
     EXPECT_EQ(again.scene, s.scene);
     EXPECT_EQ(again.origin_model_a, s.origin_model_a);
     EXPECT_EQ(again.target_a, s.target_a);

@@ -72,6 +72,8 @@ TEST_F(MouseFeedTest, impossible_values_are_refused_and_counted_and_move_nothing
     hostile.back().hand = 2;
     hostile.push_back(holding());
     hostile.back().holds = 2;
+    hostile.push_back(holding());
+    hostile.back().device = static_cast<std::uint8_t>(LeadDevice::count);
     std::uint64_t refused = 0;
     for (const MouseTopic& t : hostile) {
         EXPECT_EQ(turn(t), 1U) << refused;
@@ -140,6 +142,25 @@ TEST_F(MouseFeedTest, letting_go_and_a_window_that_leaves_release_the_hand) {
     }
 }
 
+TEST_F(MouseFeedTest, the_device_that_leads_and_the_one_that_was_asked_for_are_published) {
+    MouseFeed feed(
+        {{&hand_[0], &hand_[1]}, Pose{}, kGeneration, {LeadDevice::spacemouse, LeadDevice::gamepad}});
+    MouseStateTopic state = feed.state(now_);
+    EXPECT_TRUE(sensible(state));
+    EXPECT_EQ(state.wanted[0], static_cast<std::uint8_t>(LeadDevice::spacemouse));
+    EXPECT_EQ(state.wanted[1], static_cast<std::uint8_t>(LeadDevice::gamepad));
+    EXPECT_EQ(state.by[0], static_cast<std::uint8_t>(LeadDevice::mouse));
+    MouseTopic t = holding();
+    t.device = static_cast<std::uint8_t>(LeadDevice::gamepad);
+    from_.publish(t);
+    EXPECT_EQ(feed.pass_on(from_, now_), 0U);
+    state = feed.state(now_);
+    EXPECT_EQ(state.by[0], static_cast<std::uint8_t>(LeadDevice::gamepad));
+    EXPECT_EQ(state.by[1], static_cast<std::uint8_t>(LeadDevice::mouse));
+    state.by[1] = static_cast<std::uint8_t>(LeadDevice::count);
+    EXPECT_FALSE(sensible(state));
+}
+
 TEST_F(MouseFeedTest, one_pointer_holds_one_hand) {
     MouseFeed both({{&hand_[0], &hand_[1]}, Pose{}, kGeneration});
     from_.publish(holding());
@@ -162,6 +183,7 @@ TEST_F(MouseFeedTest, random_bytes_never_pass_a_value_out_of_range) {
         if (i % 4 == 0) {
             t.hand = static_cast<std::uint8_t>(t.hand % 3);
             t.holds = static_cast<std::uint8_t>(t.holds % 3);
+            t.device = static_cast<std::uint8_t>(t.device % 4);
             t.buttons %= 5;
             for (double& p : t.pos_world_m) p = std::ldexp(p, -static_cast<int>(random() % 1000));
             if (i % 8 == 0) std::fill_n(t.quat_world_tool_xyzw, 4, 0.5);
