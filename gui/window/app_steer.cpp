@@ -46,12 +46,13 @@ void GuiApp::follow_input() {
     }
 }
 
-// A run that was started with --hand spacemouse or gamepad.
+// A run that was started with --hand spacemouse or gamepad; once, because the person may choose otherwise.
 void GuiApp::adopt_input_roles() {
     if (!controller_.attached() || !controller_.have_mouse || roles_adopted_of_ == controller_.generation())
         return;
     roles_adopted_of_ = controller_.generation();
     for (std::size_t i = 0; i < kInputDevices; ++i) {
+        if (input_role_left_[i]) continue;
         for (std::size_t hand = 0; hand < kMouseHands; ++hand) {
             const MouseStateTopic& mouse = controller_.mouse;
             if (mouse.lead[hand] == static_cast<std::uint8_t>(MouseLead::none) ||
@@ -120,7 +121,7 @@ void GuiApp::hint_of_input() {
         }
         if (!state_.input.choice[i].is(InputRole::hand) || !hint.waits.empty()) continue;
         hint.waits_in_vain = !device.present;
-        hint.waits = device.present ? std::string("Move the ") + kInputNames[i] + " to lead the tool."
+        hint.waits = device.present ? std::string("Move the ") + kInputNouns[i] + " to lead the tool."
                                     : std::string(kInputNames[i]) + ": " + device.text;
     }
 }

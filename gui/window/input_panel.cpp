@@ -37,7 +37,8 @@ void input_rows(const Theme& theme, const InputState& input, std::size_t i, Inpu
     explain_input(
         "camera: moves the view; hand: leads an emulated hand, as the mouse does; its deflection is a speed");
     if (!choice.is(InputRole::off)) {
-        text_small(theme, device.present ? colour::kDim : colour::kWatch, device.text);
+        text_small(theme, device.present || !choice.is(InputRole::hand) ? colour::kDim : colour::kWatch,
+                   device.text);
         if (choice.is(InputRole::hand) && !input.may_lead)
             text_small(theme, colour::kWatch, "No emulated hand to lead: --hand mouse makes one.");
         input_slider(theme, "Speed", choice.speed, InputChoice::kSpeedLeast, InputChoice::kSpeedMost,

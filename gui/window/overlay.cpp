@@ -139,7 +139,7 @@ void message(const OverlayPen& pen, const PanelState& state, const PixelRect& v)
 
 // While a SpaceMouse or a gamepad leads the tool.
 std::string device_hint(const MouseHint& m, const char* let_go) {
-    const char* const name = kInputNames[static_cast<std::size_t>(m.device)];
+    const char* const name = kInputNouns[static_cast<std::size_t>(m.device)];
     if (m.silent) return format("The controller received nothing from the %s: the hand relaxed.", name);
     if (m.gone) return format("The %s is gone: the tool's target stays.   %s: let go", name, let_go);
     const std::string begin = m.drives ? std::string(m.bone ? "The burr runs. " : "Second button pressed. ")

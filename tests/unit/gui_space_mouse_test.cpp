@@ -121,6 +121,20 @@ TEST_F(SpaceMouseTest, an_old_daemon_that_answers_no_request_works_too) {
     until("motion", [](const auto& s) { return s.events.axes[0] == 9; });
 }
 
+TEST_F(SpaceMouseTest, a_daemon_that_falls_silent_does_not_move_the_tool_for_ever) {
+    begin();
+    ASSERT_TRUE(daemon_.motion(300, 0, 0));
+    const Instant moved = Monotonic::now();
+    until("motion", [](const auto& s) { return s.events.axes[0] == 300; });
+    std::this_thread::sleep_until(moved + SpaceMouse::kSilentMost / 2);
+    EXPECT_EQ(mouse().take().events.axes[0], 300);  // a cap held still may send nothing
+    std::this_thread::sleep_until(moved + SpaceMouse::kSilentMost / 2 + std::chrono::seconds(1));
+    until("rest", [](const auto& s) { return s.events.axes[0] == 0; });
+    EXPECT_GE(to_s(Monotonic::now() - moved), to_s(SpaceMouse::kSilentMost));
+    ASSERT_TRUE(daemon_.motion(200, 0, 0));
+    until("motion again", [](const auto& s) { return s.events.axes[0] == 200; });
+}
+
 TEST_F(SpaceMouseTest, a_flood_costs_the_frame_nothing) {
     begin();
     until("connected", [](const auto& s) { return s.connected; });
