@@ -1,7 +1,6 @@
 #include "gui/input/space_mouse.hpp"
 
 #include <poll.h>
-#include <spnav.h>
 #include <sys/eventfd.h>
 #include <sys/socket.h>
 #include <unistd.h>
@@ -15,6 +14,9 @@
 #include <utility>
 
 #include "ipc/spacenav/spacenav_socket.hpp"
+
+// Last, because it brings the macros of X11.
+#include <spnav.h>
 
 namespace tact {
 

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "gui/window/app_parts.hpp"
+#include "gui/window/steer_camera.hpp"
 
 namespace tact {
 namespace {
@@ -77,11 +78,7 @@ void GuiApp::steer_view(std::size_t device, const InputSample& sample, double fr
     if (!content_ || calibration_.open()) return;
     if ((sample.buttons & ~input_buttons_[device] & 1U) != 0) home_view();
     if (sample.deflection.rests()) return;
-    const RateMotion m = view_motion(sample.deflection, state_.input.choice[device].speed, frame_s);
-    const Eigen::Vector3f move = m.move.cast<float>();
-    camera_.turn(m.turn_rad.cast<float>());
-    camera_.pan(move.x(), -move.y(), 1.0F);  // in heights of the view
-    camera_.zoom(move.z());
+    steer(camera_, view_motion(sample.deflection, state_.input.choice[device].speed, frame_s));
 }
 
 bool GuiApp::leads(std::size_t device) const { return drag_.held(kHeldBy[device]); }

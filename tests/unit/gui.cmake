@@ -57,7 +57,7 @@ if(TACT_GUI)
     tact_tests(gui_state_tests SOURCES
             unit/gui_keys_test.cpp unit/gui_mouse_test.cpp unit/gui_panel_controllers_test.cpp unit/gui_window_state_test.cpp
             unit/gui_import_test.cpp unit/gui_import_form_test.cpp unit/gui_start_page_test.cpp
-        USES gui_system gui_window_files gui_dashboard topics scene image base gui_render gui_window TIMEOUT 300)
+        USES gui_system gui_window_files gui_dashboard gui_input topics scene image base gui_render gui_window TIMEOUT 300)
     target_compile_definitions(gui_state_tests PRIVATE TACT_FOLDER="$<TARGET_FILE_DIR:tact>")
     add_dependencies(gui_state_tests tact tact-prep)
     target_compile_definitions(gui_docking_tests PRIVATE TACT_PREP="$<TARGET_FILE:tact-prep>"

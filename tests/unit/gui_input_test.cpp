@@ -1,12 +1,14 @@
 // SpaceMouse and gamepad: what a deflection means, however the time is cut into frames.
 #include <gtest/gtest.h>
-#include <spnav.h>
 
 #include <cmath>
 #include <limits>
 
 #include "gui/input/gamepad.hpp"
 #include "gui/input/space_mouse.hpp"
+
+// After Eigen, which X11's macros would break.
+#include <spnav.h>
 
 namespace tact::gui_input_test {
 namespace {

@@ -6,6 +6,7 @@
 
 #include "gui/render/camera.hpp"
 #include "gui/render/mouse_handle.hpp"
+#include "gui/window/steer_camera.hpp"
 #include "gui/window/tool_drag.hpp"
 
 namespace tact::gui_mouse_test {
@@ -183,6 +184,39 @@ TEST_F(ToolDragTest, the_tool_under_the_pointer_is_the_nearest_that_may_be_led) 
     // Behind the eye it is nowhere.
     const Vec3 behind = centre_m_ + 1e-10 * (3.0F * camera_.eye_a()).cast<double>();
     EXPECT_EQ(ToolDrag::on_screen(view(), behind), std::nullopt);
+}
+
+// After half a second, in so many frames.
+Camera steered(const Deflection& deflection, int frames) {
+    Camera camera;
+    camera.frame(60.0F);
+    for (int i = 0; i < frames; ++i) steer(camera, view_motion(deflection, 1.0, 0.5 / frames));
+    return camera;
+}
+
+TEST(SteeredCamera, moves_the_same_at_any_frame_rate) {
+    for (const Deflection& d :
+         {Deflection{Vec3::Zero(), Vec3(0.3, -0.8, 0.5)}, Deflection{Vec3(0.4, -0.7, 0.0), Vec3::Zero()},
+          Deflection{Vec3(0.0, 0.0, -1.0), Vec3::Zero()}}) {
+        const Camera slow = steered(d, 6), quick = steered(d, 200);
+        EXPECT_LT(slow.orientation().angularDistance(quick.orientation()), 2e-3F);
+        EXPECT_LT((slow.target_a() - quick.target_a()).norm(), 1e-2F);
+        EXPECT_NEAR(slow.distance_a() / quick.distance_a(), 1.0F, 1e-4F);
+    }
+}
+
+TEST(SteeredCamera, the_scene_follows_the_cap) {
+    Camera home;
+    home.frame(60.0F);
+    const auto seen = [](const Camera& camera) {  // of the scene's centre, in the eye
+        return Eigen::Vector3f((camera.view() * Eigen::Vector4f(0.0F, 0.0F, 0.0F, 1.0F)).head<3>());
+    };
+    EXPECT_GT(seen(steered({Vec3::UnitX(), Vec3::Zero()}, 30)).x(), 10.0F);
+    EXPECT_GT(seen(steered({Vec3::UnitY(), Vec3::Zero()}, 30)).y(), 10.0F);
+    EXPECT_LT(steered({Vec3::UnitZ(), Vec3::Zero()}, 30).distance_a(), 0.8F * home.distance_a());
+    const Camera turned = steered({Vec3::Zero(), Vec3::UnitY()}, 30);
+    const Quat by = (turned.orientation() * home.orientation().conjugate()).cast<double>();
+    EXPECT_LT((rotation_vector_rad(by) - Vec3(0.0, 0.5 * RateMotion::kViewTurn_rad_s, 0.0)).norm(), 1e-3);
 }
 
 TEST(MouseHandle, a_ring_about_the_tool_and_a_line_to_the_target_while_it_is_held) {

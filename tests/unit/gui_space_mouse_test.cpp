@@ -1,6 +1,5 @@
 // The reader of a SpaceMouse against a daemon on a real socket, which ends, comes back, floods and sends garbage.
 #include <gtest/gtest.h>
-#include <spnav.h>
 
 #include <fstream>
 #include <functional>
@@ -10,6 +9,9 @@
 #include "gui/input/space_mouse.hpp"
 #include "ipc/spacenav/spacenav_socket.hpp"
 #include "tests/support/fake_spacenavd.hpp"
+
+// After Eigen, which X11's macros would break.
+#include <spnav.h>
 
 namespace tact::gui_space_mouse_test {
 namespace {
@@ -83,6 +85,18 @@ TEST_F(SpaceMouseTest, unplugging_brings_the_cap_to_rest_and_is_a_new_connection
     EXPECT_FALSE(space_mouse_sample(s, {}).present);
     ASSERT_TRUE(daemon_.device(true) && daemon_.answer_type(SPNAV_DEV_SNAV));
     until("plugged in", [](const auto& n) { return space_mouse_text(n) == "SpaceNavigator"; });
+}
+
+TEST_F(SpaceMouseTest, one_of_two_devices_that_leaves_releases_what_it_held) {
+    begin();
+    ASSERT_TRUE(daemon_.motion(300, 0, 0) && daemon_.button(0, true));
+    until("motion", [](const auto& s) { return s.events.axes[0] == 300 && s.events.buttons == 1; });
+    ASSERT_TRUE(daemon_.device(false) && daemon_.answer_type(SPNAV_DEV_SNAV));
+    const SpaceMouseState s =
+        until("the other device", [](const auto& n) { return n.events.type == SPNAV_DEV_SNAV; });
+    EXPECT_EQ(s.events.axes[0], 0);
+    EXPECT_EQ(s.events.buttons, 0U);
+    EXPECT_TRUE(space_mouse_sample(s, {}).present);
 }
 
 TEST_F(SpaceMouseTest, a_daemon_that_ends_is_said_and_found_again) {
