@@ -85,6 +85,7 @@ void bake_tool(SurfaceInput& input, SceneWriter& out, BakedSurface& baked, const
         "%.3g mm\n",
         tool.points(), mm * static_cast<double>(tool.cover_m.back()), mm * reach, mm * tool.ball_m);
     baked.note += line;
+    baked.tool_too_large = reach * baked.meta.world_per_model > input.size_m;
     write_touch_tool(out, tool);
 }
 

@@ -44,6 +44,7 @@ struct BakedSurface {
     std::size_t vertices = 0, triangles = 0;
     std::uint32_t display_vertices = 0;
     std::size_t tool_points = 0;
+    bool tool_too_large = false;  // it reaches farther than the mesh is long
     bool closed = false;
     double build_s = 0.0;             // time for surface and tree
     double forest_s = 0.0;            // time for the forest; 0: none

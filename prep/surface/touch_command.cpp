@@ -131,6 +131,11 @@ void touch(const TouchSettings& o, bool made) {
     report(progress, 0.99, "writing the scene");
     out.write(o.scene);
     console.clear();
+    if (baked.tool_too_large)
+        std::fprintf(stderr,
+                     "warning: the tool is larger than the mesh\n  fix: give its size with --tool-size-mm, "
+                     "or check --unit "
+                     "and --tool-unit\n");
     const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - started).count();
     print_written_scene(o.scene, baked.note, seconds, o.json,
                         {{"vertices", baked.vertices},

@@ -6,6 +6,7 @@
 
 #include "ipc/base/error.hpp"
 #include "ipc/base/random.hpp"
+#include "prep/surface/bake_surface.hpp"
 #include "rt/force/surface/twist_half_spaces.hpp"
 #include "tests/unit/force_tool_fixture.hpp"
 
@@ -47,6 +48,19 @@ TEST(TouchTool, every_prefix_of_the_points_is_an_even_sampling) {
     }
     EXPECT_EQ(corners, 8U);
     EXPECT_LT(stick_out, 12U);
+}
+
+TEST(TouchTool, one_that_is_larger_than_the_mesh_is_reported) {
+    for (const double size :
+         {1.0, 1e3}) {  // a sphere of 0.1 m, in metres, and one in millimetres taken for metres
+        SceneWriter out;
+        SurfaceInput input;
+        input.mesh = scaled(smooth_sphere(8), 1.0 / size);
+        input.tool = made_tool("block");
+        input.tool_sampling.points = 40;
+        input.picture = input.forest = false;
+        EXPECT_EQ(bake_surface(std::move(input), out).tool_too_large, size > 1.0);
+    }
 }
 
 TEST(TouchTool, the_same_mesh_gives_the_same_tool_and_the_section_holds_it) {
