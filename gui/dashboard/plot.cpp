@@ -73,54 +73,47 @@ void draw_line(ImDrawList* draw, const Frame& f, const std::vector<PlotBin>& bin
     draw->AddPolyline(points.data(), static_cast<int>(points.size()), c, 0, thick);
 }
 
-}  // namespace
-
-Axis linear_axis(double high, int marks_max) {
-    Axis axis;
-    if (!(high > 0.0) || !std::isfinite(high)) high = 1.0;
-    const double rough = high / std::max(marks_max, 1);
-    const double power = std::pow(10.0, std::floor(std::log10(rough)));
-    double step = 10.0 * power;
-    for (const double s : {1.0, 2.0, 5.0})
-        if (s * power >= rough * (1.0 - 1e-9)) {
-            step = s * power;
-            break;
-        }
-    axis.high = step * std::ceil(high / step - 1e-9);
-    for (int i = 0; i * step <= axis.high * (1.0 + 1e-9); ++i) axis.mark.push_back(i * step);
-    return axis;
-}
-
-Axis range_axis(double low, double high, int marks_max) {
-    if (!std::isfinite(low) || !std::isfinite(high) || high < low) low = 0.0, high = 1.0;
-    const double size = std::max(std::fabs(low), std::fabs(high));
-    if (high - low < 1e-6 * size || size == 0.0) {
-        const double half = size > 0.0 ? 0.05 * size : 1.0;
-        low -= half;
-        high += half;
+// Triangles at the upper edge, where values lie above the axis.
+void mark_clipped(ImDrawList* draw, const Frame& f, const std::vector<PlotBin>& bins, double scale,
+                  float half) {
+    float before = -1e9F;
+    for (const PlotBin& b : bins) {
+        if (scale * static_cast<double>(b.high) <= f.axis.high * (1.0 + 1e-6)) continue;
+        const float x = std::floor(f.x(b.t_s + 0.5 * b.width_s)) + 0.5F;
+        if (x - before < half) continue;
+        before = x;
+        draw->AddTriangleFilled({x, f.low.y - 1.0F}, {x + half, f.low.y + 1.5F * half},
+                                {x - half, f.low.y + 1.5F * half}, colour::kWatch);
     }
-    const Axis steps = linear_axis(high - low, marks_max);
-    const double step = steps.mark[1];
-    Axis axis;
-    const double first = std::floor(low / step + 1e-9),
-                 last = std::max(std::ceil(high / step - 1e-9), first + 1.0);
-    axis.low = first * step;
-    axis.high = last * step;
-    for (double i = first; i <= last + 0.5; i += 1.0) axis.mark.push_back(i * step);
-    return axis;
 }
 
-Axis log_axis(double low, double high) {
-    Axis axis;
-    if (!(low > 0.0) || !std::isfinite(low)) low = 1.0;
-    if (!(high > low) || !std::isfinite(high)) high = 10.0 * low;
-    const double first = std::floor(std::log10(low) + 1e-9);
-    const double last = std::max(std::ceil(std::log10(high) - 1e-9), first + 1.0);
-    axis.low = std::pow(10.0, first);
-    axis.high = std::pow(10.0, last);
-    for (double e = first; e <= last + 0.5; e += 1.0) axis.mark.push_back(std::pow(10.0, e));
-    return axis;
+struct Values {
+    double low = 1e300, high = -1e300;  // shown unit; low: of the positive ones, for a logarithmic axis
+    double high_at_s = 0.0;
+    double top = -1e300;  // to where the axis shows them
+};
+Values values_of(const PlotSpec& spec, double begin_s, std::vector<PlotBin>& bins) {
+    static thread_local std::vector<float> highs;
+    Values v;
+    for (const PlotLine& l : spec.lines) {
+        l.series->window(begin_s, spec.now_s, bins);
+        highs.clear();
+        for (const PlotBin& b : bins) {
+            if (!spec.logarithmic || b.low > 0.0F)
+                v.low = std::min(v.low, spec.scale * static_cast<double>(b.low));
+            highs.push_back(b.high);
+            const double high = spec.scale * static_cast<double>(b.high);
+            if (high <= v.high) continue;
+            v.high = high;
+            v.high_at_s = b.t_s + 0.5 * b.width_s;
+        }
+        if (!highs.empty()) v.top = std::max(v.top, spec.scale * axis_top(highs));
+    }
+    if (spec.logarithmic) v.top = v.high;
+    return v;
 }
+
+}  // namespace
 
 PlotHover draw_plot(const Theme& theme, const PlotSpec& spec, ImVec2 size) {
     ImDrawList* const draw = ImGui::GetWindowDrawList();
@@ -135,18 +128,11 @@ PlotHover draw_plot(const Theme& theme, const PlotSpec& spec, ImVec2 size) {
     };
 
     static thread_local std::vector<PlotBin> bins;
-    double low = 1e300, high = -1e300;
     const double begin_s = spec.now_s - spec.span_s;
-    for (const PlotLine& l : spec.lines) {
-        l.series->window(begin_s, spec.now_s, bins);
-        for (const PlotBin& b : bins) {
-            if (!spec.logarithmic || b.low > 0.0F)
-                low = std::min(low, spec.scale * static_cast<double>(b.low));
-            high = std::max(high, spec.scale * static_cast<double>(b.high));
-        }
-    }
-    const bool any = high > -1e300;
-    high = std::max({any ? high : 0.0, spec.least_top, 1.05 * spec.goal});
+    const Values values = values_of(spec, begin_s, bins);
+    const double low = values.low;
+    const bool any = values.high > -1e300;
+    const double high = std::max({any ? values.top : 0.0, spec.least_top, 1.05 * spec.goal});
     const int marks = std::max(2, static_cast<int>(size.y / theme.px(34.0F)));
     Axis axis = spec.logarithmic ? log_axis(low < 1e300 ? low : 1.0, high) : linear_axis(high, marks);
     if (spec.fixed_top > 0.0) axis = linear_axis(spec.fixed_top, 2);
@@ -182,11 +168,11 @@ PlotHover draw_plot(const Theme& theme, const PlotSpec& spec, ImVec2 size) {
     };
     float legend_width = 0.0F;
     for (const PlotLine& l : spec.lines) legend_width += width_of(legend(l, true)) + theme.px(20.0F);
-    const bool values = legend_width < size.x + theme.px(9.0F);
+    const bool with_values = legend_width < size.x + theme.px(9.0F);
     float x = at.x;
     for (const PlotLine& l : spec.lines) {
         if (!spec.text.empty()) break;
-        const std::string text = legend(l, values);
+        const std::string text = legend(l, with_values);
         swatch(x, at.y + 1.08F * line, l.colour);
         x += theme.px(11.0F);
         label({x, at.y + 1.08F * line}, colour::kDim, text);
@@ -219,6 +205,21 @@ PlotHover draw_plot(const Theme& theme, const PlotSpec& spec, ImVec2 size) {
     for (const PlotLine& l : spec.lines) {
         l.series->window(begin_s, spec.now_s, bins);
         draw_line(draw, f, bins, spec.scale, l.colour, theme.px(1.3F), spec.steps);
+    }
+    const bool clipped = !spec.logarithmic && values.high > axis.high * (1.0 + 1e-6);
+    if (clipped) {
+        for (const PlotLine& l : spec.lines) {
+            l.series->window(begin_s, spec.now_s, bins);
+            mark_clipped(draw, f, bins, spec.scale, theme.px(4.0F));
+        }
+        // Beside the mark of the largest value, and on the side with more room.
+        const std::string most = format("max %.4g ", values.high) + spec.unit;
+        const float at_x = f.x(values.high_at_s), aside = theme.px(7.0F), wide = width_of(most);
+        const bool left = at_x > 0.5F * (f.low.x + f.high.x);
+        const ImVec2 words{std::clamp(left ? at_x - aside - wide : at_x + aside, f.low.x, f.high.x - wide),
+                           f.low.y};
+        draw->AddRectFilled(words, {words.x + wide, words.y + line}, colour::kPanel);
+        label(words, colour::kWatch, most);
     }
     PlotHover hover;
     if (any && ImGui::IsMouseHoveringRect(f.low, f.high)) {

@@ -1,4 +1,5 @@
-// A plot over time, drawn with ImGui draw lists: axes with units, and a min-max band per bin.
+// A plot over time, drawn with ImGui draw lists: axes with units, and a min-max band per bin. A linear axis ends where most
+// values do (axis_top()); what is above it has a mark at the upper edge, and the largest value is written there.
 #pragma once
 
 #include <imgui.h>
@@ -7,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "gui/dashboard/plot_axis.hpp"
 #include "gui/dashboard/plot_series.hpp"
 #include "gui/dashboard/theme.hpp"
 
@@ -40,15 +42,5 @@ struct PlotHover {
     double t_s = 0.0;
 };
 PlotHover draw_plot(const Theme& theme, const PlotSpec& spec, ImVec2 size);
-
-// Range of an axis that shows [low, high], and its tick marks; tested apart from drawing.
-struct Axis {
-    double low = 0.0, high = 1.0;
-    std::vector<double> mark;
-};
-[[nodiscard]] Axis linear_axis(double high, int marks_max);
-// For an axis that need not end at 0: whole steps around [low, high], or around the middle if both are equal.
-[[nodiscard]] Axis range_axis(double low, double high, int marks_max);
-[[nodiscard]] Axis log_axis(double low, double high);
 
 }  // namespace tact

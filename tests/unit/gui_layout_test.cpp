@@ -122,7 +122,7 @@ void fill_run(PanelState& s) {
                             i % 2 == 0 ? Grade::good : Grade::watch});
     for (int i = 0; i < 100; ++i) {
         s.history.rate_hz.add(5.0 * i, 990.0 + i % 7);
-        s.history.frame_s.add(5.0 * i, 0.03);
+        s.history.frame_s.add(5.0 * i, i == 95 ? 1.5 : 0.03);
         s.history.busy_s.add(5.0 * i, 0.02);
     }
     s.history.now_s = 500.0;

@@ -6,9 +6,11 @@
 #include <limits>
 #include <random>
 
+#include "gui/dashboard/drawn_texts.hpp"
 #include "gui/dashboard/plot.hpp"
 #include "gui/dashboard/plot_series.hpp"
 #include "gui/dashboard/widgets.hpp"
+#include "tests/unit/gui_dashboard_fixture.hpp"
 
 namespace tact::gui_plot_series_test {
 namespace {
@@ -119,6 +121,42 @@ TEST(PlotAxis, linear_axis_covers_the_value_with_round_marks) {
         EXPECT_NEAR(axis.mark.back(), axis.high, 1e-9 * axis.high);
     }
     EXPECT_EQ(linear_axis(std::nan(""), 4).high, 1.0);
+}
+
+TEST(PlotAxis, one_slow_frame_does_not_stretch_the_axis) {
+    std::vector<float> ms(300, 16.0F);
+    EXPECT_EQ(axis_top(ms), 16.0);
+    ms[7] = 1500.0F;
+    EXPECT_EQ(axis_top(ms), 16.0);
+    for (std::size_t i = 0; i < 30; ++i) ms[i] = 1500.0F;  // not one, but a tenth of all
+    EXPECT_EQ(axis_top(ms), 1500.0);
+    std::vector<float> near(300, 16.0F);
+    near[7] = 22.0F;  // shown as it is
+    EXPECT_EQ(axis_top(near), 22.0);
+    std::vector<float> few{16.0F, 1500.0F, 16.0F};
+    EXPECT_EQ(axis_top(few), 1500.0);
+    few.clear();
+    EXPECT_EQ(axis_top(few), 0.0);
+}
+
+TEST(Plot, a_slow_frame_is_marked_and_written_and_the_axis_stays_readable) {
+    test::TestDashboard d(1280.0F, 720.0F, 1.0F);
+    History& h = d.state.history;
+    for (int i = 0; i < 600; ++i) h.frame_s.add(0.1 * i, i == 300 ? 1.5 : 0.016);
+    h.now_s = 60.0;
+    const auto shown = [&](const std::string& text) {
+        const auto texts = drawn_texts(*ImGui::GetDrawData());
+        return std::any_of(texts.begin(), texts.end(), [&](const DrawnText& t) { return t.text == text; });
+    };
+    d.frame();
+    EXPECT_TRUE(shown("max 1500 ms"));
+    EXPECT_TRUE(shown("20"));
+    EXPECT_FALSE(shown("1500"));  // a mark of the axis
+    h.now_s = 100.0;              // the slow frame has left the minute
+    for (int i = 600; i < 1000; ++i) h.frame_s.add(0.1 * i, 0.016);
+    d.frame();
+    EXPECT_FALSE(shown("max 1500 ms"));
+    EXPECT_TRUE(shown("20"));
 }
 
 TEST(PlotAxis, log_axis_spans_whole_decades) {
