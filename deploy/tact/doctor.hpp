@@ -51,6 +51,8 @@ std::vector<Finding> judge(const Machine& machine);
 
 // Tests programs, folders, display, OpenGL and session by using them.
 std::vector<Finding> try_surroundings(const std::string& session);
+// Where windows open, from the values of DISPLAY and WAYLAND_DISPLAY; empty: not set.
+Finding judge_display(const std::string& x, const std::string& wayland, bool xvfb);
 
 // Parses "2-3,5" to core numbers; empty if the text is not such a list.
 std::vector<int> parse_core_list(const std::string& text);

@@ -73,17 +73,7 @@ Finding display() {
         const char* const v = std::getenv(name);
         return std::string(v != nullptr ? v : "");
     };
-    const std::string x = value("DISPLAY"), wayland = value("WAYLAND_DISPLAY");
-    const bool xvfb = !find_in_path("Xvfb").empty();
-    if (!x.empty() || !wayland.empty())
-        return {"display", FindingLevel::ok,
-                "windows open on " + (x.empty() ? wayland : x) +
-                    (xvfb ? "; Xvfb is installed for --headless" : "; no Xvfb for --headless"),
-                xvfb ? "" : "sudo apt-get install xvfb"};
-    if (xvfb) return {"display", FindingLevel::ok, "no display; Xvfb is installed for --headless", ""};
-    return {"display", FindingLevel::fail,
-            "neither a display nor Xvfb is available, so no window can be opened",
-            "sudo apt-get install xvfb"};
+    return judge_display(value("DISPLAY"), value("WAYLAND_DISPLAY"), !find_in_path("Xvfb").empty());
 }
 
 Finding opengl() {
@@ -120,6 +110,25 @@ Finding session_in_use(const std::string& session) {
 }
 
 }  // namespace
+
+Finding judge_display(const std::string& x, const std::string& wayland, bool xvfb) {
+    if (x.empty() && !wayland.empty())
+        return {
+            "display", FindingLevel::warn,
+            "this Wayland session (" + wayland +
+                ") has no X server (DISPLAY is not set), and the window needs XWayland where GLFW is older "
+                "than 3.4, as in Debian 12",
+            "sudo apt-get install xwayland, then log in again"};
+    if (!x.empty())
+        return {"display", FindingLevel::ok,
+                "windows open on " + x +
+                    (xvfb ? "; Xvfb is installed for --headless" : "; no Xvfb for --headless"),
+                xvfb ? "" : "sudo apt-get install xvfb"};
+    if (xvfb) return {"display", FindingLevel::ok, "no display; Xvfb is installed for --headless", ""};
+    return {"display", FindingLevel::fail,
+            "neither a display nor Xvfb is available, so no window can be opened",
+            "sudo apt-get install xvfb"};
+}
 
 std::vector<Finding> try_surroundings(const std::string& session) {
     return {programs(), runtime_folder(session), cache(), session_in_use(session), display(), opengl()};

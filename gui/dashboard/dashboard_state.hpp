@@ -127,7 +127,8 @@ struct DashboardState {
     double arrow_a_per_n = 0.0;
     MouseHint mouse;
     std::string renderer;
-    std::string stage;  // of a stereo display: mode and head tracking; empty: none
+    std::string stage;          // of a stereo display: mode and head tracking; empty: none
+    std::string stage_refused;  // why there is none although it was asked for, and what to do
     bool head_lost = false;
     // The user's choices.
     SceneToggles toggles;

@@ -26,6 +26,13 @@ struct OverlayPen {
         draw->AddText(font, font->FontSize, {at.x + 1.0F, at.y + 1.0F}, shadow, noted(text));
         draw->AddText(font, font->FontSize, at, ink(c), text.c_str());
     }
+    // In lines of at most this width; returns the height.
+    float wrapped(ImFont* font, ImVec2 at, ImU32 c, const std::string& text, float wide) const {
+        const ImU32 shadow = on_white ? IM_COL32(255, 255, 255, 200) : IM_COL32(0, 0, 0, 160);
+        draw->AddText(font, font->FontSize, {at.x + 1.0F, at.y + 1.0F}, shadow, noted(text), nullptr, wide);
+        draw->AddText(font, font->FontSize, at, ink(c), text.c_str(), nullptr, wide);
+        return font->CalcTextSizeA(font->FontSize, 1e9F, wide, text.c_str()).y;
+    }
     // Colours are chosen for a dark background; on a white one they are darker by a factor that keeps their hue.
     [[nodiscard]] ImU32 ink(ImU32 c) const {
         if (!on_white) return c;

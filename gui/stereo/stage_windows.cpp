@@ -40,11 +40,13 @@ StageWindows::StageWindows(GLFWwindow* dashboard, const StageSettings& settings,
                 glfwCreateWindow(width, height, i == 0 ? "Tact: stereo" : "Tact: right eye", on, dashboard);
             glfwWindowHint(GLFW_STEREO, GLFW_FALSE);
             if (window == nullptr)
-                throw StartupError("opening a window for the stereo display",
-                                   mode_ == StereoMode::quad_buffer
-                                       ? "the driver offers no quad-buffered stereo"
-                                       : "the driver rejects it",
-                                   "use another mode: side-by-side, top-bottom, two-windows or anaglyph");
+                throw StereoRefused(
+                    mode_ == StereoMode::quad_buffer ? "the driver offers no quad-buffered stereo"
+                                                     : "the driver rejects its window",
+                    mode_ == StereoMode::quad_buffer
+                        ? "enable stereo in the settings of the graphics driver, or use another "
+                          "mode: side-by-side, top-bottom, two-windows or anaglyph"
+                        : "use another mode: side-by-side, top-bottom or anaglyph");
             outputs_.push_back({window, 0});
             glfwMakeContextCurrent(window);
             glfwSwapInterval(paced_by_display && i == 0 ? 1 : 0);

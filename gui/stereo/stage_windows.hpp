@@ -2,18 +2,34 @@
 //
 // Images    are drawn in the dashboard's context and copied into these windows, whose contexts share its textures.
 // Thread    frame thread; the dashboard's context is current before and after each call.
-// Fails by  StartupError: a missing monitor, a driver without quad-buffered stereo.
+// Fails by  StartupError: a missing monitor; StereoRefused: the driver offers no such window, so one image must do.
 #pragma once
 
+#include <string>
+#include <utility>
 #include <vector>
 
 #include "gui/render/gl.hpp"
 #include "gui/render/target.hpp"
 #include "gui/stereo/stage_file.hpp"
+#include "ipc/base/error.hpp"
 
 struct GLFWwindow;
 
 namespace tact {
+
+class StereoRefused : public StartupError {
+public:
+    StereoRefused(std::string why, const std::string& fix)
+        : StartupError("opening a window for the stereo display", why, fix),
+          why_(std::move(why)),
+          fix_(fix) {}
+    [[nodiscard]] const std::string& why() const { return why_; }
+    [[nodiscard]] const std::string& fix() const { return fix_; }
+
+private:
+    std::string why_, fix_;
+};
 
 class StageWindows {
 public:

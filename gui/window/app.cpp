@@ -42,7 +42,7 @@ GuiApp::GuiApp(const GuiOptions& options)
     if (!options.depth_cue) state_.toggles.depth_cue = false;
     state_.keys = options.keys;
     fps_max_ = options.fps_max >= 0.0 ? options.fps_max : (window_.paced_by_display() ? 0.0 : 60.0);
-    if (options.stage.mode != StereoMode::off) make_stage(options.stage);
+    if (options.stage.mode != StereoMode::off) make_stage_or_mono(options.stage);
     if (!options.scene.empty())
         start_loading(options.scene);
     else
@@ -120,7 +120,10 @@ void GuiApp::frame(Instant now, bool take_picture) {
     clock_.end_part(FramePart::panels);
     if (take_picture) {
         pictures_.save_at_end(window_.picture());
-        if (stage_ && (view_ || calibration_.open())) pictures_.save_stage(stage_->pictures());
+        if (!stage_)
+            pictures_.save_stage({});
+        else if (view_ || calibration_.open())
+            pictures_.save_stage(stage_->pictures());
     }
     if (panels_due_ && std::exchange(screenshot_requested_, false)) pictures_.save_now(window_.picture());
     {

@@ -18,6 +18,18 @@ void GuiApp::make_stage(const StageSettings& settings) {
     stage_ = std::make_unique<Stage>(settings, window_.handle(), options_.hidden, window_.paced_by_display());
 }
 
+// A driver without this kind of stereo does not end the run: one image for both eyes, and the reason over the view.
+void GuiApp::make_stage_or_mono(const StageSettings& settings) {
+    state_.stage_refused.clear();
+    try {
+        make_stage(settings);
+    } catch (const StereoRefused& e) {
+        spdlog::warn("{}", e.what());
+        state_.stage_refused = std::string("Stereo is off, because ") + e.why() + ". To have it, " + e.fix() +
+                               " (--stereo MODE, or mode in the stage file).";
+    }
+}
+
 void GuiApp::open_calibration(bool check_alone) {
     StageSettings now = options_.stage;
     if (stage_) now = stage_->settings();
@@ -57,7 +69,7 @@ void GuiApp::leave_calibration() {
     if (kept.mode == StereoMode::off)
         stage_.reset();
     else if (kept.mode != stage_->settings().mode)
-        make_stage(kept);
+        make_stage_or_mono(kept);
     else
         stage_->place(kept);
     if (!stage_) {

@@ -103,6 +103,7 @@ private:
     void follow_calibration(std::int64_t now_ns);
     void leave_calibration();
     void make_stage(const StageSettings& settings);
+    void make_stage_or_mono(const StageSettings& settings);
     void draw_calibration(const ViewFrame& view, std::int64_t now_ns);
     void draw_panels();
     void watch(const Request& request);

@@ -74,6 +74,10 @@ void legend(const OverlayPen& pen, const PanelState& state, const SystemPanels& 
         if (!state.stage.empty())
             pen.text(pen.theme.small, {x, y}, state.head_lost ? colour::kWatch : colour::kDim, state.stage);
     }
+    if (!state.stage_refused.empty()) {
+        const float most = std::min(pen.theme.px(420.0F), v.width - pen.theme.px(32.0F));
+        pen.wrapped(pen.theme.small, {x, y}, colour::kWatch, state.stage_refused, most);
+    }
     const std::string fps = format("%.0f fps   ", state.load.fps) + system.drawn_text(state);
     float at = v.y + pen.theme.px(12.0F);
     for (const std::string& words :

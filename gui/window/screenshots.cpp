@@ -36,6 +36,11 @@ void Screenshots::save_of_series(const Image& window, const View& view) {
 
 void Screenshots::save_stage(const std::vector<Image>& eyes) {
     if (stage_.empty()) return;
+    if (eyes.empty()) {
+        spdlog::error("writing {}: no stereo display is open", stage_);
+        failed_ = true;
+        return;
+    }
     if (eyes.size() == 1) return write(stage_, eyes[0]);
     for (std::size_t eye = 0; eye < eyes.size(); ++eye) {
         std::filesystem::path path = stage_;

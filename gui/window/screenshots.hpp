@@ -31,8 +31,9 @@ public:
     void save_at_end(const Image& window) {
         if (!path_.empty()) write(path_, window);
     }
-    void save_stage(const std::vector<Image>& eyes);  // one for both, or left and right
-    void save_now(const Image& window);               // in the output folder
+    // One for both, or left and right; none without a stereo display, which is an error if it was to be saved.
+    void save_stage(const std::vector<Image>& eyes);
+    void save_now(const Image& window);  // in the output folder
     [[nodiscard]] bool failed() const { return failed_; }
 
 private:

@@ -185,6 +185,17 @@ TEST(Doctor, root_may_lock_memory_whatever_the_limit) {
     EXPECT_EQ(one(m, "memlock").level, FindingLevel::ok);
 }
 
+TEST(Doctor, a_wayland_session_without_an_x_server_is_told_to_install_xwayland) {
+    const Finding without = judge_display("", "wayland-0", true);
+    EXPECT_EQ(without.level, FindingLevel::warn);
+    EXPECT_NE(without.says.find("wayland-0"), std::string::npos) << without.says;
+    EXPECT_NE(without.fix.find("xwayland"), std::string::npos) << without.fix;
+    EXPECT_EQ(judge_display(":0", "wayland-0", true).level, FindingLevel::ok);
+    EXPECT_EQ(judge_display(":0", "", true).fix, "");
+    EXPECT_EQ(judge_display("", "", true).level, FindingLevel::ok);
+    EXPECT_EQ(judge_display("", "", false).level, FindingLevel::fail);
+}
+
 TEST(Doctor, core_lists_are_read_as_the_kernel_writes_them) {
     EXPECT_EQ(parse_core_list("2-4,7\n"), (std::vector<int>{2, 3, 4, 7}));
     EXPECT_EQ(parse_core_list("0\n"), (std::vector<int>{0}));

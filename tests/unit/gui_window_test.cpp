@@ -496,9 +496,27 @@ TEST_F(GuiWindow, an_impossible_stage_is_refused_with_a_reason) {
     EXPECT_EQ(gui({"--seconds", "0.5", "--stage", file})->wait(), 2);
     EXPECT_NE(log().find("sideways"), std::string::npos) << log();
     EXPECT_NE(gui({"--stereo", "sideways"})->wait(), 0);
+}
+
+TEST_F(GuiWindow, stereo_that_the_driver_refuses_leaves_one_image_and_a_message_in_the_window) {
     // Software renderers have no buffers for two eyes.
-    EXPECT_EQ(gui({"--seconds", "0.5", "--stereo", "quad-buffer"})->wait(), 1);
-    EXPECT_NE(log().find("fix:"), std::string::npos) << log();
+    const std::string picture = folder_ + "/mono.png", texts = folder_ + "/texts.json";
+    EXPECT_EQ(
+        gui({scene(), "--seconds", "1", "--stereo", "quad-buffer", "--screenshot", picture, "--texts", texts})
+            ->wait(),
+        0)
+        << log();
+    EXPECT_NE(log().find("no quad-buffered stereo"), std::string::npos) << log();
+    EXPECT_GT(colours(picture, 640, 480).size(), 100U);
+    std::ifstream in(texts);
+    const std::string shown{std::istreambuf_iterator<char>(in), {}};
+    EXPECT_NE(shown.find("Stereo is off, because"), std::string::npos) << shown;
+    EXPECT_NE(shown.find("side-by-side"), std::string::npos) << shown;
+    // What was to be saved of it is missing, which is an error.
+    EXPECT_EQ(
+        gui({scene(), "--seconds", "0.5", "--stereo", "quad-buffer", "--stage-screenshot", picture})->wait(),
+        1)
+        << log();
 }
 
 TEST_F(GuiWindow, an_unwritable_screenshot_is_an_error_and_arguments_are_checked) {
