@@ -1,7 +1,6 @@
 // Health panel: state of the controller as numbers, text and colour, and the buttons needed first.
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <cmath>
 
 #include "gui/dashboard/panels.hpp"
@@ -10,36 +9,6 @@
 
 namespace tact {
 namespace {
-
-void buttons(const Theme& theme, DashboardState& state) {
-    const auto run_state = static_cast<RunState>(state.health.state);
-    const bool known = state.attached && state.have_health && !state.replay.shown;
-    const float width = (ImGui::GetContentRegionAvail().x - 2.0F * ImGui::GetStyle().ItemSpacing.x) / 3.0F;
-    const auto button = [&](const char* name, bool enabled, CommandKind kind, ImU32 c) {
-        ImGui::BeginDisabled(!enabled);
-        if (enabled) {
-            ImGui::PushStyleColor(ImGuiCol_Button, (c & 0x00FFFFFFU) | (0x48U << 24U));
-            ImGui::PushStyleColor(ImGuiCol_ButtonHovered, (c & 0x00FFFFFFU) | (0x80U << 24U));
-        }
-        if (ImGui::Button(name, {width, 0.0F})) state.requests.push_back({kind, 0.0, {}});
-        if (enabled) ImGui::PopStyleColor(2);
-        ImGui::EndDisabled();
-    };
-    button("Arm", known && !state.watching && run_state == RunState::ready, CommandKind::arm, colour::kGood);
-    ImGui::SameLine();
-    button("Disarm", known && (run_state == RunState::armed || run_state == RunState::active),
-           CommandKind::disarm, colour::kWatch);
-    ImGui::SameLine();
-    button("Reset", known && !state.watching && run_state == RunState::fault, CommandKind::reset_fault,
-           colour::kBad);
-    (void)theme;
-}
-
-std::string upper(std::string word) {
-    std::transform(word.begin(), word.end(), word.begin(),
-                   [](unsigned char c) { return static_cast<char>(std::toupper(c)); });
-    return word;
-}
 
 // Bar of the rate, with a mark at the goal.
 void rate_bar(const Theme& theme, const HealthTopic& h, ImU32 c) {
@@ -125,7 +94,7 @@ void hero(const Theme& theme, const DashboardState& state) {
     const auto run_state = static_cast<RunState>(h.state);
     const StatusText v = state_status(run_state, static_cast<RunReason>(h.reason));
     const double silent_s = 1e-9 * static_cast<double>(state.now_ns - h.taken_at_ns);
-    badge(theme, upper(run_state_text(run_state)), grade_colour(v.grade), theme.large);
+    badge(theme, run_badge_text(run_state), grade_colour(v.grade), theme.large);
     ImGui::SameLine();
     ImGui::BeginGroup();  // beside it, as many lines as needed
     if (silent_s > 1.0) badge(theme, format("silent for %.0f s", silent_s), colour::kBad);
@@ -240,7 +209,7 @@ void draw_health(const Theme& theme, DashboardState& state, const PixelRect& car
     else if (known && state.attached)
         hero(theme, state);
     // Below the top part, so that long device messages do not push the buttons out of the card.
-    buttons(theme, state);
+    draw_run_buttons(state);
     if (!state.command_text.empty() && !state.replay.shown)
         text_small(theme, grade_colour(state.command_grade), state.command_text);
     if (known && state.attached) {

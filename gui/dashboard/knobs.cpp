@@ -11,14 +11,14 @@ namespace tact {
 namespace {
 
 constexpr std::array<ImU32, 4> kPathColours{colour::kAccent, colour::kOrange, colour::kGreen, colour::kPink};
+constexpr std::array<const char*, kSpans_s.size()> kSpanNames{"1 min", "10 min", "1 h", "6 h", "24 h"};
 constexpr std::array<const char*, 3> kLatenessViews{"last minute", "whole run", "over time"};
 constexpr std::array<const char*, 3> kLatenessShort{"minute", "run", "trend"};
 
-void span_choice(const Theme& theme, DashboardState& state) {
-    static constexpr std::array<const char*, kSpans_s.size()> kNames{"1 min", "10 min", "1 h", "6 h", "24 h"};
-    ImGui::PushFont(theme.small);
-    choose(theme, kNames, state.span_choice);
-    ImGui::PopFont();
+float choice_width(const Theme& theme, std::span<const char* const> words) {
+    float wide = 0.0F;
+    for (const char* const word : words) wide += ImGui::CalcTextSize(word).x + theme.px(10.0F);
+    return wide;
 }
 
 // The part after the dot distinguishes the paths: "mesh", "force".
@@ -86,8 +86,9 @@ void draw_plots(const Theme& theme, DashboardState& state, const PixelRect& card
         draw_traces(theme, state);
         return end_card();
     }
-    ImGui::SameLine(0.0F, theme.px(18.0F));
-    span_choice(theme, state);
+    ImGui::PushFont(theme.small);
+    same_line_if_fits(theme.px(18.0F), choice_width(theme, kSpanNames));
+    choose(theme, kSpanNames, state.span_choice);
     const History& h = state.history;
     const ImVec2 inside = ImGui::GetContentRegionAvail();
     const float gap = theme.px(12.0F);
@@ -95,15 +96,16 @@ void draw_plots(const Theme& theme, DashboardState& state, const PixelRect& card
     const bool wide = inside.x > theme.px(900.0F);
     if (!wide) state.lateness_choice = std::clamp(state.lateness_choice, 0, 2);
     if (wide && state.lateness_choice == 2) state.lateness_choice = 0;
-    ImGui::SameLine(0.0F, theme.px(20.0F));
-    ImGui::PushFont(theme.small);
     const bool roomy = inside.x > theme.px(620.0F);
-    if (roomy) {
-        text_coloured(colour::kDim, "lateness:");
-        ImGui::SameLine(0.0F, theme.px(6.0F));
+    const auto views = std::span(roomy ? kLatenessViews : kLatenessShort).first(wide ? 2 : 3);
+    const float label = roomy ? ImGui::CalcTextSize("lateness:").x + theme.px(6.0F) : 0.0F;
+    if (same_line_if_fits(theme.px(20.0F), label + choice_width(theme, views))) {
+        if (roomy) {
+            text_coloured(colour::kDim, "lateness:");
+            ImGui::SameLine(0.0F, theme.px(6.0F));
+        }
+        choose(theme, views, state.lateness_choice);
     }
-    choose(theme, std::span(roomy ? kLatenessViews : kLatenessShort).first(wide ? 2 : 3),
-           state.lateness_choice);
     ImGui::PopFont();
     const ImVec2 room = ImGui::GetContentRegionAvail();
     // A narrow window omits values that the controller card shows.

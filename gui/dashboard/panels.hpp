@@ -7,6 +7,12 @@
 namespace tact {
 
 void draw_health(const Theme& theme, DashboardState& state, const PixelRect& card);
+// The same in two lines, for a window without room for cards.
+void draw_health_strip(const Theme& theme, DashboardState& state, const PixelRect& card);
+// Arm, disarm, reset: as wide as the window, enabled where the state of the run allows them.
+void draw_run_buttons(DashboardState& state);
+// "ACTIVE"
+[[nodiscard]] std::string run_badge_text(RunState state);
 // Inside the controller card: devices, tracker, motors.
 void draw_device_rows(const Theme& theme, const DashboardState& state);
 // Histogram of cycle lateness in a box of this size.

@@ -159,7 +159,8 @@ PlotHover draw_plot(const Theme& theme, const PlotSpec& spec, ImVec2 size) {
     for (std::size_t i = 0; i < spec.text.size(); ++i) {
         const float y = at.y + (1.08F + static_cast<float>(i)) * line;
         if (i < spec.lines.size()) swatch(at.x, y, spec.lines[i].colour);
-        label({at.x + theme.px(11.0F), y}, colour::kDim, spec.text[i]);
+        label({at.x + theme.px(11.0F), y}, colour::kDim,
+              cut_text(theme.small, spec.text[i], size.x - theme.px(11.0F)));
     }
     const auto legend = [&](const PlotLine& l, bool with_value) {
         const std::string name = l.name;

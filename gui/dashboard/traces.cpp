@@ -32,14 +32,14 @@ void run_row(const Theme& theme, TracesState& t) {
     ImGui::AlignTextToFramePadding();
     choose(theme, kRuns, run);
     if (run != before) scope.choose_run(static_cast<TraceRun>(run));
-    ImGui::SameLine();
+    same_line_if_fits(ImGui::GetStyle().ItemSpacing.x, theme.px(84.0F));
     ImGui::SetNextItemWidth(theme.px(84.0F));
     if (ImGui::BeginCombo("##span", duration_text(scope.span_s()).c_str())) {
         for (const double s : kTraceSpans_s)
             if (ImGui::Selectable(duration_text(s).c_str(), s == scope.span_s())) scope.set_span(s);
         ImGui::EndCombo();
     }
-    ImGui::SameLine();
+    same_line_if_fits(ImGui::GetStyle().ItemSpacing.x, theme.px(92.0F));
     ImGui::SetNextItemWidth(theme.px(92.0F));
     if (ImGui::BeginCombo("##channels", "Channels")) {
         for (std::size_t i = 0; i < kTraceChannels; ++i) {
@@ -49,14 +49,14 @@ void run_row(const Theme& theme, TracesState& t) {
         }
         ImGui::EndCombo();
     }
-    ImGui::SameLine();
+    same_line_if_fits(ImGui::GetStyle().ItemSpacing.x, theme.px(84.0F));
     ImGui::Checkbox("Cursors", &scope.cursors);
-    ImGui::SameLine();
+    same_line_if_fits(ImGui::GetStyle().ItemSpacing.x, theme.px(62.0F));
     ImGui::BeginDisabled(scope.shown().empty() || t.channels.none());
     if (ImGui::Button("Export")) t.export_wanted = true;
     ImGui::EndDisabled();
     if (scope.run() == TraceRun::single) {
-        ImGui::SameLine();
+        same_line_if_fits(ImGui::GetStyle().ItemSpacing.x, theme.px(96.0F));
         if (ImGui::Button("Arm trigger")) scope.choose_run(TraceRun::single);
     }
 }
@@ -66,7 +66,7 @@ void trigger_row(const Theme& theme, TraceScope& scope) {
     TriggerSettings s = scope.trigger();
     bool changed = false;
     text_coloured(colour::kDim, "trigger on");
-    ImGui::SameLine();
+    same_line_if_fits(ImGui::GetStyle().ItemSpacing.x, theme.px(100.0F));
     ImGui::SetNextItemWidth(theme.px(100.0F));
     const char* const source = s.source == TriggerSource::overrun ? "an overrun"
                                : s.source == TriggerSource::fault ? "a fault"
@@ -88,7 +88,7 @@ void trigger_row(const Theme& theme, TraceScope& scope) {
         }
         ImGui::EndCombo();
     }
-    ImGui::SameLine();
+    same_line_if_fits(ImGui::GetStyle().ItemSpacing.x, theme.px(92.0F));
     ImGui::SetNextItemWidth(theme.px(92.0F));
     auto before = static_cast<float>(100.0 * s.pre_share);
     if (ImGui::SliderFloat("##before", &before, 0.0F, 100.0F, "%.0f %% before")) {
@@ -97,10 +97,10 @@ void trigger_row(const Theme& theme, TraceScope& scope) {
     }
     if (s.source == TriggerSource::channel) {
         const TraceChannelInfo& info = trace_channel(s.channel);
-        ImGui::SameLine();
+        same_line_if_fits(ImGui::GetStyle().ItemSpacing.x, theme.px(58.0F));
         if (ImGui::Button(s.rising ? "rising" : "falling", {theme.px(58.0F), 0.0F}))
             s.rising = !s.rising, changed = true;
-        ImGui::SameLine();
+        same_line_if_fits(ImGui::GetStyle().ItemSpacing.x, theme.px(64.0F));
         ImGui::SetNextItemWidth(theme.px(64.0F));
         double level = s.level * info.scale;
         ImGui::InputDouble("##level", &level, 0.0, 0.0, "%.4g");
@@ -118,7 +118,8 @@ void message_row(const Theme& theme, const TracesState& t) {
     const bool good = !scope.held() && (scope.run() == TraceRun::roll || scope.captures() > 0);
     text_small(theme, good ? colour::kGood : colour::kWatch, scope.status(), false);
     const auto next = [&](ImU32 c, const std::string& text) {
-        ImGui::SameLine(0.0F, theme.px(12.0F));
+        same_line_if_fits(theme.px(12.0F),
+                          theme.small->CalcTextSizeA(theme.small->FontSize, 1e9F, 0.0F, text.c_str()).x);
         text_small(theme, c, text, false);
     };
     const TraceStore& shown = scope.shown();

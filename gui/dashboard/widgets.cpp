@@ -97,6 +97,13 @@ void row(const Theme& theme, const char* what, const std::string& value, std::sp
     }
 }
 
+bool same_line_if_fits(float gap, float wide) {
+    const float right = ImGui::GetWindowPos().x + ImGui::GetWindowContentRegionMax().x;
+    const bool fits = ImGui::GetItemRectMax().x + gap + wide <= right;
+    if (fits) ImGui::SameLine(0.0F, gap);
+    return fits;
+}
+
 void choose(const Theme& theme, std::span<const char* const> words, int& chosen) {
     ImGui::PushStyleColor(ImGuiCol_HeaderHovered, colour::kPanelEdge);
     ImGui::PushStyleColor(ImGuiCol_HeaderActive, colour::kPanelEdge);

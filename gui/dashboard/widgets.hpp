@@ -27,6 +27,9 @@ void row(const Theme& theme, const char* what, const std::string& value, std::sp
 void text_coloured(ImU32 c, const std::string& text);
 void text_small(const Theme& theme, ImU32 c, const std::string& text, bool wrap = true);
 
+// Continues the line if an item of this width fits into the window right of the last one, else begins the next line.
+bool same_line_if_fits(float gap, float wide);
+
 // A line of options, one of them selected.
 void choose(const Theme& theme, std::span<const char* const> words, int& chosen);
 

@@ -42,30 +42,29 @@ void scene_row(const Theme& theme, const SceneRow& row, float width, BrowserStat
     ImDrawList* const draw = ImGui::GetWindowDrawList();
     const float pad = theme.px(6.0F);
     const auto text = [&](ImFont* font, float x, float y, ImU32 c, const std::string& words, float most) {
-        draw->PushClipRect({x, at.y}, {x + most, at.y + height}, true);
-        draw->AddText(font, font->FontSize, {x, at.y + y}, c, noted(words));
-        draw->PopClipRect();
+        draw->AddText(font, font->FontSize, {x, at.y + y}, c, cut_text(font, words, most).c_str());
     };
     if (row.folder) {
         text(theme.text, at.x + pad, theme.px(2.0F), colour::kAccent, row.name + "/", width);
         return;
     }
     const float name = at.x + pad + (row.raw ? theme.px(20.0F) : 0.0F);
-    const float kind = at.x + width - theme.px(250.0F), size = at.x + width - theme.px(176.0F),
-                when = at.x + width - theme.px(96.0F);
+    const bool narrow = width < theme.px(420.0F);  // without size and time
+    const float kind = at.x + width - theme.px(narrow ? 74.0F : 250.0F),
+                size = at.x + width - theme.px(176.0F), when = at.x + width - theme.px(96.0F);
     if (row.raw) tick_box(theme, {at.x + pad, at.y + theme.px(5.0F)}, row.marked);
     text(theme.bold, name, theme.px(2.0F), usable ? colour::kText : colour::kDim, row.name,
          kind - name - pad);
     text(theme.text, kind, theme.px(2.0F), row.raw ? colour::kOrange : colour::kAccent, row.kind,
          theme.px(70.0F));
-    text(theme.text, size, theme.px(2.0F), colour::kDim, row.size, theme.px(76.0F));
-    text(theme.text, when, theme.px(2.0F), colour::kDim, row.when, theme.px(96.0F));
+    if (!narrow) text(theme.text, size, theme.px(2.0F), colour::kDim, row.size, theme.px(76.0F));
+    if (!narrow) text(theme.text, when, theme.px(2.0F), colour::kDim, row.when, theme.px(96.0F));
     const std::string below = !usable       ? row.trouble
                               : row.current ? "shown now, " + row.place
                               : row.raw     ? ""
                                             : row.place;
     text(theme.small, name, theme.px(21.0F), usable ? colour::kDim : colour::kWatch, below,
-         width - 2.0F * pad);
+         at.x + width - name - pad);
 }
 
 void rows(const Theme& theme, const std::vector<SceneRow>& list, BrowserState& browser) {
@@ -110,7 +109,8 @@ void marks_line(const Theme& theme, BrowserState& browser) {
 
 void draw_browser(const Theme& theme, BrowserState& browser, const PixelRect& view) {
     // Below the text in the view's upper corners, which would be drawn over it.
-    const float above = theme.px(66.0F);
+    const bool small = view.height < theme.px(300.0F);
+    const float above = theme.px(small ? 6.0F : 66.0F);
     const float width = std::min(theme.px(660.0F), 0.94F * view.width),
                 height = std::min(theme.px(440.0F), std::max(view.height - above - theme.px(10.0F), 1.0F));
     const PixelRect card{view.x + 0.5F * (view.width - width), view.y + above, width, height};
@@ -118,8 +118,11 @@ void draw_browser(const Theme& theme, BrowserState& browser, const PixelRect& vi
         {card.x, card.y}, {card.x + card.width, card.y + card.height}, IM_COL32(18, 22, 29, 250));
     begin_card(theme, "Scenes", card);
     static constexpr std::array<const char*, 3> kTabs{"Recently used", "Folder", "Drilled bone"};
-    ImGui::SameLine(0.0F, theme.px(18.0F));
-    choose(theme, kTabs, browser.tab);
+    const bool one_line = width > theme.px(560.0F);
+    if (one_line) {
+        ImGui::SameLine(0.0F, theme.px(18.0F));
+        choose(theme, kTabs, browser.tab);
+    }
     if (browser.can_save) {
         ImGui::SameLine(width - theme.px(168.0F));
         if (ImGui::SmallButton("Save session")) browser.session_wanted = true;
@@ -129,6 +132,7 @@ void draw_browser(const Theme& theme, BrowserState& browser, const PixelRect& vi
     }
     ImGui::SameLine(width - theme.px(64.0F));
     if (ImGui::SmallButton("Close")) browser.open = false;
+    if (!one_line) choose(theme, kTabs, browser.tab);
     if (!browser.message.empty()) {
         ImGui::PushTextWrapPos(0.0F);
         text_coloured(grade_colour(browser.message_grade), browser.message);

@@ -17,8 +17,31 @@ Strip strip_of(const PanelState& state) {
     return {state.strip == 1, state.replay.shown, state.past.shown && !state.replay.shown};
 }
 
+namespace {
+
+// The state, the force rate and the buttons needed first; all else waits for a larger window.
+constexpr float kCompactStrip = 64.0F;
+
+Layout compact_layout(const Theme& theme, float width_px, float height_px) {
+    const float strip = std::round(std::min(theme.px(kCompactStrip), 0.5F * height_px));
+    Layout l;
+    l.compact = true;
+    l.view = {0.0F, 0.0F, std::max(width_px, 1.0F), std::max(height_px - strip, 1.0F)};
+    l.health = {0.0F, l.view.height, l.view.width, strip};
+    return l;
+}
+
+void draw_compact(const Theme& theme, PanelState& state, const Layout& layout) {
+    draw_health_strip(theme, state, layout.health);
+    if (state.browser.open) draw_browser(theme, state.browser, layout.view);
+}
+
+}  // namespace
+
 Layout layout_for(const Theme& theme, float width_px, float height_px, const MiddleCard& middle,
                   Strip strip) {
+    if (width_px < theme.px(kLeastWide) || height_px < theme.px(kLeastHigh))
+        return compact_layout(theme, width_px, height_px);
     const float gap = std::round(theme.px(6.0F));
     const float left = std::round(std::min(theme.px(318.0F), 0.5F * width_px));
     const float plots = strip.traces
@@ -67,6 +90,11 @@ void draw_dashboard(const Theme& theme, PanelState& state, SystemPanels& system,
     const MiddleCard middle = middle_card(state, system);
     const Layout layout = layout_for(theme, width_px, height_px, middle, strip_of(state));
     ImGui::PushStyleVar(ImGuiStyleVar_WindowMinSize, ImVec2(1.0F, 1.0F));
+    if (layout.compact) {
+        draw_compact(theme, state, layout);
+        ImGui::PopStyleVar();
+        return draw_overlay(theme, state, system, layout);
+    }
     if (middle.calibration) draw_calibration(theme, state.calibration, layout.middle);
     if (!middle.calibration) draw_health(theme, state, layout.health);
     if (middle.size.height > 0.0F) system.draw_card(theme, layout.middle, state);
@@ -95,7 +123,7 @@ void draw_dashboard(const Theme& theme, PanelState& state, SystemPanels& system,
             draw_picture_panel(theme, state.picture, state.toggles, state.situation.bodies, layout.view);
     }
     ImGui::PopStyleVar();
-    draw_overlay(theme, state, system, layout.view);
+    draw_overlay(theme, state, system, layout);
 }
 
 }  // namespace tact

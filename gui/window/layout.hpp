@@ -1,5 +1,5 @@
 // Layout of the window, and drawing of its panels: a column of cards on the left, a strip of plots below, the 3D view
-// in the rest; nothing overlaps.
+// in the rest; nothing overlaps. A window too small for cards has the view and a strip with state, force rate and buttons.
 //
 // Thread   frame thread, inside an ImGui frame.
 #pragma once
@@ -18,6 +18,7 @@ namespace tact {
 struct Layout {
     PixelRect view, health, middle, scene, plots, events;
     PixelRect timeline{};
+    bool compact = false;  // the health card alone, as a strip below the view
 
     [[nodiscard]] std::array<PixelRect, 6> cards() const {
         return {health, middle, scene, timeline, plots, events};
@@ -39,12 +40,15 @@ struct Strip {
 [[nodiscard]] Layout layout_for(const Theme& theme, float width_px, float height_px, const MiddleCard& middle,
                                 Strip strip = {});
 
+// Smaller windows are compact; at scale 1.
+inline constexpr float kLeastWide = 720.0F, kLeastHigh = 420.0F;
+
 // Draws everything except the 3D view and the cards' backgrounds.
 void draw_dashboard(const Theme& theme, PanelState& state, SystemPanels& system, float width_px,
                     float height_px);
 
 // Over the 3D view: legend, scale bar, axes, status.
-void draw_overlay(const Theme& theme, PanelState& state, const SystemPanels& system, const PixelRect& view);
+void draw_overlay(const Theme& theme, PanelState& state, const SystemPanels& system, const Layout& layout);
 void draw_scene(const Theme& theme, DashboardState& state, SystemPanels& system, const PixelRect& card);
 
 }  // namespace tact

@@ -47,12 +47,28 @@ void axes(const OverlayPen& pen, const PanelState& state, const PixelRect& v) {
     }
 }
 
+// The title of the scene and the force, in a window without room for more.
+void compact_legend(const OverlayPen& pen, const PanelState& state, const PixelRect& v) {
+    if (!state.scene.loaded) return;
+    const float x = v.x + pen.theme.px(10.0F), y = v.y + pen.theme.px(8.0F);
+    const std::string title =
+        cut_text(pen.theme.small, state.scene.title, v.width - (x - v.x) - pen.theme.px(10.0F));
+    pen.text(pen.theme.small, {x, y}, colour::kText, title);
+    if (state.toggles.force && state.attached)
+        pen.text(pen.theme.small, {x, y + pen.theme.px(17.0F)}, colour::kForce,
+                 format("model force %.2f N", state.force_n));
+}
+
 void legend(const OverlayPen& pen, const PanelState& state, const SystemPanels& system, const PixelRect& v) {
     const float x = v.x + pen.theme.px(16.0F);
     float y = v.y + pen.theme.px(12.0F), taken = x;  // space for numbers begins right of it
     if (state.scene.loaded) {
-        pen.text(pen.theme.bold, {x, y}, colour::kText, state.scene.title);
-        taken = x + pen.width(pen.theme.bold, state.scene.title);
+        // Up to the sign of a replay, which stands in the middle.
+        const std::string title =
+            cut_text(pen.theme.bold, state.scene.title,
+                     (state.replay.shown ? 0.5F : 1.0F) * v.width - pen.theme.px(60.0F));
+        pen.text(pen.theme.bold, {x, y}, colour::kText, title);
+        taken = x + pen.width(pen.theme.bold, title);
         y += pen.theme.px(22.0F);
         const auto line = [&](ImU32 swatch, const std::string& text) {
             pen.draw->AddRectFilled({x, y + pen.theme.px(6.0F)},
@@ -89,20 +105,26 @@ void legend(const OverlayPen& pen, const PanelState& state, const SystemPanels& 
     }
 }
 
+bool has_stop_notice(const PanelState& state) {
+    return state.attached && state.have_health && !stop_notice(state.health).why.empty();
+}
+
 // Over everything else, because it takes precedence.
-void stop_banner(const OverlayPen& pen, const PanelState& state, const PixelRect& v) {
-    if (!state.attached || !state.have_health) return;
+void stop_banner(const OverlayPen& pen, const PanelState& state, const Layout& layout) {
+    const PixelRect& v = layout.view;
+    if (!has_stop_notice(state)) return;
     const StopNotice notice = stop_notice(state.health);
-    if (notice.why.empty()) return;
-    ImFont* const large = pen.theme.large;
-    ImFont* const text = pen.theme.text;
+    ImFont* const large = layout.compact ? pen.theme.bold : pen.theme.large;
+    ImFont* const text = layout.compact ? pen.theme.small : pen.theme.text;
     const std::string fix = state.replay.shown ? "In the recorded run." : notice.fix;
-    const float pad = pen.theme.px(16.0F), most = 0.7F * v.width;
+    const float pad = pen.theme.px(layout.compact ? 8.0F : 16.0F),
+                most = (layout.compact ? 0.9F : 0.7F) * v.width;
     const std::string title = (state.replay.shown ? "Then no force: " : "No force: ") + notice.why;
     const ImVec2 head = large->CalcTextSizeA(large->FontSize, 1e9F, most, noted(title)),
                  body = text->CalcTextSizeA(text->FontSize, 1e9F, most, noted(fix));
     const float w = std::max(head.x, body.x) + 2.0F * pad, h = head.y + body.y + 2.5F * pad;
-    const ImVec2 at{v.x + 0.5F * (v.width - w), v.y + 0.16F * v.height};
+    const ImVec2 at{v.x + 0.5F * (v.width - w),
+                    v.y + (layout.compact ? pen.theme.px(8.0F) : 0.16F * v.height)};
     pen.draw->AddRectFilled(at, {at.x + w, at.y + h}, IM_COL32(96, 22, 18, 240), pen.theme.px(8.0F));
     pen.draw->AddRect(at, {at.x + w, at.y + h}, colour::kBad, pen.theme.px(8.0F), 0, pen.theme.px(2.0F));
     pen.draw->AddText(large, large->FontSize, {at.x + pad, at.y + pad}, IM_COL32(255, 235, 232, 255),
@@ -200,12 +222,28 @@ void mouse_hint(const OverlayPen& pen, const PanelState& state, const PixelRect&
                       text.c_str(), nullptr, most - 2.0F * px);
 }
 
-// Keys that apply now.
-void keys(const OverlayPen& pen, const KeyTable& table, const KeySituation& now, const PixelRect& v) {
+// Keys that apply now; in a view too small for them, over the whole window.
+void keys(OverlayPen pen, const KeyTable& table, const KeySituation& now, PixelRect v) {
     std::vector<const KeyRow*> rows;
     for (const KeyRow& row : table.rows())
         if (applies(row.when, now)) rows.push_back(&row);
-    const float line = pen.theme.px(20.0F), pad = pen.theme.px(14.0F), column = pen.theme.px(430.0F);
+    float line = pen.theme.px(20.0F), column = pen.theme.px(430.0F), word = pen.theme.px(112.0F);
+    const float pad = pen.theme.px(14.0F);
+    ImFont *name = pen.theme.bold, *text = pen.theme.text;
+    const auto fits = [&](float high, float wide) {
+        return std::floor((high - 2.0F * pad) / line) * std::floor(wide / column) >=
+               static_cast<float>(rows.size());
+    };
+    if (!fits(v.height, v.width)) {
+        v = {0.0F, 0.0F, ImGui::GetIO().DisplaySize.x, ImGui::GetIO().DisplaySize.y};
+        pen.draw = ImGui::GetForegroundDrawList();
+        if (!fits(v.height, v.width)) {
+            line = pen.theme.px(17.0F);
+            column = pen.theme.px(400.0F);
+            word = pen.theme.px(96.0F);
+            name = text = pen.theme.small;
+        }
+    }
     const auto columns = static_cast<std::size_t>(
         sheet_columns(static_cast<int>(rows.size()), static_cast<int>((v.height - 4.0F * pad) / line),
                       static_cast<int>(v.width / column)));
@@ -218,18 +256,41 @@ void keys(const OverlayPen& pen, const KeyTable& table, const KeySituation& now,
         const std::size_t in_column = i / each;
         const float x = at.x + pad + column * static_cast<float>(in_column);
         const float y = at.y + pad + line * static_cast<float>(i % each);
-        pen.draw->AddText(pen.theme.bold, pen.theme.bold->FontSize, {x, y}, colour::kAccent, rows[i]->keys);
-        pen.draw->AddText(pen.theme.text, pen.theme.text->FontSize, {x + pen.theme.px(112.0F), y},
-                          colour::kText, rows[i]->what);
+        pen.draw->AddText(name, name->FontSize, {x, y}, colour::kAccent, rows[i]->keys);
+        pen.draw->AddText(text, text->FontSize, {x + word, y}, colour::kText, rows[i]->what);
     }
+}
+
+// What a window without room for panels shows over the view. The list of scenes lies over all of it.
+void compact_overlay(const OverlayPen& pen, const PanelState& state, const Layout& layout) {
+    const PixelRect& v = layout.view;
+    if (state.browser.open) return;
+    if (has_stop_notice(state)) return stop_banner(pen, state, layout);
+    if (state.situation.sheet || state.picture.open || state.calibration.open) {
+        pen.wrapped(pen.theme.text, {v.x + pen.theme.px(14.0F), v.y + 0.3F * v.height}, colour::kWatch,
+                    state.situation.sheet ? "Enlarge the window to see the table of keys."
+                                          : "Enlarge the window to see the panel.",
+                    v.width - pen.theme.px(28.0F));
+        return;
+    }
+    message(pen, state, v);
+    compact_legend(pen, state, v);
+    if (!state.scene.loaded || !state.attached) return;
+    axes(pen, state, v);
+    scale_bar(pen, state, v);
 }
 
 }  // namespace
 
-void draw_overlay(const Theme& theme, PanelState& state, const SystemPanels& system, const PixelRect& view) {
+void draw_overlay(const Theme& theme, PanelState& state, const SystemPanels& system, const Layout& layout) {
+    const PixelRect& view = layout.view;
     const OverlayPen pen{theme, ImGui::GetBackgroundDrawList(),
                          state.toggles.white_ground && state.stage.empty()};
     pen.draw->PushClipRect({view.x, view.y}, {view.x + view.width, view.y + view.height});
+    if (layout.compact) {
+        compact_overlay(pen, state, layout);
+        return pen.draw->PopClipRect();
+    }
     if (!state.calibration.open && !state.situation.sheet) {  // the table of keys takes their place
         legend(pen, state, system, view);
         axes(pen, state, view);
@@ -239,7 +300,7 @@ void draw_overlay(const Theme& theme, PanelState& state, const SystemPanels& sys
         message(pen, state, view);
         mouse_hint(pen, state, view);
     }
-    stop_banner(pen, state, view);
+    stop_banner(pen, state, layout);
     replay_sign(pen, state, view);
     if (state.situation.sheet) keys(pen, state.keys, state.situation, view);
     pen.draw->PopClipRect();

@@ -58,10 +58,10 @@ void PanelImage::forget() {
 
 bool PanelImage::show(const Layout& layout, float to_px, int width_px, int height_px) {
     const Split s = split_of(layout, to_px);
-    if (!any_ || !column_.fits(s.left_px, height_px) ||
+    if (!any_ || (s.left_px > 0 && !column_.fits(s.left_px, height_px)) ||
         !strip_.fits(width_px - s.left_px, height_px - s.view_height_px))
         return false;
-    column_.restore(0, 0);
+    if (s.left_px > 0) column_.restore(0, 0);
     strip_.restore(s.left_px, 0);
     return true;
 }
@@ -77,7 +77,7 @@ void PanelImage::draw(ImDrawData& all, const Layout& layout, float to_px, int wi
     const Split s = split_of(layout, to_px);
     any_ = s.left_px > 0 && width_px > s.left_px && height_px > s.view_height_px;
     if (any_) {
-        column_.save(0, 0, s.left_px, height_px);
+        if (s.left_px > 0) column_.save(0, 0, s.left_px, height_px);
         strip_.save(s.left_px, 0, width_px - s.left_px, height_px - s.view_height_px);
     }
     draw_over();

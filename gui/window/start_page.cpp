@@ -151,7 +151,8 @@ void draw_start_page(const Theme& theme, StartPageState& page, BrowserState& bro
                      ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoSavedSettings |
                      ImGuiWindowFlags_NoBackground | ImGuiWindowFlags_NoBringToFrontOnFocus |
                      ImGuiWindowFlags_NoNav);
-    ImGui::Indent(std::floor(0.5F * (area.width - width)));
+    const float left_edge = std::floor(0.5F * (area.width - width));
+    ImGui::Indent(std::max(left_edge - ImGui::GetStyle().WindowPadding.x, 1.0F));
     ImGui::BeginDisabled(browser.open);  // its list lies over the page
     ImGui::PushFont(theme.large);
     text_coloured(colour::kText, "Tact");
@@ -166,8 +167,7 @@ void draw_start_page(const Theme& theme, StartPageState& page, BrowserState& bro
     recent(theme, browser, left);
     ImGui::EndGroup();
     ImGui::SameLine(0.0F, 0.0F);
-    ImGui::SetCursorPosX(std::floor(0.5F * (area.width - width)) + left + gap +
-                         ImGui::GetStyle().WindowPadding.x);
+    ImGui::SetCursorPosX(left_edge + left + gap);
     ImGui::BeginGroup();
     finding(theme, "Device", page.device, width - left - gap);
     finding(theme, "This computer", page.computer, width - left - gap);

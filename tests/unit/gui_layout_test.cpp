@@ -175,7 +175,8 @@ void fill_docking(DockingPanels& p) {
 struct Size {
     float width = 0.0F, height = 0.0F;
 };
-constexpr Size kSizes[] = {{1280.0F, 720.0F}, {1280.0F, 800.0F}, {1920.0F, 1080.0F}, {3840.0F, 2160.0F}};
+constexpr Size kSizes[] = {{320.0F, 240.0F},  {640.0F, 480.0F},   {1280.0F, 720.0F},
+                           {1280.0F, 800.0F}, {1920.0F, 1080.0F}, {3840.0F, 2160.0F}};
 
 // What is wrong with the frame that was drawn last. Rows of a list that scrolls may end at its edge.
 std::string faults() {
@@ -217,6 +218,25 @@ protected:
         EXPECT_EQ(faults(), "");
     }
 };
+
+TEST(SmallWindow, has_the_state_and_the_buttons_needed_first_below_a_view_of_its_full_width) {
+    test::TestDashboard d(320.0F, 240.0F, theme_scale(320, 240));
+    fill_run(d.state);
+    fill_docking(d.panels);
+    for (int i = 0; i < 3; ++i) d.frame();
+    const Layout l = layout_for(d.theme, 320.0F, 240.0F, middle_card(d.state, d.panels), strip_of(d.state));
+    EXPECT_TRUE(l.compact);
+    EXPECT_EQ(l.view.width, 320.0F);
+    EXPECT_GT(l.view.height, 170.0F);
+    std::string all;
+    for (const DrawnText& t : drawn_texts(*ImGui::GetDrawData())) all += t.text + "\n";
+    for (const char* const text : {"ACTIVE", "996 Hz", "Disarm", "model force 2.34 N"})
+        EXPECT_NE(all.find(text), std::string::npos) << text << " in\n" << all;
+    d.click("Controller", "Disarm");
+    ASSERT_EQ(d.state.requests.size(), 1U);
+    EXPECT_EQ(d.state.requests[0].kind, CommandKind::disarm);
+    EXPECT_FALSE(layout_for(d.theme, 640.0F, 480.0F, {}, {}).compact);
+}
 
 TEST_P(Layouts, of_docking_are_clean_in_every_tab) {
     for (int tab = 0; tab < 4; ++tab)
@@ -265,6 +285,12 @@ TEST_P(Layouts, of_every_state_of_a_run_are_clean) {
     expect_clean("a stereo display", [](PanelState& s, DockingPanels&) {
         s.stage = "stereo: side by side; head lost for 12 s";
         s.head_lost = true;
+    });
+    expect_clean("a stereo display that the driver refused", [](PanelState& s, DockingPanels&) {
+        s.stage_refused =
+            "Stereo is off, because the driver offers no quad-buffered stereo. To have it, enable stereo in "
+            "the settings of the graphics driver, or use another mode: side-by-side, top-bottom, two-windows "
+            "or anaglyph (--stereo MODE, or mode in the stage file).";
     });
     expect_clean("a second hand", [](PanelState& s, DockingPanels&) {
         s.second_hand = s.second_at_wall = true;
