@@ -4,7 +4,7 @@
 //           Outlines of TrueType or OpenType only: ImGui draws neither bitmap nor colour fonts.
 // Files     at most 64 MiB each; their directory of tables and every table in it must lie inside of the file.
 // Fails     never: a letter without a font is left out, and missing_letters_text() says which package has it.
-// Thread    any; each call reads fontconfig's configuration anew (tens of milliseconds), so that an installed font is found.
+// Thread    any; each call reads fontconfig's configuration anew (tens of milliseconds, seconds with a cold cache), so that an installed font is found.
 #pragma once
 
 #include <imgui.h>

@@ -3,8 +3,12 @@
 #include <spdlog/spdlog.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
+#include <exception>
 #include <filesystem>
+#include <span>
+#include <system_error>
 #include <utility>
 
 #include "gui/dashboard/letters.hpp"
@@ -189,20 +193,21 @@ void build_theme(Theme& theme, float scale) {
     style_for(scale);
 }
 
-bool follow_letters(Theme& theme, Instant now) {
-    const std::vector<ImWchar>& letters = letters_on_screen().letters();
-    if (theme.text == nullptr || letters.size() == theme.letters) return false;
-    if (theme.letters_at != Instant{} && now - theme.letters_at < kLettersAfter) return false;
-    theme.letters_at = now;
-    theme.letters = letters.size();
-    theme.letter_fonts = find_letter_fonts(letters, theme.letter_fonts);
+namespace {
+
+void use_found_letters(Theme& theme, std::span<const ImWchar> asked_for) {
+    try {
+        theme.letter_fonts = theme.finding.get();
+    } catch (const std::exception& e) {  // out of memory
+        spdlog::warn("searching fonts for letters of names: {}", e.what());
+    }
     build_theme(theme, theme.scale);
     std::vector<ImWchar> found;
     for (const LetterFont& font : theme.letter_fonts)
         found.insert(found.end(), font.letters.begin(), font.letters.end());
     std::sort(found.begin(), found.end());
     theme.missing.clear();
-    for (const ImWchar letter : letters)
+    for (const ImWchar letter : asked_for)
         if (!std::binary_search(found.begin(), found.end(), letter) &&
             theme.text->FindGlyphNoFallback(letter) == nullptr)
             theme.missing.push_back(letter);
@@ -210,7 +215,28 @@ bool follow_letters(Theme& theme, Instant now) {
     if (!packages.empty() && packages != theme.missing_logged)
         spdlog::warn("{}", missing_letters_text(theme.missing));
     theme.missing_logged = packages;
-    return true;
+}
+
+}  // namespace
+
+bool follow_letters(Theme& theme, Instant now) {
+    if (theme.text == nullptr) return false;
+    const std::vector<ImWchar>& letters = letters_on_screen().letters();
+    if (theme.finding.valid()) {
+        if (theme.finding.wait_for(std::chrono::seconds(0)) != std::future_status::ready) return false;
+        use_found_letters(theme, std::span(letters).first(std::min(theme.letters, letters.size())));
+        return true;
+    }
+    if (letters.size() == theme.letters) return false;
+    if (theme.letters_at != Instant{} && now - theme.letters_at < kLettersAfter) return false;
+    theme.letters_at = now;
+    theme.letters = letters.size();
+    try {
+        theme.finding = std::async(std::launch::async, theme.find, letters, theme.letter_fonts);
+    } catch (const std::system_error& e) {  // the letters stay substituted until there are new ones
+        spdlog::warn("searching fonts for letters of names: no thread: {}", e.what());
+    }
+    return false;
 }
 
 }  // namespace tact

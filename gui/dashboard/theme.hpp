@@ -8,6 +8,8 @@
 #include <imgui.h>
 
 #include <cstddef>
+#include <functional>
+#include <future>
 #include <string>
 #include <vector>
 
@@ -52,6 +54,12 @@ struct Theme {
     std::string missing_logged;    // packages that the log named
     std::size_t letters = 0;       // of letters_on_screen() that were asked for
     Instant letters_at{};
+    // A search under way, on a thread of its own: fontconfig may read all fonts of the system, which takes seconds.
+    std::future<std::vector<LetterFont>> finding;
+    std::function<std::vector<LetterFont>(std::vector<ImWchar>, std::vector<LetterFont>)> find =
+        [](std::vector<ImWchar> wanted, std::vector<LetterFont> before) {
+            return find_letter_fonts(wanted, before);
+        };
 
     [[nodiscard]] float px(float at_scale_1) const { return at_scale_1 * scale; }
 };
@@ -63,8 +71,9 @@ struct Theme {
 [[nodiscard]] float theme_scale(int width_px, int height_px, float density = 1.0F, float requested = 1.0F);
 // Clears and fills ImGui's font atlas and style. The caller uploads the atlas.
 void build_theme(Theme& theme, float scale);
-// Finds fonts for letters drawn since the last call and rebuilds the theme with them, at most twice a second; names once in the log a
-// package with letters that no font has. Between frames. True: the atlas is another one.
+// Has fonts searched for letters drawn since the last search, at most twice a second and one search at a time, and rebuilds the theme
+// with what a search has found; names once in the log a package with letters that no font has. Never waits for a search; only the
+// destructor of the theme does. Between frames. True: the atlas is another one.
 bool follow_letters(Theme& theme, Instant now);
 
 }  // namespace tact

@@ -36,9 +36,13 @@ public:
         draw_dashboard(theme, state, panels, width_, height_);
         ImGui::Render();
     }
-    // As the window does before a frame. True: there are new letters.
+    // As the window does before a frame, and again when the search is over. True: there are new letters.
     bool find_letters(Instant at) {
-        const bool found = follow_letters(theme, at);
+        bool found = follow_letters(theme, at);
+        if (theme.finding.valid()) {
+            theme.finding.wait();
+            found = follow_letters(theme, at) || found;
+        }
         if (found) upload();
         return found;
     }

@@ -5,6 +5,7 @@
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <future>
 #include <iterator>
 #include <random>
 
@@ -157,6 +158,31 @@ TEST(LetterFonts, are_looked_for_once_for_each_new_set_and_at_most_twice_a_secon
     letters_on_screen().note("造");
     EXPECT_FALSE(d.find_letters(kStart + std::chrono::milliseconds(6400)));
     EXPECT_TRUE(d.find_letters(kStart + std::chrono::milliseconds(6600)));
+}
+
+TEST(LetterFonts, are_looked_for_without_delaying_a_frame) {
+    test::TestDashboard d(1280.0F, 720.0F, 1.0F);
+    std::promise<void> let_go;
+    d.theme.find = [go = let_go.get_future().share()](std::vector<ImWchar> wanted, std::vector<LetterFont>) {
+        go.wait();  // a cold cache
+        EXPECT_EQ(wanted.size(), 5U);
+        return std::vector<LetterFont>{};
+    };
+    letters_on_screen().note(kChinese);
+    // A call that waited for the search would never return.
+    for (int i = 0; i < 100; ++i)
+        EXPECT_FALSE(follow_letters(d.theme, kStart + std::chrono::milliseconds(100 * i)));
+    letters_on_screen().note("造");  // during the search: for the next one
+    let_go.set_value();
+    d.theme.finding.wait();
+    EXPECT_TRUE(follow_letters(d.theme, kStart + std::chrono::seconds(20)));
+    EXPECT_EQ(d.theme.letters, 5U);
+    EXPECT_LE(d.theme.missing.size(), 5U);
+    d.theme.find = [](std::vector<ImWchar> wanted, std::vector<LetterFont>) {
+        EXPECT_EQ(wanted.size(), 6U);
+        return std::vector<LetterFont>{};
+    };
+    EXPECT_TRUE(d.find_letters(kStart + std::chrono::seconds(21)));
 }
 
 TEST(LetterFonts, that_are_missing_leave_a_substitute_and_name_a_package) {
