@@ -62,10 +62,13 @@ std::optional<Asked> SceneSwitch::poll(const SceneFile& shown) {
         Asked asked = asked_of(*scene);
         const SceneFile file = SceneFile::open(asked.scene);
         static_cast<void>(read_meta(file));
-        asked.extends = asked.bodies && has_more(file, shown);
+        const bool more = asked.bodies && has_more(file, shown),
+                   fewer = asked.bodies && !more && has_more(shown, file);
+        asked.extends = more || fewer;
         check_bound(asked.extends ? bound_extending_by_ : bound_by_);
-        if (asked.extends && std::filesystem::exists(folder() / kShownSession))
-            asked.back = folder() / kShownSession;
+        // What the window wrote of the scene that is shown; when a structure is taken back, as it was when it was added.
+        const auto back = folder() / (fewer ? kAddedSession : kShownSession);
+        if (asked.extends && std::filesystem::exists(back)) asked.back = back;
         return asked;
     } catch (const StartupError& e) {
         refuse(e.what());

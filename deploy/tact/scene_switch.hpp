@@ -16,7 +16,7 @@
 namespace tact::launch {
 
 // The option that binds a run to its scene, because it writes files about it; empty: none was given. A recording is of one controller; all
-// else is written at the end, about the scene as it is then, and so may have got more structures (extends).
+// else is written at the end, about the scene as it is then, and so may have got more structures, or lost them again (extends).
 [[nodiscard]] std::string bound_to_one_scene(const RunOptions& options, bool extends);
 
 // What a run shows: a scene, perhaps with bone that was kept of it, or with all that a session holds.
@@ -25,7 +25,7 @@ struct Asked {
     std::filesystem::path bone{};     // empty: as baked
     std::filesystem::path session{};  // empty: none
     bool bodies = false;              // the session has bodies
-    bool extends = false;             // it is the scene that is shown, with more structures
+    bool extends = false;  // it is the scene that is shown, with more structures or without those added
     std::filesystem::path back{};  // the session to go back to if it does not start; empty: as this run began
 };
 // file: a scene or a session. Throws StartupError: not readable, or the scene of the session is not found.

@@ -68,6 +68,12 @@ struct MouseHint {
     float label_x = 0.0F, label_y = 0.0F;
 };
 
+// A structure was added to the scene that is shown, or taken back: undo and redo reach beyond the gestures.
+struct AddedStructure {
+    bool can_take_back = false, can_add_again = false;
+    bool take_back_wanted = false, add_again_wanted = false;  // emptied by the window
+};
+
 struct EventLine {
     std::int64_t taken_at_ns = 0;
     std::uint16_t code = 0;
@@ -126,6 +132,7 @@ struct DashboardState {
     double second_force_n = 0.0;
     double arrow_a_per_n = 0.0;
     MouseHint mouse;
+    AddedStructure added;
     std::string renderer;
     std::string stage;          // of a stereo display: mode and head tracking; empty: none
     std::string stage_refused;  // why there is none although it was asked for, and what to do

@@ -27,8 +27,9 @@ void list(const Theme& theme, DashboardState& state, FittingState& fitting) {
             state.requests.push_back({CommandKind::select_body, 0.0, {}, b.in_hand ? kNoBody : b.id});
         ImGui::PopStyleColor();
         if (ImGui::IsItemHovered())
-            ImGui::SetTooltip("%s: %s atoms. Click to hold or release.", noted(b.name),
-                              grouped(b.atoms).c_str());
+            ImGui::SetTooltip(
+                "%s: %s atoms. Click to hold or release. A click on it in the view holds it too.",
+                noted(b.name), grouped(b.atoms).c_str());
         ImGui::SameLine(right - theme.px(106.0F));
         bool fixed = b.fixed, shown = !b.hidden;
         if (ImGui::Checkbox("fixed", &fixed))
@@ -40,7 +41,9 @@ void list(const Theme& theme, DashboardState& state, FittingState& fitting) {
     }
 }
 
-void actions(const DashboardState& state, FittingState& f, std::vector<Request>& requests) {
+void actions(DashboardState& state, FittingState& f) {
+    std::vector<Request>& requests = state.requests;
+    AddedStructure& added = state.added;
     const BodyState* const held = held_body(f);
     const std::uint32_t id = held != nullptr ? held->id : 0;
     const float gap = ImGui::GetStyle().ItemSpacing.x;
@@ -57,10 +60,17 @@ void actions(const DashboardState& state, FittingState& f, std::vector<Request>&
     const auto request = [&](FitAction action, const std::string& text = {}) {
         f.requests.push_back({action, id, text});
     };
-    if (button("Undo", f.can_undo, "undo the last gesture")) request(FitAction::undo);
-    if (button("Redo", f.can_redo, "redo the last gesture")) request(FitAction::redo);
-    if (button("Accept", f.can_undo, "accept the current poses; Revert returns to them"))
+    const bool takes_back = !f.can_undo && added.can_take_back, adds = !f.can_redo && added.can_add_again;
+    if (button("Undo", f.can_undo || takes_back,
+               takes_back ? "take back the structure that was added" : "undo the last gesture"))
+        takes_back ? static_cast<void>(added.take_back_wanted = true) : request(FitAction::undo);
+    if (button("Redo", f.can_redo || adds,
+               adds ? "add the structure again that was taken back" : "redo the last gesture"))
+        adds ? static_cast<void>(added.add_again_wanted = true) : request(FitAction::redo);
+    if (button("Accept", f.can_undo, "accept the current poses; Revert returns to them")) {
         request(FitAction::accept);
+        added = {};
+    }
     if (button("Revert", f.can_undo, "return to the accepted poses (Esc)")) request(FitAction::revert);
     if (button("Refine", held != nullptr && !f.search.running,
                "best place of the held body nearby, within 10 Å and 20°; the Search tab says by which "
@@ -136,7 +146,7 @@ void draw_bodies_tab(const Theme& theme, DashboardState& state, FittingState& f)
     list(theme, state, f);
     ImGui::Spacing();
     options(theme, state, f);
-    actions(state, f, state.requests);
+    actions(state, f);
     if (f.search.running) draw_search_progress(theme, f);
     if (f.saving) text_small(theme, colour::kDim, "saving ...");
     if (!f.message.empty()) text_small(theme, grade_colour(f.message_grade), f.message);

@@ -5,7 +5,9 @@
 #include <algorithm>
 #include <chrono>
 
+#include "gui/docking/body_pick.hpp"
 #include "gui/docking/contour_rows.hpp"
+#include "gui/docking/docking_content.hpp"
 #include "gui/docking/fit_colours.hpp"
 #include "gui/link/region_checks.hpp"
 
@@ -94,16 +96,23 @@ bool DockingSystem::perform(KeyAction what, std::size_t place, const SystemConte
             if (context.controller.attached()) select(kNoBody);
             return true;
         case KeyAction::undo:
-            fit(FitAction::undo);
+            if (!panels_.fitting.can_undo && context.state.added.can_take_back)
+                context.state.added.take_back_wanted = true;
+            else
+                fit(FitAction::undo);
             return true;
         case KeyAction::redo:
-            fit(FitAction::redo);
+            if (!panels_.fitting.can_redo && context.state.added.can_add_again)
+                context.state.added.add_again_wanted = true;
+            else
+                fit(FitAction::redo);
             return true;
         case KeyAction::refine:
             if (held != 0) fit(FitAction::refine);
             return true;
         case KeyAction::accept:
             fit(FitAction::accept);
+            context.state.added = {};  // undo goes back no farther
             return true;
         case KeyAction::revert:
             fit(FitAction::revert);
@@ -111,6 +120,13 @@ bool DockingSystem::perform(KeyAction what, std::size_t place, const SystemConte
         default:
             return false;
     }
+}
+
+void DockingSystem::click(const Sight& sight, const SystemContext& context) {
+    if (!content_ || !context.state.commands()) return;
+    const auto body = body_along(sight, list_.bodies(), docking_of(*content_).bodies);
+    if (!body || list_.active() == body) return;
+    context.state.requests.push_back({CommandKind::select_body, 0.0, {}, list_.bodies()[*body].id});
 }
 
 void DockingSystem::turn_wheel(double steps) {

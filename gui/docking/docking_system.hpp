@@ -28,6 +28,7 @@ public:
     void attach(const SystemContext& context) override;
     void read(const Controller::Fresh& fresh, const SystemContext& context) override;
     bool perform(KeyAction what, std::size_t place, const SystemContext& context) override;
+    void click(const Sight& sight, const SystemContext& context) override;
     void turn_wheel(double steps) override;
     void choose_by_wheel(double steps) override;
     void add_to(LoadTopic& load) const override;

@@ -44,6 +44,14 @@ struct SystemContext {
     float text_px = 1.0F;   // pixels of the view for a pixel of the text's size at scale 1
 };
 
+// The line of sight through the pointer, in the model: a place on it is from_m + depth_m * way, where the depth is measured along the
+// view axis.
+struct Sight {
+    Vec3 from_m = Vec3::Zero(), way = Vec3::UnitZ();
+    double near_m = 0.0;    // depth from which on things are drawn
+    double px_share = 0.0;  // a pixel of the view covers this times the depth
+};
+
 class SceneSystem {
 public:
     SceneSystem() = default;
@@ -83,6 +91,10 @@ public:
     [[nodiscard]] virtual std::optional<Vec3> place_along(const Vec3& from_m, const Vec3& way) const {
         static_cast<void>(from_m), static_cast<void>(way);
         return std::nullopt;
+    }
+    // The person clicked on the view, without a drag.
+    virtual void click(const Sight& sight, const SystemContext& context) {
+        static_cast<void>(sight), static_cast<void>(context);
     }
     // Where the tool of a hand is drawn, model metres; none: where the hand is.
     [[nodiscard]] virtual std::optional<Vec3> tool_at(std::size_t hand, const SystemContext& context) const {

@@ -28,6 +28,7 @@ void GuiApp::handle_input() {
             mark_under_pointer();
         else if (io.MouseDown[0] && !(controller_.watches() && io.KeyCtrl))
             camera_.rotate(io.MouseDelta.x, io.MouseDelta.y, height);
+        click_view();
         if (io.MouseDown[1]) camera_.pan(io.MouseDelta.x, io.MouseDelta.y, height);
         if (io.MouseWheel != 0.0F && io.KeyAlt && content_)
             system().turn_wheel(static_cast<double>(io.MouseWheel));

@@ -80,6 +80,7 @@ private:
     void keep_window_state() const;
     void follow_session();
     void follow_added_scene();
+    void follow_taking_back();
     [[nodiscard]] Session present_session() const;
     [[nodiscard]] SystemContext context();
     [[nodiscard]] SceneSystem& system() { return *systems_[shown_]; }
@@ -109,6 +110,8 @@ private:
     void watch(const Request& request);
     void report_mark();
     void mark_under_pointer();
+    void click_view();
+    [[nodiscard]] Sight sight_under_pointer() const;
     [[nodiscard]] DragView drag_view() const;
     void follow_tools();
     void take_tool(std::size_t hand, HeldBy by);
@@ -177,6 +180,7 @@ private:
     bool as_left_wanted_ = !options_.window_state_file.empty() || options_.session_opened.has_value();
     SessionSaver session_saver_{options_.session};
     SceneExtender scene_extender_;
+    bool added_examined_ = false;  // whether this window continues with an added structure
     SecondHand second_hand_;
     ToolDrag drag_;
     std::array<DragTool, kMouseHands> drag_tools_{};

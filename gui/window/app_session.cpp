@@ -1,9 +1,11 @@
 #include <spdlog/spdlog.h>
 
+#include <filesystem>
 #include <utility>
 
 #include "gui/window/app_parts.hpp"
 #include "ipc/base/error.hpp"
+#include "ipc/scene/file/scene_switch.hpp"
 
 namespace tact {
 
@@ -29,8 +31,36 @@ void GuiApp::follow_added_scene() {
     state_.browser.message_grade = Grade::bad;
 }
 
+// A window that continues with one more structure can go back to the session before, and from there to this one: both are in the
+// launcher's folder until another structure is added.
+void GuiApp::follow_taking_back() {
+    AddedStructure& added = state_.added;
+    if (!added_examined_ && content_) {
+        added_examined_ = true;
+        std::error_code none;
+        const auto is = [&](const char* name) {
+            return !options_.scene_switch.empty() && options_.session_opened &&
+                   options_.session_opened->scene_checksum == content_->checksum &&
+                   std::filesystem::equivalent(options_.session_file,
+                                               std::filesystem::path(options_.scene_switch) / name, none);
+        };
+        const auto there = [&](const char* name) {
+            return std::filesystem::exists(std::filesystem::path(options_.scene_switch) / name, none);
+        };
+        added.can_take_back = is(kAddedSession) && there(kShownSession);
+        added.can_add_again = is(kShownSession) && there(kAddedSession);
+    }
+    const bool back = std::exchange(added.take_back_wanted, false) && added.can_take_back,
+               again = std::exchange(added.add_again_wanted, false) && added.can_add_again;
+    if (!back && !again) return;
+    tell({Grade::unknown, back ? "taking back the added structure" : "adding the structure again"});
+    browser_.open_scene(std::filesystem::path(options_.scene_switch) / (back ? kShownSession : kAddedSession),
+                        state_.browser);
+}
+
 void GuiApp::follow_session() {
     follow_added_scene();
+    follow_taking_back();
     state_.browser.can_save = content_ && controller_.attached();
     if (std::exchange(state_.browser.session_wanted, false) && state_.browser.can_save) {
         tell(session_saver_.save(present_session(), state_.situation.bone));

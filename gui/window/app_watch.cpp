@@ -50,8 +50,7 @@ void GuiApp::follow_past() {
     }
 }
 
-void GuiApp::mark_under_pointer() {
-    if (!content_ || stage_) return;
+Sight GuiApp::sight_under_pointer() const {
     const ImGuiIO& io = ImGui::GetIO();
     const PixelRect& v = layout_.view;
     // From -1 to 1 across the view, y up.
@@ -60,8 +59,25 @@ void GuiApp::mark_under_pointer() {
     const Eigen::Matrix4f p = camera_.projection(v.width / v.height);
     const Eigen::Vector3f of_eye((x + p(0, 2)) / p(0, 0), (y + p(1, 2)) / p(1, 1), -1.0F);
     const Eigen::Vector3f way = camera_.orientation().conjugate() * of_eye;
-    const Vec3 from_m = content_->centre_model_m + kAngstromM * camera_.eye_a().cast<double>();
-    const auto place = system().place_along(from_m, way.cast<double>());
+    const SceneToggles& t = state_.toggles;
+    const float near_a = t.cut ? std::max(camera_.distance_a() - t.cut_at * view_->radius_a(), 0.0F) : 0.0F;
+    return {content_->centre_model_m + kAngstromM * camera_.eye_a().cast<double>(), way.cast<double>(),
+            kAngstromM * static_cast<double>(near_a), 2.0 / static_cast<double>(p(1, 1) * v.height)};
+}
+
+// A press and a release at one place within a moment; anything else turns the view.
+void GuiApp::click_view() {
+    constexpr float kClick_s = 0.3F, kClickPx = 4.0F;
+    const ImGuiIO& io = ImGui::GetIO();
+    if (!content_ || !view_ || stage_ || !ImGui::IsMouseReleased(ImGuiMouseButton_Left)) return;
+    if (io.MouseDownDurationPrev[0] < kClick_s && io.MouseDragMaxDistanceSqr[0] < kClickPx * kClickPx)
+        system().click(sight_under_pointer(), context());
+}
+
+void GuiApp::mark_under_pointer() {
+    if (!content_ || !view_ || stage_) return;
+    const Sight sight = sight_under_pointer();
+    const auto place = system().place_along(sight.from_m, sight.way);
     state_.command_grade = Grade::watch;
     state_.command_text = !place                           ? "mark: no bone under the pointer"
                           : controller_.mark_place(*place) ? "mark: sent"

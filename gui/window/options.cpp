@@ -22,6 +22,7 @@ constexpr const char* kKeysFix =
 // Contours are checked here, so that a session never fails later.
 void open_session(const std::string& file, GuiOptions& options) {
     options.session_opened = read_session(file);
+    options.session_file = file;
     for (const std::string& contour : options.session_opened->contours)
         static_cast<void>(read_contour_option(contour));
     if (options.session_opened->window.empty()) return;

@@ -23,6 +23,7 @@ struct GuiOptions {
         window_state_file;     // settings of the window: read at the start, written at the end; empty: none
     WindowState window_state;  // as read, or that of the session
     std::optional<Session> session_opened;  // continues in this window
+    std::string session_file;               // of it
     KeyTable keys;                          // with the person's own
     std::string scene_switch;  // the launcher's folder for requests of another scene; empty: none
     std::string screenshot;    // empty: none

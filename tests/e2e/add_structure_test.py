@@ -135,6 +135,17 @@ def main():
             bad += expect("and the second contour", bool(o.see("remove", "Scene")))
             o.click("Bodies", "Scene")
             picture(o, "added")
+            def seen(bodies):
+                o.wait("%d bodies" % bodies, lambda s: s["gui"]["attached"] and s["gui"]["frames"] and s["gui"]["frames"]["count"] > 20)
+                o.see("return to", "Scene")
+                return o.find("b.pdb", "Scene") is not None
+            for key, bodies in (("ctrl+z", 1), ("ctrl+y", 2)):
+                before = shown(o)
+                o.key(key)
+                o.until("%s continues another session" % key, lambda: shown(o) > before)
+                there = seen(bodies)
+                bad += expect("%s: %d bodies" % (key, bodies), there == (bodies == 2))
+                bad += expect("the snapshot is still there", o.find("return to", "Scene") is not None)
             add(o, "far.pdb")
             picture(o, "added_beside")
             faults = o.layout_faults()

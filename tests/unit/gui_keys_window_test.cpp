@@ -43,7 +43,7 @@ protected:
         if (gui_ == 0) {
             if (chdir(folder_.c_str()) != 0 || freopen(log.c_str(), "w", stderr) == nullptr) _exit(126);
             execl(TACT_GUI_PROGRAM, TACT_GUI_PROGRAM, "--session", "t", "--size", "640x480", "--stereo",
-                  "anaglyph", nullptr);
+                  stereo_, nullptr);
             _exit(127);
         }
         ASSERT_TRUE(wait_for([&] {
@@ -106,6 +106,7 @@ protected:
         controller_->region().health.publish(health);
     }
 
+    const char* stereo_ = "anaglyph";
     std::string folder_;
     std::unique_ptr<launch::XServer> x_server_;
     std::unique_ptr<fake::Controller> controller_;
@@ -195,6 +196,39 @@ TEST_F(KeysInTheWindow, a_digit_selects_the_body_of_that_number) {
     ASSERT_TRUE(commanded(CommandKind::select_body)) << log_text();
     EXPECT_EQ(last_.body, kNoBody);
     press("1");
+    ASSERT_TRUE(commanded(CommandKind::select_body)) << log_text();
+    EXPECT_NE(last_.body, kNoBody);
+}
+
+class ClicksInTheWindow : public KeysInTheWindow {
+protected:
+    ClicksInTheWindow() { stereo_ = "off"; }
+    // All over the middle of the view, where the structure is. between: what xdotool does while the button is down.
+    static void click_all_over(const std::string& between) {
+        std::string all = "xdotool";
+        for (int y = 120; y <= 220; y += 25)
+            for (int x = 390; x <= 490; x += 25)
+                all += " mousemove " + std::to_string(x) + " " + std::to_string(y) +
+                       " sleep 0.05 mousedown 1 sleep 0.05 " + between + " mouseup 1 sleep 0.05";
+        ASSERT_EQ(std::system(all.c_str()), 0);
+    }
+};
+
+TEST_F(ClicksInTheWindow, a_click_on_a_body_holds_it_and_a_drag_does_not) {
+    BodiesTopic bodies{};  // the helix, held by nobody
+    bodies.taken_at_ns = to_ns(Monotonic::now());
+    bodies.count = 1;
+    bodies.active = kNoBody;
+    std::fill_n(bodies.body[0].pos_model_m, 3, 20e-10);
+    bodies.body[0].quat_model_body_xyzw[3] = 1.0;
+    bodies.body[0].id = 1;
+    controller_->region().bodies.publish(bodies);
+    click_all_over("mousemove_relative 20 0 sleep 0.05 mousemove_relative -- -20 0 sleep 0.05");
+    click_all_over("sleep 0.5");  // held too long
+    press("0");
+    ASSERT_TRUE(commanded(CommandKind::select_body)) << log_text();
+    EXPECT_EQ(last_.body, kNoBody) << "a drag or a long press selected a body";
+    click_all_over("");
     ASSERT_TRUE(commanded(CommandKind::select_body)) << log_text();
     EXPECT_NE(last_.body, kNoBody);
 }
