@@ -86,7 +86,7 @@ void draw_lateness(const Theme& theme, const DashboardState& state, ImVec2 size,
     const LatenessBars whole(l.whole()), last(recent ? l.recent() : l.whole());
     const double reach =
         std::max({LatenessBars::edge_ns(whole.last + 2), 1.2 * static_cast<double>(period_ns), 1e5});
-    const LatenessFrame frame{{at.x, at.y + (1.3F + rows) * line},
+    const LatenessFrame frame{{at.x, at.y + (1.55F + rows) * line},
                               {at.x + size.x - 1.0F, at.y + size.y - line - theme.px(3.0F)},
                               reach,
                               static_cast<double>(std::max(whole.most, last.most))};

@@ -163,7 +163,10 @@ public:
     std::vector<ViewLabel> labels;
     std::int64_t message_until_ns = 0;  // fitting.message is also shown over the view until then
 
-    [[nodiscard]] CardSize card_size() const override { return {212.0F, 0.3F}; }
+    // Of several bodies there are two rows more.
+    [[nodiscard]] CardSize card_size() const override {
+        return {scene.bodies > 1 || fit.bodies > 1 ? 212.0F : 160.0F, 0.3F};
+    }
     void draw_card(const Theme& theme, const PixelRect& card,
                    DashboardState& state) const override;  // of the fit
     void draw_in_scene_card(const Theme& theme, DashboardState& state) override;

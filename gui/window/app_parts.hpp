@@ -96,6 +96,7 @@ private:
     [[nodiscard]] std::optional<std::uint64_t> view_key(const EyeView& eye, const ViewFrame& view) const;
     [[nodiscard]] double whole_surface_s() const;  // to draw it at full detail, as measured
     [[nodiscard]] bool refining_is_quick() const;
+    [[nodiscard]] static bool input_under_way();  // a button of the mouse is held
     [[nodiscard]] bool sorting_is_quick() const;
     void measure_resolution(const EyeView& eye, const ViewFrame& view);
     void save_picture(const ViewFrame& of_window);

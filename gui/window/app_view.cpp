@@ -1,4 +1,7 @@
+#include <imgui.h>
+
 #include <algorithm>
+#include <iterator>
 
 #include "gui/window/app_parts.hpp"
 
@@ -19,7 +22,9 @@ constexpr double kWorthSaving = 0.25;
 // Moving, the view is drawn at the levels; resting, once in full detail, and then copied.
 void GuiApp::draw_window_view(const ViewFrame& view, Instant now) {
     const EyeView eye = camera_.eye(static_cast<float>(view.width_px) / static_cast<float>(view.height_px));
-    const auto step = sharp_ ? StillView::Step::at_levels : still_.next(view_key(eye, view), now);
+    // On a graphics card full detail takes no time that a person could notice.
+    const bool busy = window_.software() && input_under_way();
+    const auto step = sharp_ ? StillView::Step::at_levels : still_.next(view_key(eye, view), now, busy);
     if (step == StillView::Step::copy) {
         const PassClock::Scope scope(&passes_, Pass::ground);
         still_.show(view.x_px, view.y_px);
@@ -43,6 +48,11 @@ void GuiApp::draw_window_view(const ViewFrame& view, Instant now) {
     if (views_until_measured_ == 0 && controller_.level(kResolutionPath) != nullptr)
         measure_resolution(eye, view);
     draw_view(eye, view);
+}
+
+bool GuiApp::input_under_way() {
+    const ImGuiIO& io = ImGui::GetIO();
+    return std::any_of(std::begin(io.MouseDown), std::end(io.MouseDown), [](bool down) { return down; });
 }
 
 void GuiApp::draw_view(const EyeView& eye, const ViewFrame& view) {

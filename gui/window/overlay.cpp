@@ -250,7 +250,7 @@ void keys(OverlayPen pen, const KeyTable& table, const KeySituation& now, PixelR
     const std::size_t each = (rows.size() + columns - 1) / columns;
     const float w = column * static_cast<float>(columns), h = line * static_cast<float>(each) + 2.0F * pad;
     const ImVec2 at{v.x + 0.5F * (v.width - w), v.y + 0.5F * (v.height - h)};
-    pen.draw->AddRectFilled(at, {at.x + w, at.y + h}, IM_COL32(18, 22, 29, 245), pen.theme.px(8.0F));
+    pen.draw->AddRectFilled(at, {at.x + w, at.y + h}, colour::kPanel, pen.theme.px(8.0F));
     pen.draw->AddRect(at, {at.x + w, at.y + h}, colour::kPanelEdge, pen.theme.px(8.0F));
     for (std::size_t i = 0; i < rows.size(); ++i) {
         const std::size_t in_column = i / each;

@@ -2,7 +2,7 @@
 
 namespace tact {
 
-StillView::Step StillView::next(const std::optional<std::uint64_t>& key, Instant now) {
+StillView::Step StillView::next(const std::optional<std::uint64_t>& key, Instant now, bool busy) {
     if (!key || key != key_) {
         key_ = key;
         since_ = now;
@@ -10,6 +10,7 @@ StillView::Step StillView::next(const std::optional<std::uint64_t>& key, Instant
         return Step::at_levels;
     }
     if (kept_) return Step::copy;
+    if (busy) since_ = now;
     return now - since_ >= kAfter ? Step::refine : Step::at_levels;
 }
 

@@ -7,6 +7,7 @@ usage: window_states_test.py BIN_DIR OUT_DIR [SIZE...]     default: 1280x720 192
 Exit code 77: Xvfb or xdotool is missing.
 """
 import os
+import pathlib
 import signal
 import struct
 import subprocess
@@ -15,7 +16,9 @@ import tempfile
 import time
 import zlib
 
-from operator_of_window import Operator, arguments, bake_demo, expect
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "unit"))
+from deploy_add_structure_test import Bench  # noqa: E402
+from operator_of_window import Operator, arguments, bake_demo, expect  # noqa: E402
 
 THUMBNAIL_PX = 480
 
@@ -133,12 +136,45 @@ def draw(states):
     states.keep("field")
     o.end()
 
+    draw_lists_and_hands(states)
+
     o.report = ""
     o.launch("replay", o.scene("run.h5"), "--show", "--scene", o.scene("touch.tact"))
     o.see("REPLAY", "Replay")
     states.keep("replay")
     o.end()
     states.sheet()
+
+
+# Raw data in the list of scenes, a session that is saved, and the mouse as a hand.
+def draw_lists_and_hands(states):
+    o = states.operator
+    o.start("--disarmed", scene="two.tact")
+    o.click("Scenes (")
+    o.see("Recently used")
+    o.click("Save session", "Scenes")
+    o.see("saved the session as", "Events")
+    states.keep("session_saved")
+    o.click("Folder", "Scenes")
+    o.click("b.pdb", "Scenes")
+    o.see("Add b.pdb to this scene", "Scenes")
+    states.keep("add_structure")
+    o.click("map.mrc", "Scenes")
+    o.see("Dock b.pdb into map.mrc", "Scenes")
+    o.click("Import", "Scenes")
+    o.see("Resolution of the map", "Scenes")
+    states.keep("import_form")
+    o.end()
+
+    o.start("--start-offset-a", "6", scene="two.tact", hand="mouse")
+    o.wait("the run is armed", lambda s: s["state"] in ("armed", "active"))
+    o.see("drag to lead")
+    states.keep("mouse_ring")
+    o.key("l")
+    o.see("The mouse leads the tool.")
+    states.keep("mouse_leads")
+    o.key("Escape")
+    o.end()
 
 
 def main():
@@ -149,6 +185,9 @@ def main():
         with tempfile.TemporaryDirectory(prefix="tact-states-", ignore_cleanup_errors=True) as folder:
             for kind in ("dock", "touch", "drill", "field"):
                 bake_demo(bin_dir, kind, os.path.join(folder, kind + ".tact"))
+            Bench(os.path.abspath(bin_dir), pathlib.Path(folder))  # raw data of a map and structures
+            subprocess.run([os.path.abspath(os.path.join(bin_dir, "tact-prep")), "dock", "map.mrc", "a.pdb", "--resolution-a", "9", "-o", "two.tact"],
+                           cwd=folder, check=True, capture_output=True)
             with open(os.path.join(folder, "lines.toml"), "w") as f:
                 f.write('[lines]\ndriver = "sim"\n')
             operator = Operator(bin_dir, folder, size)

@@ -378,6 +378,17 @@ TEST_F(GuiDetail, a_view_is_refined_once_it_rests_and_drawn_again_when_anything_
     EXPECT_EQ(still.next(std::nullopt, now += StillView::kAfter), Step::at_levels);
 }
 
+TEST_F(GuiDetail, a_drag_that_pauses_is_not_held_up_by_full_detail) {
+    StillView still;
+    Instant now = Instant{} + std::chrono::hours(1);
+    using Step = StillView::Step;
+    for (int i = 0; i < 10; ++i) EXPECT_EQ(still.next(7, now += StillView::kAfter, true), Step::at_levels);
+    EXPECT_EQ(still.next(7, now += milliseconds(10)), Step::at_levels) << "the button was just released";
+    EXPECT_EQ(still.next(7, now += StillView::kAfter), Step::refine);
+    still.keep(0, 0, kWidth, kHeight);
+    EXPECT_EQ(still.next(7, now += milliseconds(10), true), Step::copy) << "a picture that is there is shown";
+}
+
 TEST(ContentKey, differs_when_a_number_differs_and_not_for_noise) {
     const auto key = [](double x_m, double angle_rad) {
         ContentKey k;
