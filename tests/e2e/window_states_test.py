@@ -159,8 +159,8 @@ def draw_lists_and_hands(states):
     o.click("b.pdb", "Scenes")
     o.see("Add b.pdb to this scene", "Scenes")
     states.keep("add_structure")
-    o.click("map.mrc", "Scenes")
-    o.see("Dock b.pdb into map.mrc", "Scenes")
+    o.click("density.mrc", "Scenes")
+    o.see("Dock b.pdb into density.mrc", "Scenes")
     o.click("Import", "Scenes")
     o.see("Resolution of the map", "Scenes")
     states.keep("import_form")
@@ -188,6 +188,7 @@ def main():
             Bench(os.path.abspath(bin_dir), pathlib.Path(folder))  # raw data of a map and structures
             subprocess.run([os.path.abspath(os.path.join(bin_dir, "tact-prep")), "dock", "map.mrc", "a.pdb", "--resolution-a", "9", "-o", "two.tact"],
                            cwd=folder, check=True, capture_output=True)
+            os.rename(os.path.join(folder, "map.mrc"), os.path.join(folder, "density.mrc"))
             with open(os.path.join(folder, "lines.toml"), "w") as f:
                 f.write('[lines]\ndriver = "sim"\n')
             operator = Operator(bin_dir, folder, size)
