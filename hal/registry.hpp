@@ -26,7 +26,7 @@ struct DeviceSettings {
     std::string hd_device;       // "openhaptics": the arm's name in its set-up program; empty: default
     std::string fd_library;      // "forcedimension": path of libdrd.so or libdhd.so; empty: searched
     bool fd_initialize = false;  // "forcedimension": an arm that is not initialized moves by itself in open()
-    bool fd_gravity = true;      // "forcedimension": the library holds the weight of the arm
+    bool fd_gravity = false;     // "forcedimension": the library holds the weight of the arm
     std::uint16_t inverse_port = 10001;  // "inverse3": WebSocket port of the Inverse Service on this machine
     std::string firmware;  // "falcon": the user's firmware file; empty: the firmware must already run
 };

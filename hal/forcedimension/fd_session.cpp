@@ -100,7 +100,7 @@ OpenFailure Session::prepare(OpenResult& result, bool initialize) noexcept {
     static_cast<void>(api_->dhdEnableExpertMode());
     static_cast<void>(api_->dhdSetTimeGuard(kTimeGuardDefault, device));
     own_watchdog_ = api_->dhdSetWatchdog(kWatchdogEighthsMs, device) >= 0;
-    static_cast<void>(api_->dhdSetGravityCompensation(settings_.gravity ? kOn : kOff, device));
+    gravity_set_ = api_->dhdSetGravityCompensation(settings_.gravity ? kOn : kOff, device) >= 0;
     static_cast<void>(api_->dhdConfigLinearVelocity(kVelocityWindowMs, kVelocityWindowing, device));
     if (wrist_)
         static_cast<void>(api_->dhdConfigAngularVelocity(kVelocityWindowMs, kVelocityWindowing, device));

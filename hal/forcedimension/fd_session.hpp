@@ -40,7 +40,7 @@ struct OpenResult {
 
 struct SessionSettings {
     unsigned short serial = 0;  // 0: the only device
-    bool gravity = true;        // the library holds the weight of the arm while the force is on
+    bool gravity = false;       // the library holds the weight of the arm while the force is on
 };
 
 class Session {
@@ -66,6 +66,8 @@ public:
     [[nodiscard]] bool torque() const noexcept { return torque_; }
     [[nodiscard]] bool gripper() const noexcept { return gripper_; }
     [[nodiscard]] bool left_handed() const noexcept { return left_; }
+    // False: the library refused to switch its gravity compensation as the settings say.
+    [[nodiscard]] bool gravity_set() const noexcept { return gravity_set_; }
     [[nodiscard]] bool own_watchdog() const noexcept { return own_watchdog_; }  // of the device
     [[nodiscard]] bool initialized() const noexcept;
 
@@ -79,7 +81,8 @@ private:
     SessionSettings settings_;
     const Model* model_ = nullptr;
     int id_ = -1;
-    bool wrist_ = false, torque_ = false, gripper_ = false, left_ = false, own_watchdog_ = false;
+    bool wrist_ = false, torque_ = false, gripper_ = false, left_ = false, own_watchdog_ = false,
+         gravity_set_ = false;
 };
 
 }  // namespace tact::fd

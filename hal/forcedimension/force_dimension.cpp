@@ -64,6 +64,14 @@ DeviceInfo ForceDimension::open() {
     }
     if (!session_->own_watchdog())
         say("the device has no watchdog of its own: only Tact's watchdog of 10 ms removes the force");
+    if (settings_.gravity && session_->gravity_set())
+        say("device.fd_gravity: the library holds the weight of the arm with a force that passes none of "
+            "Tact's limits");
+    if (!session_->gravity_set())
+        say(settings_.gravity ? "device.fd_gravity: the library does not hold the weight of this arm"
+                              : "the library did not confirm that its gravity compensation is off: it may "
+                                "add a force that passes none of Tact's limits; fix: switch it off in the "
+                                "manufacturer's programs, or update the SDK");
     pump_ = std::make_unique<fd::Pump>(library_->api(), *session_);
     DeviceInfo info = describe();
     try {

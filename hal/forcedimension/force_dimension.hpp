@@ -3,7 +3,8 @@
 // open()    loads the library, opens the arm, checks that it is initialized (or initializes it, where the
 //           settings say so: then the arm moves by itself), and waits for the first sample
 // Pump      a thread of its own, 2 kHz: round() of fd_pump.hpp, which owns the device
-// Gravity   the library holds the weight of the arm while the force is on, outside of Tact's output chain
+// Gravity   off: every force passes Tact's output chain. On by a setting, and open() says so: the library then
+//           holds the weight of the arm while the force is on
 // Gripper   a button, without a force
 // Replug    found again by its serial number; never re-armed automatically
 // Thread    open() and destruction at start-up and end; read(), write() and relax() per the contract
@@ -23,10 +24,10 @@
 namespace tact {
 
 struct ForceDimensionSettings {
-    std::string library;      // libdrd.so or libdhd.so; empty: searched
-    std::string serial;       // decimal number; empty: the only device
-    bool initialize = false;  // let an arm that is not initialized move by itself in open()
-    bool gravity = true;
+    std::string library;                // libdrd.so or libdhd.so; empty: searched
+    std::string serial;                 // decimal number; empty: the only device
+    bool initialize = false;            // let an arm that is not initialized move by itself in open()
+    bool gravity = false;               // the library holds the weight of the arm
     int pump_priority = kPumpPriority;  // FIFO; 0: ordinary scheduling
     bool thread = true;                 // false: the caller runs round(), for tests
     Duration first_sample_max = std::chrono::seconds(5);

@@ -51,7 +51,7 @@ struct RtConfig {
         std::string hd_device;       // openhaptics: name of the arm; empty: the default one
         std::string fd_library;      // forcedimension: path of libdrd.so; empty: search for it
         bool fd_initialize = false;  // forcedimension: an uninitialized arm moves by itself at the start
-        bool fd_gravity = true;      // forcedimension: the library holds the weight of the arm
+        bool fd_gravity = false;     // forcedimension: the library holds the weight of the arm
         std::int64_t inverse_port = 10001;  // inverse3: WebSocket port of the Inverse Service on this machine
     } device;
     struct Device2 {  // of the second hand: the suction tube in drilling scenes, else a pointer

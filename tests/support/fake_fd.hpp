@@ -32,6 +32,7 @@ struct FakeFdArm {
     std::atomic<int> watchdog_eighths{0}, silent_ms{0};
     std::atomic<unsigned> opens{0}, auto_inits{0}, stops{0};
     std::atomic<bool> gravity{true};
+    bool no_gravity_call = false;  // refuses to switch its gravity compensation
     int linear_window_ms = 20;
     int time_guard_us = 0;
 };

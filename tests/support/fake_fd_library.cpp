@@ -72,7 +72,7 @@ void tick() {
 void reset_arm(FakeFdArm& a, unsigned short serial) {
     a.type = 33;
     a.serial = serial;
-    a.wrist = a.torque = a.gripper = a.left = a.busy = a.no_watchdog = false;
+    a.wrist = a.torque = a.gripper = a.left = a.busy = a.no_watchdog = a.no_gravity_call = false;
     a.auto_init_result = 0;
     a.initialized = a.plugged = a.gravity = true;
     a.force = a.brakes = a.open = a.regulated = false;
@@ -233,6 +233,7 @@ int dhdSetWatchdog(unsigned char eighths_of_a_ms, char id) {
 int dhdSetGravityCompensation(int on, char id) {
     FakeFdArm* const a = arm_of(id);
     if (a == nullptr) return -1;
+    if (a->no_gravity_call) return failed(kErrorNotAvailable);
     a->gravity = on != 0;
     return 0;
 }

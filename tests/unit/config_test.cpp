@@ -44,6 +44,7 @@ TEST(Config, the_documented_file_has_the_defaults_and_every_key) {
     RtConfig config;
     config.servo.period_us = 1.0;  // a key missing in the file would keep this value
     config.governor.law = "x";
+    config.device.fd_gravity = true;
     config.safety.force_n_max = 0.0;
     read_config("deploy/tact.toml", config);
     const RtConfig defaults;
@@ -64,6 +65,8 @@ TEST(Config, the_documented_file_has_the_defaults_and_every_key) {
     EXPECT_EQ(config.device.serial, defaults.device.serial);
     EXPECT_EQ(config.device.pump_priority, defaults.device.pump_priority);
     EXPECT_EQ(config.device.firmware, defaults.device.firmware);
+    EXPECT_FALSE(config.device.fd_gravity);  // every force passes the output chain
+    EXPECT_FALSE(defaults.device.fd_gravity);
     EXPECT_EQ(config.device2.driver, defaults.device2.driver);
     EXPECT_EQ(config.device2.serial, defaults.device2.serial);
     EXPECT_EQ(config.device2.hand, defaults.device2.hand);

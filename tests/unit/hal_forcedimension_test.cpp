@@ -109,7 +109,6 @@ TEST_F(ForceDimensionTest, it_is_set_up_with_watchdog_short_velocity_windows_and
     EXPECT_EQ(arm().watchdog_eighths.load(), 80);  // 10 ms
     EXPECT_EQ(arm().linear_window_ms, 5);
     EXPECT_EQ(arm().time_guard_us, -1);  // the library's own: it reads once per round
-    EXPECT_TRUE(arm().gravity.load());
     EXPECT_TRUE(arm().brakes.load());
     EXPECT_FALSE(arm().force.load());
     power();
@@ -125,12 +124,32 @@ TEST_F(ForceDimensionTest, it_is_set_up_with_watchdog_short_velocity_windows_and
     EXPECT_TRUE(arm().brakes.load());
     EXPECT_FALSE(arm().force.load());
     EXPECT_FALSE(arm().open.load());
-    settings.gravity = false;
     arm().no_watchdog = true;
     said().clear();
     open();
-    EXPECT_FALSE(arm().gravity.load());
     EXPECT_TRUE(says(said(), {"no watchdog of its own"})) << said();
+}
+
+// The library's default is on.
+TEST_F(ForceDimensionTest, the_library_holds_the_arm_only_if_the_settings_say_so) {
+    said().clear();
+    open();
+    power();
+    EXPECT_FALSE(arm().gravity.load());
+    EXPECT_EQ(said(), "");
+    arm().gravity = true;
+    arm().no_gravity_call = true;
+    open();
+    EXPECT_TRUE(says(said(), {"did not confirm that its gravity compensation is off", "fix:"})) << said();
+    said().clear();
+    settings.gravity = true;
+    open();
+    EXPECT_TRUE(says(said(), {"device.fd_gravity", "does not hold the weight"})) << said();
+    said().clear();
+    arm().gravity = arm().no_gravity_call = false;
+    open();
+    EXPECT_TRUE(arm().gravity.load());
+    EXPECT_TRUE(says(said(), {"device.fd_gravity", "none of Tact's limits"})) << said();
 }
 
 TEST_F(ForceDimensionTest, a_hung_pump_is_caught_by_the_watchdog_of_the_device) {
