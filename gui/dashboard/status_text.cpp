@@ -129,49 +129,13 @@ StatusText state_status(RunState state, RunReason reason) {
     return {grade, words};
 }
 
-namespace {
-
-// The user's action before Reset; followed by "Then press Reset."
-const char* fix_of(RunReason reason) {
-    switch (reason) {
-        case RunReason::emergency_stop:
-            return "Check that the arm is clear, then release the button.";
-        case RunReason::stop_channels:
-            return "Press the button once more and release it. If this persists, check its wiring.";
-        case RunReason::dead_man:
-            return "Hold the dead-man switch.";
-        case RunReason::amplifier_readback:
-            return "Check the amplifier's switch, fuse and cable.";
-        case RunReason::lines_lost:
-            return "Connect the adapter of the safety inputs; tact probe lists the adapters.";
-        case RunReason::device_lost:
-        case RunReason::sample_stale:
-            return "Check the device's cable and power; tact probe lists the devices.";
-        case RunReason::device_fault:
-            return "Check the lights of the device; switch it off and on.";
-        case RunReason::overruns:
-        case RunReason::too_late:
-        case RunReason::supervisor:
-            return "Another program delays the servo; tact doctor names it.";
-        case RunReason::force_not_finite:
-        case RunReason::model_failed:
-            return "The force model failed. If this happens again, record it: tact record.";
-        case RunReason::gui_silent:
-            return "The display froze. Reduce the rendering detail.";
-        default:
-            return "See the events for the cause.";
-    }
-}
-
-}  // namespace
-
 StopNotice stop_notice(const HealthTopic& h) {
     const auto state = static_cast<RunState>(h.state);
     const auto lines = static_cast<LinesShown>(h.lines);
     const bool stopped = lines == LinesShown::stopped;
     if (!stopped && state != RunState::fault) return {};
     const auto reason = static_cast<RunReason>(stopped ? h.lines_reason : h.reason);
-    StopNotice notice{Grade::bad, run_reason_text(reason), fix_of(reason)};
+    StopNotice notice{Grade::bad, run_reason_text(reason), run_reason_fix(reason)};
     if (notice.why.empty()) notice.why = "force stopped";
     notice.fix += state == RunState::fault ? " Then press Reset, and Arm." : " Then press Arm.";
     return notice;

@@ -217,7 +217,10 @@ IoStatus ProcessDevice::read(DeviceSample& newest, Instant now) noexcept {
     SampleWords w{};
     if (shared_ == nullptr || !shared_->sample.read(w)) return IoStatus::lost;
     newest = from_words(w);
-    if (now - newest.taken_at > kLostAfter) return IoStatus::lost;
+    if (now - newest.taken_at > kLostAfter) {
+        newest.notice = DeviceNotice::gone;
+        return IoStatus::lost;
+    }
     newest.taken_at =
         std::min(newest.taken_at, now);  // it may be newer than the loop's time stamp of this cycle
     const bool fresh = w.sequence != sequence_;

@@ -31,6 +31,8 @@ public:
     IoStatus write(const DeviceCommand& command, Instant now) noexcept TACT_RT override;
     void relax() noexcept override;
 
+    [[nodiscard]] pid_t process() const noexcept { return child_; }  // of the device; tests kill it
+
 private:
     struct Shared;
     [[noreturn]] void live(const SimSettings& settings, pid_t parent) noexcept;

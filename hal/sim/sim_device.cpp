@@ -91,6 +91,7 @@ IoStatus SimDevice::read(DeviceSample& newest, Instant now) noexcept {
     if (state_ == DeviceState::closed || fault_ == SimFault::unplugged) {
         advance(now);
         drop(DeviceState::closed);
+        newest.notice = DeviceNotice::gone;
         return IoStatus::lost;
     }
     advance(now);

@@ -13,7 +13,7 @@ enum class EventCode : std::uint16_t {
     none,
     loop_started,
     state_changed,   // a: old RunState, b: new RunState
-    fault_latched,   // a: RunReason, b: measured value
+    fault_latched,   // a: RunReason, b: measured value, detail: 1 + hand whose device caused it; 0: no device
     overrun,         // a: overrun in microseconds, b: overruns so far
     force_limited,   // a: requested N, b: limit N
     torque_limited,  // a: requested N m, b: limit N m

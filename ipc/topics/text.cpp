@@ -107,6 +107,37 @@ const char* run_reason_text(RunReason reason) noexcept {
     return kUnknown;
 }
 
+const char* run_reason_fix(RunReason reason) noexcept {
+    switch (reason) {
+        case RunReason::emergency_stop:
+            return "Check that the arm is clear, then release the button.";
+        case RunReason::stop_channels:
+            return "Press the button once more and release it. If this persists, check its wiring.";
+        case RunReason::dead_man:
+            return "Hold the dead-man switch.";
+        case RunReason::amplifier_readback:
+            return "Check the amplifier's switch, fuse and cable.";
+        case RunReason::lines_lost:
+            return "Connect the adapter of the safety inputs; tact probe lists the adapters.";
+        case RunReason::device_lost:
+        case RunReason::sample_stale:
+            return "Check the device's cable and power; tact probe lists the devices.";
+        case RunReason::device_fault:
+            return "Check the lights of the device; switch it off and on.";
+        case RunReason::overruns:
+        case RunReason::too_late:
+        case RunReason::supervisor:
+            return "Another program delays the servo; tact doctor names it.";
+        case RunReason::force_not_finite:
+        case RunReason::model_failed:
+            return "The force model failed. If this happens again, record it: tact record.";
+        case RunReason::gui_silent:
+            return "The display froze. Reduce the rendering detail.";
+        default:
+            return "See the events for the cause.";
+    }
+}
+
 const char* lines_text(LinesShown lines) noexcept {
     switch (lines) {
         case LinesShown::none:
@@ -326,7 +357,11 @@ std::string event_text(const EventTopic& event, const LevelsTopic* levels) {
                    run_state_text(code_of<RunState>(event.b));
         case EventCode::fault_latched:
             // The measured value, if the reason is a number that is too large.
-            return what + ": " + run_reason_text(code_of<RunReason>(event.a)) +
+            return what +
+                   (event.detail == 1   ? " of the first hand: "
+                    : event.detail == 2 ? " of the second hand: "
+                                        : ": ") +
+                   run_reason_text(code_of<RunReason>(event.a)) +
                    (event.b == 0.0 ? std::string() : " (" + b + ")");
         case EventCode::overrun:
             return what + ": " + late_text(event.a) + " late, " + b + " so far";
@@ -370,6 +405,10 @@ std::string event_text(const EventTopic& event, const LevelsTopic* levels) {
         default:
             return event.code == 0 || what != kUnknown ? what : what + " event " + std::to_string(event.code);
     }
+}
+
+std::string fault_fix(const EventTopic& event) {
+    return std::string(run_reason_fix(code_of<RunReason>(event.a))) + " Then reset the fault, and arm.";
 }
 
 std::string bus_text(const BusCounts& counts) {

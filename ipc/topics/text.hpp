@@ -13,8 +13,10 @@
 
 namespace tact {
 
-[[nodiscard]] const char* run_state_text(RunState state) noexcept;         // "active"
-[[nodiscard]] const char* run_reason_text(RunReason reason) noexcept;      // "hand off the device"
+[[nodiscard]] const char* run_state_text(RunState state) noexcept;     // "active"
+[[nodiscard]] const char* run_reason_text(RunReason reason) noexcept;  // "hand off the device"
+// What a person does before resetting the fault: "Check the device's cable and power; tact probe lists the devices."
+[[nodiscard]] const char* run_reason_fix(RunReason reason) noexcept;
 [[nodiscard]] const char* lines_text(LinesShown lines) noexcept;           // "waiting for re-arming"
 [[nodiscard]] const char* event_code_text(EventCode code) noexcept;        // "overrun"
 [[nodiscard]] const char* level_reason_text(LevelReason reason) noexcept;  // "force rate below goal"
@@ -29,6 +31,8 @@ namespace tact {
 // One line with the event's numbers and their units: "overrun: 120 us late, 3 so far".
 // With the levels, a path has its own name.
 [[nodiscard]] std::string event_text(const EventTopic& event, const LevelsTopic* levels = nullptr);
+// For an event fault_latched: its fix, with the order in which force comes back.
+[[nodiscard]] std::string fault_fix(const EventTopic& event);
 // Errors on a device's bus: "checksum 3, lost 12, connected again 1"; empty: none.
 [[nodiscard]] std::string bus_text(const BusCounts& counts);
 // "FIFO, pinned, memory locked", or "ordinary scheduling".

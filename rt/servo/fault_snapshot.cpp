@@ -4,8 +4,8 @@
 
 namespace tact::servo {
 
-void note_fault(CycleState& c, const ServoIo& io) noexcept {
-    const HandCycle& h = c.hand[0];
+void note_fault(CycleState& c, const ServoIo& io, std::uint32_t hand) noexcept {
+    const HandCycle& h = c.hand[hand < c.hands ? hand : 0];
     FaultSnapshot s{};
     s.cycle = c.cycle;
     s.taken_at_ns = to_ns(c.now);
@@ -23,7 +23,8 @@ void note_fault(CycleState& c, const ServoIo& io) noexcept {
         s.applied_before_n[i] = known ? static_cast<double>(last.force_world_n[i]) : 0.0;
     }
     io.mailbox.fault.publish(s);
-    report(c, io.region, EventCode::fault_latched, static_cast<double>(c.run.reason), c.trip.measured);
+    report(c, io.region, EventCode::fault_latched, static_cast<double>(c.run.reason), c.trip.measured,
+           static_cast<std::uint16_t>(hand < c.hands ? hand + 1 : 0));
 }
 
 }  // namespace tact::servo

@@ -14,6 +14,28 @@ namespace {
 // A stop ramps the force out within rt/safety's ramp_out_s; the amplifier is off after kStopMax at the latest.
 constexpr Duration kStopMax = std::chrono::milliseconds(100);
 
+bool device_lost(const HandCycle& h) noexcept {
+    return h.read_status == IoStatus::lost || h.write_status == IoStatus::lost;
+}
+
+bool device_fault(const HandCycle& h, const ServoSettings& settings) noexcept {
+    return h.read_status == IoStatus::fault || !h.sample_usable || h.sample.state == DeviceState::fault ||
+           (h.sample.state == DeviceState::watchdog_tripped && settings.watchdogs.device_watchdog_latches);
+}
+
+// The hand whose device caused this trip.
+std::uint32_t hand_at_fault(const CycleState& c, const ServoSettings& settings) noexcept {
+    for (std::uint32_t i = 0; i < c.hands; ++i) {
+        const HandCycle& h = c.hand[i];
+        if ((c.run.reason == RunReason::device_lost && device_lost(h)) ||
+            (c.run.reason == RunReason::device_fault && device_fault(h, settings)) ||
+            (c.run.reason == RunReason::sample_stale &&
+             c.now - h.sample.taken_at > settings.watchdogs.sample_age_max))
+            return i;
+    }
+    return kNoHand;
+}
+
 WatchdogInput watched_of(CycleState& c, const ServoSettings& settings, const ServoIo& io) noexcept {
     WatchdogInput watched{.now = c.now,
                           .sample_taken_at = c.now,
@@ -25,12 +47,8 @@ WatchdogInput watched_of(CycleState& c, const ServoSettings& settings, const Ser
     for (std::uint32_t i = 0; i < c.hands; ++i) {
         const HandCycle& h = c.hand[i];
         watched.sample_taken_at = std::min(watched.sample_taken_at, h.sample.taken_at);
-        watched.device_lost =
-            watched.device_lost || h.read_status == IoStatus::lost || h.write_status == IoStatus::lost;
-        watched.device_fault =
-            watched.device_fault || h.read_status == IoStatus::fault || !h.sample_usable ||
-            h.sample.state == DeviceState::fault ||
-            (h.sample.state == DeviceState::watchdog_tripped && settings.watchdogs.device_watchdog_latches);
+        watched.device_lost = watched.device_lost || device_lost(h);
+        watched.device_fault = watched.device_fault || device_fault(h, settings);
         watched.force_finite = watched.force_finite && h.wanted_world.finite();
     }
     return watched;
@@ -124,7 +142,7 @@ void make_safe(CycleState& c, const ServoSettings& settings, const ServoIo& io) 
     if (c.run.state == before) return;
     report(c, io.region, EventCode::state_changed, static_cast<double>(before),
            static_cast<double>(c.run.state));
-    if (c.run.state == RunState::fault) note_fault(c, io);
+    if (c.run.state == RunState::fault) note_fault(c, io, hand_at_fault(c, settings));
     if (c.run.state == RunState::off) c.finished = true;
     c.report.health_due = true;
 }

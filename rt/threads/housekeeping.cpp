@@ -213,6 +213,7 @@ void Housekeeping::log_events() {
         const auto code = static_cast<EventCode>(event.code);
         if (code == EventCode::fault_latched) {
             spdlog::error("cycle {}: {}", event.cycle, event_text(event));
+            spdlog::error("fix: {}", fault_fix(event));
         } else if (code == EventCode::level_changed || code == EventCode::slew_limited ||
                    code == EventCode::torque_slew_limited) {
             spdlog::debug("cycle {}: {}", event.cycle, event_text(event));

@@ -102,6 +102,38 @@ const Fault kFaults[] = {
 INSTANTIATE_TEST_SUITE_P(Servo, FaultScenario, testing::ValuesIn(kFaults),
                          [](const auto& tested) { return std::string(tested.param.name); });
 
+TEST(ServoFaults, the_event_names_the_hand_whose_device_failed) {
+    const auto hand_of = [](SimFault fault, bool second, RunReason expected) {
+        SpringModel of_second;
+        Lockstep loop(strict(), {}, nullptr, nullptr, {.sim = {}, .model = &of_second, .drive = {}});
+        loop.active();
+        (second ? loop.device2_ : loop.device_).inject(fault);
+        loop.cycles(6);
+        EXPECT_EQ(loop.reason(), expected);
+        RingCursor cursor;
+        EventTopic e{};
+        while (loop.region_->events.next(cursor, e))
+            if (e.code == static_cast<std::uint16_t>(EventCode::fault_latched)) return e.detail;
+        return std::uint16_t{99};
+    };
+    for (const bool second : {false, true}) {
+        EXPECT_EQ(hand_of(SimFault::unplugged, second, RunReason::device_lost), second ? 2 : 1);
+        EXPECT_EQ(hand_of(SimFault::amplifier, second, RunReason::device_fault), second ? 2 : 1);
+        EXPECT_EQ(hand_of(SimFault::frozen, second, RunReason::sample_stale), second ? 2 : 1);
+    }
+    Lockstep loop(strict());
+    loop.active();
+    loop.model_.not_a_number = true;
+    loop.cycles(1);
+    RingCursor cursor;
+    EventTopic e{};
+    while (loop.region_->events.next(cursor, e) &&
+           e.code != static_cast<std::uint16_t>(EventCode::fault_latched)) {
+    }
+    EXPECT_EQ(e.code, static_cast<std::uint16_t>(EventCode::fault_latched));
+    EXPECT_EQ(e.detail, 0U);  // no device
+}
+
 TEST(ServoFaults, a_frozen_sample_is_held_for_three_cycles_before_it_is_a_fault) {
     Lockstep loop;
     loop.active();

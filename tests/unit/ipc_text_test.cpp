@@ -85,6 +85,13 @@ TEST(Text, events_carry_their_numbers_and_units) {
     EXPECT_EQ(text(EventCode::gui_silent, 500.52, 0), "display process not responding: for 501 ms");
     EXPECT_EQ(text(EventCode::fault_latched, static_cast<double>(RunReason::emergency_stop), 0),
               "fault: the emergency stop is pressed");
+    const auto lost = static_cast<double>(RunReason::device_lost);
+    EXPECT_EQ(text(EventCode::fault_latched, lost, 0, 1), "fault of the first hand: the device is lost");
+    EXPECT_EQ(text(EventCode::fault_latched, lost, 0, 2), "fault of the second hand: the device is lost");
+    EventTopic fault{};
+    fault.a = lost;
+    EXPECT_EQ(fault_fix(fault),
+              "Check the device's cable and power; tact probe lists the devices. Then reset the fault, and arm.");
     EXPECT_EQ(text(EventCode::stopping, SIGTERM, 0), "stopping: signal 15");
     EXPECT_EQ(text(EventCode::stopping, SIGXCPU, 0),
               "stopping: the servo did not sleep for 1 s; choose a lower rate");

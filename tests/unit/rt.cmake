@@ -62,6 +62,16 @@ set_target_properties(rt_safe_test PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${CMAKE_B
 add_test(NAME rt_safe_test COMMAND rt_safe_test WORKING_DIRECTORY ${CMAKE_SOURCE_DIR})
 set_tests_properties(rt_safe_test PROPERTIES TIMEOUT 300)
 
+# Every driver loses its device at random instants, under the same interposers.
+tact_program(unplug_rt_safe_test SOURCES rt_safe/unplug_rt_safe_test.cpp ${CMAKE_SOURCE_DIR}/rt/servo/interpose.cpp
+    USES base topics arm phantom phantom_usb polhem openhaptics forcedimension haply falcon falcon_core hal emu_board force servo threads config start
+    SYSTEM nlohmann_json::nlohmann_json GTest::gtest GTest::gtest_main)
+add_dependencies(unplug_rt_safe_test fake_fd fake_hd)
+target_compile_definitions(unplug_rt_safe_test PRIVATE TACT_FAKE_FD="$<TARGET_FILE:fake_fd>" TACT_FAKE_HD="$<TARGET_FILE:fake_hd>")
+set_target_properties(unplug_rt_safe_test PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/tests)
+add_test(NAME unplug_rt_safe_test COMMAND unplug_rt_safe_test WORKING_DIRECTORY ${CMAKE_SOURCE_DIR})
+set_tests_properties(unplug_rt_safe_test PROPERTIES TIMEOUT 300)
+
 # The process: signals, refusals, system calls of the servo thread.
 tact_program(write_small_scene SOURCES support/write_small_scene.cpp USES base scene)
 set_target_properties(write_small_scene PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/tests)
