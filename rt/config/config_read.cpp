@@ -171,7 +171,11 @@ ConfigErrors check_all(const RtConfig& config, const std::string& where) {
     });
     const bool arms_told_apart = !config.device.serial.empty() && !config.device2.serial.empty() &&
                                  config.device.serial != config.device2.serial;
-    if (config.device2.driver == config.device.driver && real && !arms_told_apart) {
+    if (config.device.driver == "openhaptics" && config.device2.driver == "openhaptics") {
+        // Its library has one scheduler for a process, and knows arms by name instead of serial.
+        errors.emplace_back(where, "device2.driver", "driver \"openhaptics\" drives one arm, not two",
+                            "use another driver for one of the hands");
+    } else if (config.device2.driver == config.device.driver && real && !arms_told_apart) {
         errors.emplace_back(where, "device2.serial", "two devices of one driver need different serials",
                             "set device.serial and device2.serial to the serials of the two devices");
     }

@@ -2,7 +2,7 @@
 """Leads the emulated hand by the mouse in the window, as a person without a device does, in every system of scenes; checks the tool, the force, the
 result, and that the recorded run repeats to the bit.
 
-usage: mouse_hand_test.py BIN_DIR [dock|touch|drill|demo...]
+usage: mouse_hand_test.py BIN_DIR [dock|touch|drill|two|demo...]
 
 Exit code 77: Xvfb or xdotool is missing.
 """
@@ -40,11 +40,12 @@ def solved(columns, wanted):
 
 class Mouse(Operator):
     """Leads the tool; distances in pixels right, pixels down, and steps of the wheel away from the viewer."""
+    hand = 0  # which one the mouse leads
     at = (0, 0)
     per_step = None  # metres of the world, for each of them
 
     def tool(self):
-        return self.status()["tools"][0]
+        return self.status()["tools"][self.hand]
 
     def position(self):
         return self.tool()["pos_world_m"]
@@ -58,11 +59,11 @@ class Mouse(Operator):
         self.xdotool("mousemove", *map(str, self.at))
         self.see("Drag to lead the tool, or press L.")
         self.xdotool("mousedown", "1")
-        self.wait("the mouse leads the hand", lambda s: s["mouse"]["hands"][0] == "leads")
+        self.wait("the mouse leads the hand", lambda s: s["mouse"]["hands"][self.hand] == "leads")
 
     def let_go(self):
         self.xdotool("mouseup", "1")
-        self.wait("the mouse lets the hand go", lambda s: s["mouse"]["hands"][0] == "may")
+        self.wait("the mouse lets the hand go", lambda s: s["mouse"]["hands"][self.hand] == "may")
 
     def move(self, right, down, away=0, steps=20, pause_s=0.016):
         """In equal steps, as a pointer of 60 Hz."""
@@ -147,6 +148,8 @@ class Mouse(Operator):
         if not os.path.exists(self.scene()):
             bake_demo(self.bin, kind, self.scene())
         self.recording = os.path.join(self.folder, kind + ".h5")
+        if os.path.exists(self.recording):
+            os.remove(self.recording)
         self.start("--seed", "3", "--record", self.recording, *options, hand=hand)
         self.wait("the run is armed", lambda s: s["state"] == "active")
 
@@ -287,6 +290,40 @@ def drill(m):
     return bad + m.repeats(m.recording)
 
 
+def two(m):
+    """The mouse leads one of two hands in bone, and the other moves by its own script: the suction tube beside a surgeon, then the burr."""
+    bad = 0
+    for hand, hands in ((1, ("surgeon", "mouse")), (0, ("mouse", "suction-tube"))):
+        name, other = ("suction tube", "burr")[:: 1 if hand == 1 else -1]
+        m.hand = hand
+        m.begin("drill", "--hand2", hands[1], hand=hands[0])
+        ways = m.status()["mouse"]["hands"]
+        bad += expect("the mouse may lead the %s alone: %s" % (name, ways), ways[hand] == "may" and ways[1 - hand] == "none")
+        m.take()
+        others, buttons = [], []
+        at = m.rest()
+        m.move(0, -60, steps=20)
+        reached = m.rest()
+        bad += expect("the %s follows the mouse: by %.1f mm" % (name, 1e3 * norm(less(reached, at))), norm(less(reached, at)) > 4e-3)
+        m.xdotool("mousedown", "3")
+        m.wait("the button of the %s is pressed" % name, lambda s: s["tools"][hand]["buttons"] & 2)
+        for _ in range(20):
+            tools = m.status()["tools"]
+            others.append(tools[1 - hand]["pos_world_m"])
+            time.sleep(0.1)
+        moved = max(norm(less(p, others[0])) for p in others)
+        bad += expect("the %s moves by its script meanwhile: by %.2f mm" % (other, 1e3 * moved), moved > 2e-4)
+        rested = norm(less(m.position(), reached))
+        bad += expect("and the %s stays where the mouse is: within %.2f mm" % (name, 1e3 * rested), rested < 3e-3)
+        m.xdotool("mouseup", "3")
+        m.wait("the button of the %s is released" % name, lambda s: not s["tools"][hand]["buttons"] & 2)
+        m.let_go()
+        report = m.end()
+        bad += expect("no record of the mouse was refused: %s" % report["mouse"], report["mouse"]["refused"] == 0 and report["mouse"]["accepted"] > 50)
+        bad += m.repeats(m.recording)
+    return bad
+
+
 def demo(m):
     """A demo moves by itself until a person takes the tool; Esc and L take and let go; a window that ends lets go."""
     if not os.path.exists(m.scene()):
@@ -313,7 +350,7 @@ def demo(m):
 
 
 TRIES = 3  # a scripted pointer loses its way where another program takes the processor for a second
-RUNS = {"dock": dock, "touch": touch, "drill": drill, "demo": demo}
+RUNS = {"dock": dock, "touch": touch, "drill": drill, "two": two, "demo": demo}
 
 
 def main():

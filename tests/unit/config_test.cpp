@@ -414,6 +414,55 @@ TEST(Config, a_hand_is_led_by_the_device_that_its_script_names) {
     EXPECT_EQ(lead_devices(config), (std::array{spacemouse, mouse}));
 }
 
+TEST(Config, any_pair_of_drivers_may_be_first_and_second_hand_or_is_refused_with_the_reason) {
+    for (const DeviceEntry& first : device_drivers()) {
+        for (const DeviceEntry& second : device_drivers()) {
+            SCOPED_TRACE(std::string(first.name) + " and " + second.name);
+            RtConfig config;
+            config.device.driver = first.name;
+            config.device2.driver = second.name;
+            const auto refused = [&] {
+                try {
+                    check_config(config, "here");
+                } catch (const ConfigError& e) {
+                    return e.key + ": " + e.problem;
+                }
+                return std::string();
+            };
+            const bool same = first.name == second.name && !first.emulated;
+            if (same && std::string(first.name) == "openhaptics") {
+                EXPECT_TRUE(says(refused(), {"device2.driver", "drives one arm, not two"})) << refused();
+                continue;
+            }
+            if (same) {
+                EXPECT_TRUE(says(refused(), {"device2.serial", "different serials"})) << refused();
+            }
+            config.device.serial = "1";
+            config.device2.serial = "2";
+            EXPECT_EQ(refused(), "");
+            const DeviceSettings of_first = device_settings_from(config),
+                                 of_second = device2_settings_from(config);
+            EXPECT_EQ(of_first.driver, first.name);
+            EXPECT_EQ(of_second.driver, second.name);
+            EXPECT_EQ(of_first.serial + of_second.serial, "12");
+            EXPECT_NE(first.make(of_first), nullptr);
+            EXPECT_NE(second.make(of_second), nullptr);
+            // A hand led by the mouse beside any arm, on either side.
+            if (std::string(second.name) == "sim") {
+                config.device2.hand = "mouse";
+                EXPECT_EQ(refused(), "");
+                EXPECT_EQ(mouse_hands(config)[1], true);
+            }
+            if (std::string(first.name) == "sim") {
+                config.device.hand = "mouse";
+                config.device2.hand = "passive";
+                EXPECT_EQ(refused(), "");
+                EXPECT_EQ(mouse_hands(config), (std::array{true, false}));
+            }
+        }
+    }
+}
+
 TEST(Config, the_deadline_of_the_model_follows_the_period) {
     RtConfig config;
     for (const double period_us : {2000.0, 1000.0, 500.0, 125.0}) {

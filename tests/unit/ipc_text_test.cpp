@@ -90,8 +90,9 @@ TEST(Text, events_carry_their_numbers_and_units) {
     EXPECT_EQ(text(EventCode::fault_latched, lost, 0, 2), "fault of the second hand: the device is lost");
     EventTopic fault{};
     fault.a = lost;
-    EXPECT_EQ(fault_fix(fault),
-              "Check the device's cable and power; tact probe lists the devices. Then reset the fault, and arm.");
+    EXPECT_EQ(
+        fault_fix(fault),
+        "Check the device's cable and power; tact probe lists the devices. Then reset the fault, and arm.");
     EXPECT_EQ(text(EventCode::stopping, SIGTERM, 0), "stopping: signal 15");
     EXPECT_EQ(text(EventCode::stopping, SIGXCPU, 0),
               "stopping: the servo did not sleep for 1 s; choose a lower rate");
