@@ -77,6 +77,10 @@ if(NOT TACT_SANITIZE)  # not with sanitizers, which slow the servo; deploy_igtl_
     add_test(NAME igtl_minute_test COMMAND ${igtl_test} --seconds 60 Server.test_no_message_is_lost_at_the_stated_rate
         WORKING_DIRECTORY ${CMAKE_SOURCE_DIR})
     set_tests_properties(igtl_minute_test PROPERTIES LABELS "e2e;long" TIMEOUT 300)
+    # Only by ctest -C nightly -L nightly.
+    add_test(NAME igtl_ten_minutes_test CONFIGURATIONS nightly COMMAND ${igtl_test} --seconds 600
+        Server.test_debians_client_loses_no_pose_and_hostile_clients_do_not_delay_the_servo WORKING_DIRECTORY ${CMAKE_SOURCE_DIR})
+    set_tests_properties(igtl_ten_minutes_test PROPERTIES LABELS "e2e;long;nightly" TIMEOUT 900 SKIP_RETURN_CODE 77 RUN_SERIAL TRUE)
 endif()
 # h5py comes from the system's packages and is available only in the system's Python.
 find_program(TACT_SYSTEM_PYTHON3 python3 PATHS /usr/bin NO_DEFAULT_PATH)
