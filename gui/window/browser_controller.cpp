@@ -17,8 +17,6 @@
 namespace tact {
 namespace {
 
-constexpr const char* kRecentName = "recent.json";
-
 std::int64_t unix_now_s() { return static_cast<std::int64_t>(std::time(nullptr)); }
 
 template <class T>
@@ -46,8 +44,8 @@ void BrowserController::used(const std::filesystem::path& scene, SceneKind kind,
 void BrowserController::remember(const std::filesystem::path& path) {
     const auto folder = state_folder();
     if (scene_switch_.empty() || folder.empty() || keeping_.valid()) return;
-    keeping_ = std::async(std::launch::async, [folder, path]() -> std::string {
-        const auto file = folder / kRecentName;
+    keeping_ = std::async(std::launch::async, [path]() -> std::string {
+        const auto file = recents_file();
         try {
             std::vector<RecentScene> scenes;
             try {
@@ -73,7 +71,7 @@ void BrowserController::read(const BrowserState& state) {
             out.recent_trouble = "Recent scenes are not saved: neither XDG_STATE_HOME nor HOME is set.";
         } else {
             try {
-                out.recent = recent_rows(read_recents(used / kRecentName), now);
+                out.recent = recent_rows(read_recents(recents_file()), now);
             } catch (const StartupError& e) {
                 out.recent_trouble = e.what();
             }

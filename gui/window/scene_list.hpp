@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "gui/window/browser_panel.hpp"
-#include "gui/window/recent_scenes.hpp"
+#include "ipc/scene/session/recent_scenes.hpp"
 
 namespace tact {
 

@@ -9,7 +9,8 @@
 namespace tact {
 
 // Opens scene_path if given, else the file with the recorded name and checksum: beside the recording, in the current
-// folder, or among the scenes baked by `tact`. Recordings made before 2026-11-23 hold a full path. Throws StartupError.
+// folder, among the scenes baked by `tact`, or in the window's list of recent scenes, there also under another name.
+// Recordings made before 2026-11-23 hold a full path. Throws StartupError, which lists all places.
 [[nodiscard]] SceneFile open_recorded_scene(const RecordingReader::About& about,
                                             const std::filesystem::path& recording,
                                             const std::filesystem::path& scene_path);

@@ -5,7 +5,7 @@ find_package(tomlplusplus REQUIRED)
 tact_fuzz(window_state_fuzz SOURCES fuzz/window_state_fuzz.cpp ${CMAKE_SOURCE_DIR}/gui/window/window_state.cpp
         ${CMAKE_SOURCE_DIR}/gui/base/toml_keys.cpp
     USES base SYSTEM tomlplusplus::tomlplusplus)
-tact_fuzz(recents_fuzz SOURCES fuzz/recents_fuzz.cpp ${CMAKE_SOURCE_DIR}/gui/window/recent_scenes.cpp
+tact_fuzz(recents_fuzz SOURCES fuzz/recents_fuzz.cpp ${CMAKE_SOURCE_DIR}/ipc/scene/session/recent_scenes.cpp
     USES base SYSTEM nlohmann_json::nlohmann_json)
 tact_fuzz(import_answers_fuzz SOURCES fuzz/import_answers_fuzz.cpp ${CMAKE_SOURCE_DIR}/gui/window/import_answers.cpp
         ${CMAKE_SOURCE_DIR}/gui/window/import_form.cpp

@@ -1,7 +1,7 @@
 // A list of recent scenes with arbitrary bytes: refused with a message, or absolute paths that survive write and read.
 #include <cstring>
 
-#include "gui/window/recent_scenes.hpp"
+#include "ipc/scene/session/recent_scenes.hpp"
 #include "ipc/base/error.hpp"
 #include "tests/fuzz/fuzz.hpp"
 

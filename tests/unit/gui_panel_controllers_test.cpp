@@ -11,7 +11,7 @@
 
 #include "gui/window/dropped_files.hpp"
 #include "gui/window/import_progress.hpp"
-#include "gui/window/recent_scenes.hpp"
+#include "ipc/scene/session/recent_scenes.hpp"
 #include "gui/window/scene_list.hpp"
 #include "ipc/base/error.hpp"
 #include "ipc/base/state_folder.hpp"

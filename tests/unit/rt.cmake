@@ -12,6 +12,7 @@ tact_tests(govern_tests SOURCES
         unit/govern_rate_hold_test.cpp unit/govern_replay_test.cpp
     USES base govern SYSTEM rapidcheck)
 tact_test(unit/replay_marks_test.cpp USES base topics replay)
+tact_test(unit/replay_scene_test.cpp USES base scene scene_session record replay)
 tact_test(unit/hal_sim_test.cpp USES base hal)
 tact_test(unit/hal_mouse_hand_test.cpp USES base shm hal)
 tact_tests(arm_tests SOURCES

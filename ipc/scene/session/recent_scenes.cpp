@@ -1,4 +1,4 @@
-#include "gui/window/recent_scenes.hpp"
+#include "ipc/scene/session/recent_scenes.hpp"
 
 #include <fcntl.h>
 #include <sys/stat.h>
@@ -10,6 +10,7 @@
 #include <nlohmann/json.hpp>
 
 #include "ipc/base/error.hpp"
+#include "ipc/base/state_folder.hpp"
 
 namespace tact {
 namespace {
@@ -56,6 +57,11 @@ std::string recents_text(const std::vector<RecentScene>& scenes) {
         throw StartupError("writing the recent scenes", "a path is not UTF-8",
                            "give the file a name in UTF-8");
     }
+}
+
+std::filesystem::path recents_file() {
+    const std::filesystem::path folder = state_folder();
+    return folder.empty() ? folder : folder / "recent.json";
 }
 
 std::vector<RecentScene> read_recents(const std::filesystem::path& file) {

@@ -1,4 +1,5 @@
-// Recently used scenes, newest first, in a small JSON file of this user.
+// Recently used scenes, newest first, in a small JSON file of this user: written by the window, also read by the replay,
+// which looks there for the scene of a recording.
 //
 // File     {"scenes": [{"path": "/...", "used_unix_s": 1793000000}, ...]}; at most kRecentsMost, written completely
 //          or not at all
@@ -23,6 +24,8 @@ inline constexpr std::size_t kRecentsMost = 24, kRecentsBytesMost = std::size_t{
 
 [[nodiscard]] std::vector<RecentScene> read_recents_text(std::string_view text, const std::string& name);
 [[nodiscard]] std::string recents_text(const std::vector<RecentScene>& scenes);
+// $XDG_STATE_HOME/tact/recent.json, else below ~/.local/state; empty: neither variable is set.
+[[nodiscard]] std::filesystem::path recents_file();
 // A missing file: none.
 [[nodiscard]] std::vector<RecentScene> read_recents(const std::filesystem::path& file);
 
