@@ -10,7 +10,7 @@
 #include "rt/servo/servo.hpp"
 #include "rt/start/visual_paths.hpp"
 #include "tests/support/small_scene.hpp"
-#include "tests/unit/hal_forcedimension.hpp"
+#include "tests/support/forcedimension_driver.hpp"
 
 namespace tact {
 namespace {

@@ -12,18 +12,14 @@
 #include <string>
 #include <vector>
 
-#include "hal/openhaptics/open_haptics.hpp"
 #include "hal/sim/process_device.hpp"
 #include "ipc/base/servo_clock.hpp"
 #include "tests/support/board_bus.hpp"
-#include "tests/support/fake_hd.hpp"
-#include "tests/support/fake_inverse.hpp"
 #include "tests/support/falcon_board.hpp"
+#include "tests/support/forcedimension_driver.hpp"
+#include "tests/support/inverse_driver.hpp"
+#include "tests/support/openhaptics_driver.hpp"
 #include "tests/support/polhem_board.hpp"
-#include "tests/support/stepping_clock.hpp"
-#include "tests/unit/hal_forcedimension.hpp"
-
-#include "hal/haply/inverse3.hpp"
 
 namespace tact {
 
@@ -193,21 +189,11 @@ private:
     Falcon device_{settings(), std::move(owned_)};
 };
 
-inline FakeHd& fake_hd_library() {
-    static FakeHd* const f = [] {
-        void* const library = dlopen(TACT_FAKE_HD, RTLD_NOW | RTLD_LOCAL);
-        if (library == nullptr) std::abort();
-        return reinterpret_cast<FakeHdAccess>(dlsym(library, kFakeHdAccess))();
-    }();
-    return *f;
-}
-
 class OpenHapticsStation final : public UnplugStation {
 public:
     OpenHapticsStation() {
         final_loss = true;  // an error of the link ends the library's scheduler
         fake_hd_library().reset();
-        clock_.step = [] { fake_hd_library().tick(); };
     }
     HapticDevice& device() override { return device_; }
     Clock& clock() override { return clock_; }
@@ -224,13 +210,8 @@ public:
     }
 
 private:
-    static OpenHapticsSettings settings() {
-        OpenHapticsSettings s;
-        s.library = TACT_FAKE_HD;
-        return s;
-    }
-    SteppingClock clock_;
-    OpenHaptics device_{settings(), clock_};
+    HdClock clock_;
+    OpenHaptics device_{hd_settings(), clock_};
 };
 
 class ForceDimensionStation final : public UnplugStation {
@@ -259,10 +240,8 @@ class InverseStation final : public UnplugStation {
 public:
     HapticDevice& device() override { return device_; }
     Clock& clock() override {
-        clock_.step = [this] {
-            device_.round();
-            service_.tick();
-        };
+        clock_.device = &device_;
+        clock_.service = &service_;
         return clock_;
     }
     void pass(Duration d) override { clock().wait_until(clock_.now() + d); }
@@ -274,14 +253,9 @@ public:
     }
 
 private:
-    static Inverse3Settings settings() {
-        Inverse3Settings s;
-        s.thread = false;
-        return s;
-    }
-    SteppingClock clock_;
+    InverseClock clock_;
     FakeInverse service_;
-    Inverse3 device_{settings(), std::make_unique<FakeInverseChannel>(service_), clock_};
+    Inverse3 device_{inverse_settings(), std::make_unique<FakeInverseChannel>(service_), clock_};
 };
 
 struct UnplugCase {

@@ -5,7 +5,7 @@
 #include <limits>
 #include <random>
 
-#include "tests/unit/hal_forcedimension.hpp"
+#include "tests/support/forcedimension_driver.hpp"
 
 namespace tact {
 namespace {

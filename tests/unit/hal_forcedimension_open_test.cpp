@@ -1,7 +1,7 @@
 // The start of Force Dimension's arms: library, device, initialization, each with its message and fix.
 #include <gtest/gtest.h>
 
-#include "tests/unit/hal_forcedimension.hpp"
+#include "tests/support/forcedimension_driver.hpp"
 
 namespace tact {
 namespace {

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <thread>
 
-#include "tests/contract/haptic_device_contract.hpp"
-#include "tests/unit/hal_forcedimension.hpp"
+#include "tests/support/forcedimension_driver.hpp"
+#include "tests/support/pumped_case.hpp"
 
 namespace tact {
 namespace {
@@ -15,20 +15,12 @@ using std::chrono::milliseconds;
 FdClock fd_contract_clock;
 
 INSTANTIATE_TEST_SUITE_P(ForceDimension, HapticDeviceContract,
-                         testing::Values(DeviceCase{"forcedimension",
-                                                    [] {
-                                                        fake_fd_library().reset();
-                                                        fd_contract_clock.jump(Monotonic::now());
-                                                        auto device = std::make_unique<ForceDimension>(
-                                                            fd_settings(), fd_contract_clock);
-                                                        fd_contract_clock.device = device.get();
-                                                        return device;
-                                                    },
-                                                    [](Instant now, Duration d) {
-                                                        fd_contract_clock.wait_until(
-                                                            std::max(now, fd_contract_clock.now()) + d);
-                                                        return fd_contract_clock.now();
-                                                    }}),
+                         testing::Values(pumped_case<ForceDimension>(
+                             "forcedimension", fd_contract_clock,
+                             [] {
+                                 fake_fd_library().reset();
+                                 return std::make_unique<ForceDimension>(fd_settings(), fd_contract_clock);
+                             })),
                          [](const auto& tested) { return tested.param.name; });
 
 TEST_F(ForceDimensionTest, axes_and_centre_of_an_omega_become_those_of_tact) {

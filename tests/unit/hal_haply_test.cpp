@@ -5,10 +5,8 @@
 #include <limits>
 #include <random>
 
-#include "hal/haply/inverse3.hpp"
-#include "ipc/base/error.hpp"
-#include "tests/contract/haptic_device_contract.hpp"
-#include "tests/support/fake_inverse.hpp"
+#include "tests/support/inverse_driver.hpp"
+#include "tests/support/pumped_case.hpp"
 #include "tests/support/says.hpp"
 
 namespace tact {
@@ -16,103 +14,40 @@ namespace {
 
 using std::chrono::milliseconds;
 
-// Time advances only here: each millisecond is a round of the pump, then one of the arm.
-class InverseClock final : public Clock {
-public:
-    Instant now() noexcept override { return now_; }
-    void wait_until(Instant t) noexcept override {
-        while (now_ < t) {
-            now_ = std::min(t, now_ + milliseconds(1));
-            if (device != nullptr) device->round();
-            if (service != nullptr) service->tick();
-        }
-    }
-    void jump(Instant t) noexcept { now_ = t; }
-
-    Inverse3* device = nullptr;
-    FakeInverse* service = nullptr;
-
-private:
-    Instant now_ = instant_from_ns(1'000'000'000);
-};
-
-Inverse3Settings inverse_settings() {
-    Inverse3Settings s;
-    s.thread = false;
-    return s;
-}
-
 InverseClock inverse_contract_clock;
 FakeInverse inverse_contract_service;
 
 INSTANTIATE_TEST_SUITE_P(Inverse3, HapticDeviceContract,
-                         testing::Values(DeviceCase{
-                             "inverse3",
-                             [] {
-                                 inverse_contract_service = {};
-                                 inverse_contract_clock.jump(Monotonic::now());
-                                 auto device = std::make_unique<Inverse3>(
-                                     inverse_settings(),
-                                     std::make_unique<FakeInverseChannel>(inverse_contract_service),
-                                     inverse_contract_clock);
-                                 inverse_contract_clock.device = device.get();
-                                 inverse_contract_clock.service = &inverse_contract_service;
-                                 return device;
-                             },
-                             [](Instant now, Duration d) {
-                                 inverse_contract_clock.wait_until(
-                                     std::max(now, inverse_contract_clock.now()) + d);
-                                 return inverse_contract_clock.now();
-                             }}),
+                         testing::Values(pumped_case<Inverse3>("inverse3", inverse_contract_clock,
+                                                               [] {
+                                                                   inverse_contract_service = {};
+                                                                   inverse_contract_clock.service =
+                                                                       &inverse_contract_service;
+                                                                   return std::make_unique<Inverse3>(
+                                                                       inverse_settings(),
+                                                                       std::make_unique<FakeInverseChannel>(
+                                                                           inverse_contract_service),
+                                                                       inverse_contract_clock);
+                                                               })),
                          [](const auto& tested) { return tested.param.name; });
 
-class Inverse3Test : public testing::Test {
+class Inverse3Test : public VendorDriverTest<Inverse3, InverseClock> {
 protected:
-    void open() {
+    Inverse3Test() { cycles_to_power = 4; }
+
+    void open() override {
         clock.device = nullptr;
         device = std::make_unique<Inverse3>(settings, std::make_unique<FakeInverseChannel>(service), clock);
         info = device->open();
         clock.device = device.get();
         clock.service = &service;
     }
-    IoStatus cycle(const Vec3& force_n, bool enable) {
-        command.wrench_dev.force_n = force_n;
-        command.enable = enable;
-        ++command.heartbeat;
-        static_cast<void>(device->write(command, clock.now()));
-        clock.wait_until(clock.now() + milliseconds(1));
-        return device->read(sample, clock.now());
-    }
-    IoStatus cycles(int n, const Vec3& force_n, bool enable) {
-        IoStatus status = IoStatus::ok;
-        for (int i = 0; i < n; ++i) status = cycle(force_n, enable);
-        return status;
-    }
-    void power() {
-        cycles(3, Vec3::Zero(), false);
-        cycles(4, Vec3(1.0, 0.0, 0.0), true);
-        ASSERT_EQ(sample.state, DeviceState::powered);
-        ASSERT_EQ(shown().x(), 1.0);
-    }
-    [[nodiscard]] Vec3 shown() const {  // in Tact's axes
+    [[nodiscard]] Vec3 shown() const override {
         return {service.force_n[0], service.force_n[2], -service.force_n[1]};
     }
-    std::string refusal() {
-        try {
-            open();
-        } catch (const StartupError& e) {
-            return e.what();
-        }
-        return "it opened";
-    }
 
-    InverseClock clock;
     FakeInverse service;
     Inverse3Settings settings = inverse_settings();
-    std::unique_ptr<Inverse3> device;
-    DeviceInfo info;
-    DeviceSample sample;
-    DeviceCommand command;
 };
 
 TEST_F(Inverse3Test, axes_origin_and_grip_become_those_of_tact) {

@@ -1,17 +1,14 @@
 // The manufacturer's library behind the contract: a stand-in that is loaded like the real one.
 #include "hal/openhaptics/open_haptics.hpp"
 
-#include <dlfcn.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <cstdlib>
 #include <thread>
 
-#include "ipc/base/error.hpp"
 #include "ipc/base/servo_clock.hpp"
-#include "tests/contract/haptic_device_contract.hpp"
-#include "tests/support/fake_hd.hpp"
+#include "tests/support/openhaptics_driver.hpp"
+#include "tests/support/pumped_case.hpp"
 #include "tests/support/says.hpp"
 
 namespace tact {
@@ -19,97 +16,30 @@ namespace {
 
 using std::chrono::milliseconds;
 
-FakeHd& fake() {
-    static FakeHd* const f = [] {
-        void* const library = dlopen(TACT_FAKE_HD, RTLD_NOW | RTLD_LOCAL);
-        if (library == nullptr) std::abort();
-        return reinterpret_cast<FakeHdAccess>(dlsym(library, kFakeHdAccess))();
-    }();
-    return *f;
-}
+FakeHd& fake() { return fake_hd_library(); }
 
-// Time advances only here; the library runs one cycle per millisecond.
-class TickingClock final : public Clock {
-public:
-    Instant now() noexcept override { return now_; }
-    void wait_until(Instant t) noexcept override {
-        while (now_ < t) {
-            now_ = std::min(t, now_ + milliseconds(1));
-            fake().tick();
-        }
-    }
-    void jump(Instant t) noexcept { now_ = t; }
-
-private:
-    Instant now_ = instant_from_ns(1'000'000'000);
-};
-
-OpenHapticsSettings settings() {
-    OpenHapticsSettings s;
-    s.library = TACT_FAKE_HD;
-    return s;
-}
-
-TickingClock contract_clock;
+HdClock hd_contract_clock;
 
 INSTANTIATE_TEST_SUITE_P(OpenHaptics, HapticDeviceContract,
-                         testing::Values(DeviceCase{
-                             "openhaptics",
-                             [] {
-                                 fake().reset();
-                                 contract_clock.jump(Monotonic::now());
-                                 return std::make_unique<OpenHaptics>(settings(), contract_clock);
-                             },
-                             [](Instant now, Duration d) {
-                                 contract_clock.wait_until(std::max(now, contract_clock.now()) + d);
-                                 return contract_clock.now();
-                             }}),
+                         testing::Values(pumped_case<OpenHaptics>("openhaptics", hd_contract_clock,
+                                                                  [] {
+                                                                      fake().reset();
+                                                                      return std::make_unique<OpenHaptics>(
+                                                                          hd_settings(), hd_contract_clock);
+                                                                  })),
                          [](const auto& tested) { return tested.param.name; });
 
-class OpenHapticsTest : public testing::Test {
+class OpenHapticsTest : public VendorDriverTest<OpenHaptics, HdClock> {
 protected:
     OpenHapticsTest() { fake().reset(); }
 
-    void open() {
-        device = std::make_unique<OpenHaptics>(settings(), clock);
+    void open() override {
+        device = std::make_unique<OpenHaptics>(hd_settings(), clock);
         info = device->open();
     }
-    IoStatus cycle(const Vec3& force_n, bool enable) {
-        command.wrench_dev.force_n = force_n;
-        command.enable = enable;
-        ++command.heartbeat;
-        static_cast<void>(device->write(command, clock.now()));
-        clock.wait_until(clock.now() + milliseconds(1));
-        return device->read(sample, clock.now());
-    }
-    IoStatus cycles(int n, const Vec3& force_n, bool enable) {
-        IoStatus status = IoStatus::ok;
-        for (int i = 0; i < n; ++i) status = cycle(force_n, enable);
-        return status;
-    }
-    void power() {
-        cycles(3, Vec3::Zero(), false);
-        cycles(3, Vec3(1.0, 0.0, 0.0), true);
-        ASSERT_EQ(sample.state, DeviceState::powered);
-        ASSERT_EQ(shown().x(), 1.0);
-    }
-    static Vec3 shown() {
+    [[nodiscard]] Vec3 shown() const override {
         return {fake().force_n[0].load(), fake().force_n[1].load(), fake().force_n[2].load()};
     }
-    std::string refusal() {
-        try {
-            open();
-        } catch (const StartupError& e) {
-            return e.what();
-        }
-        return "it opened";
-    }
-
-    TickingClock clock;
-    std::unique_ptr<OpenHaptics> device;
-    DeviceInfo info;
-    DeviceSample sample;
-    DeviceCommand command;
 };
 
 TEST_F(OpenHapticsTest, a_missing_library_is_reported_with_all_searched_paths) {
@@ -448,7 +378,7 @@ TEST_F(OpenHapticsTest, open_errors_are_reported_with_a_fix) {
 // The library's thread and the servo's thread, as in reality.
 TEST_F(OpenHapticsTest, samples_and_forces_pass_between_the_threads) {
     fake().threaded = true;
-    OpenHapticsSettings s = settings();
+    OpenHapticsSettings s = hd_settings();
     s.first_sample_max = std::chrono::seconds(60);
     OpenHaptics own(s);
     static_cast<void>(own.open());
