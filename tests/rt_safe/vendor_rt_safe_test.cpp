@@ -9,8 +9,8 @@
 #include "rt/servo/rt_guard.hpp"
 #include "rt/servo/servo.hpp"
 #include "rt/start/visual_paths.hpp"
-#include "tests/support/small_scene.hpp"
 #include "tests/support/forcedimension_driver.hpp"
+#include "tests/support/small_scene.hpp"
 
 namespace tact {
 namespace {
