@@ -215,7 +215,7 @@ PlotHover draw_plot(const Theme& theme, const PlotSpec& spec, ImVec2 size) {
         }
         // Beside the mark of the largest value, and on the side with more room.
         const std::string most = format("max %.4g ", values.high) + spec.unit;
-        const float at_x = f.x(values.high_at_s), aside = theme.px(7.0F), wide = width_of(most);
+        const float at_x = f.x(values.high_at_s), aside = theme.px(11.0F), wide = width_of(most);
         const bool left = at_x > 0.5F * (f.low.x + f.high.x);
         const ImVec2 words{std::clamp(left ? at_x - aside - wide : at_x + aside, f.low.x, f.high.x - wide),
                            f.low.y};

@@ -130,6 +130,7 @@ def draw(states):
     time.sleep(2)
     states.keep("drilling")
     o.click("Burr ...", "Drilling")
+    o.see("Burr, diameter in mm")
     states.keep("burrs")
     o.end()
     o.start(scene="field.tact", hand="wander")
