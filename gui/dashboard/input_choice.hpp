@@ -13,7 +13,8 @@ inline constexpr std::array kInputRoleNames{"off", "camera", "hand"};
 // Numbered as LeadDevice (ipc/topics/mouse.hpp), without the mouse.
 inline constexpr std::size_t kInputDevices = 2;
 inline constexpr std::array<const char*, kInputDevices> kInputNames{"SpaceMouse", "Gamepad"};
-inline constexpr std::array<const char*, kInputDevices> kInputNouns{"SpaceMouse", "gamepad"};  // in a sentence
+inline constexpr std::array<const char*, kInputDevices> kInputNouns{"SpaceMouse",
+                                                                    "gamepad"};  // in a sentence
 
 struct InputChoice {
     static constexpr double kSpeedLeast = 0.1, kSpeedMost = 5.0;

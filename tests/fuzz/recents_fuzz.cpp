@@ -1,8 +1,8 @@
 // A list of recent scenes with arbitrary bytes: refused with a message, or absolute paths that survive write and read.
 #include <cstring>
 
-#include "ipc/scene/session/recent_scenes.hpp"
 #include "ipc/base/error.hpp"
+#include "ipc/scene/session/recent_scenes.hpp"
 #include "tests/fuzz/fuzz.hpp"
 
 namespace tact::fuzz {
