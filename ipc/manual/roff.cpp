@@ -38,6 +38,8 @@ std::string one(std::uint32_t code, bool line_begins) {
             return "\\(ha";
         case '~':
             return "\\(ti";
+        case '|':  // a line may break after it: choices make long words
+            return "|\\:";
         case '\t':
         case '\r':
             return " ";

@@ -128,8 +128,10 @@ class Operator:
 
     def reveal(self, label, within=None):
         """Turns the wheel over a card whose list goes on below."""
-        if within is not None and self.find(label, within) is None and (card := self.find("", within)) is not None:
-            self.xdotool("mousemove", str(round(card[0])), str(round(card[1])))
+        rows = sorted((t["y"], t["x"]) for t in self.texts() if within is not None and t["owner"].startswith(within))
+        if rows and self.find(label, within) is None:
+            y, x = rows[len(rows) // 2]  # in its list, not on its title
+            self.xdotool("mousemove", str(round(x + 2)), str(round(y + 4)))
             for button in ["5"] * 6 + ["4"] * 12:
                 if self.find(label, within) is not None:
                     break

@@ -88,14 +88,14 @@ TEST(Manual, a_page_names_type_range_default_and_conditions) {
 
 TEST(Manual, choices_are_shown_as_a_user_types_them) {
     const std::string text = page_of("small-work");
-    EXPECT_TRUE(holds(text, "\\fB\\-\\-kind\\fR \\fBslow|fast\\fR\n"));
-    EXPECT_TRUE(holds(text, "\\fB\\-\\-style\\fR \\fBtrace|tube\\fR\n"));
-    EXPECT_TRUE(holds(text, "\\fB\\-\\-law\\fR \\fBelastic|fixed\\fR\n"));
+    EXPECT_TRUE(holds(text, "\\fB\\-\\-kind\\fR \\fBslow|\\:fast\\fR\n"));
+    EXPECT_TRUE(holds(text, "\\fB\\-\\-style\\fR \\fBtrace|\\:tube\\fR\n"));
+    EXPECT_TRUE(holds(text, "\\fB\\-\\-law\\fR \\fBelastic|\\:fixed\\fR\n"));
 }
 
 TEST(Manual, the_synopsis_shows_what_is_required) {
     EXPECT_TRUE(holds(page_of("small-work"),
-                      ".SH SYNOPSIS\n\\fBsmall work\\fR \\fB\\-\\-kind\\fR \\fIslow|fast\\fR "
+                      ".SH SYNOPSIS\n\\fBsmall work\\fR \\fB\\-\\-kind\\fR \\fIslow|\\:fast\\fR "
                       "[\\fIOPTION\\fR]... \\fISCENE\\fR...\n"));
 }
 
