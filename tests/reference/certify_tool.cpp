@@ -56,9 +56,10 @@ public:
         hand_state_.T_world_tool = {goal_m, quat_from_rotation_vector(3.0 * random_.direction())};
         model_.reset(hand_state_);
         Vec6 force_n = Vec6::Zero();
-        for (int i = 0; i < kSeatMost; ++i) {
+        // A force that still fades in is no work of the hand.
+        for (int i = 0, seated = 0; i < kSeatMost && seated <= ForceFade::ramp_steps(kSurfaceStepS); ++i) {
             force_n = wrench_n(model_.step(hand_state_, {}));
-            if (!model_.contact().seating() && i > ForceFade::ramp_steps(kSurfaceStepS)) break;
+            seated = model_.contact().seating() ? 0 : seated + 1;
         }
         Vec3 turn_rad = Vec3::Zero(), turn_to_rad = Vec3::Zero();
         double gained_j = 0.0;
