@@ -1,14 +1,17 @@
 #!/usr/bin/python3
 """Compares the figures on the window with what the controller publishes, at twenty random instants of a run in each of three modes, while law, rate and
-armed state change. The controller is asked before and after the texts are read, so a figure must lie between both answers.
+armed state change. The controller is asked before and after the texts are read, so a figure must lie between both answers. Then the figures of a replay at
+twenty places sought by mouse, with the recording; and those of a contour that is moved, with the map's mean and standard deviation.
 
 usage: figures_test.py BIN_DIR
 
 Exit code 77: Xvfb or xdotool is missing.
 """
+import json
 import os
 import random
 import re
+import subprocess
 import sys
 import tempfile
 import time
@@ -23,12 +26,12 @@ class Figures:
     def __init__(self, operator, name):
         self.operator, self.name, self.compared, self.faults = operator, name, 0, []
 
-    # The first text that matches, on the row of a label of the controller's card.
-    def row(self, texts, label, pattern):
+    # The first text that matches, on the row of a label of a card.
+    def row(self, texts, label, pattern, card="Controller"):
         for t in texts:
-            if t["owner"] != "Controller" or not t["text"].startswith(label):
+            if t["owner"] != card or not t["text"].startswith(label):
                 continue
-            line = " ".join(o["text"] for o in sorted((o for o in texts if o["owner"] == "Controller" and abs(o["y"] - t["y"]) < 6), key=lambda o: o["x"]))
+            line = " ".join(o["text"] for o in sorted((o for o in texts if o["owner"] == card and abs(o["y"] - t["y"]) < 6), key=lambda o: o["x"]))
             if m := re.search(pattern, line[len(label):]):
                 return m
         return None
@@ -90,6 +93,13 @@ class Figures:
         self.check("level of " + path, shown, min(levels) - 0.0051, max(levels) + 0.0051)
 
 
+def judge(figures, of, least):
+    for fault in figures.faults:
+        print("FAIL " + fault)
+    return expect("%s: %d figures at %d instants (seed %d) are %s" % (figures.name, figures.compared, INSTANTS, SEED, of),
+                  not figures.faults and figures.compared >= least)
+
+
 def mode(operator, scene, hand, rng):
     operator.start(scene=scene + ".tact", hand=hand)
     operator.wait("the run is armed", lambda s: s["state"] == "active")
@@ -104,6 +114,90 @@ def mode(operator, scene, hand, rng):
     return figures
 
 
+# A contour that is moved by keys: in the map's unit and in standard deviations above its mean.
+def contoured(operator, rng):
+    said = subprocess.run([operator.program("tact"), "info", operator.scene("dock.tact"), "--json"], env=operator.env, stdout=subprocess.PIPE, check=True)
+    density = json.loads(said.stdout)["map"]
+    figures, levels = Figures(operator, "contour"), set()
+    operator.start(scene="dock.tact")
+    operator.click("View", "Scene")
+    for _ in range(INSTANTS):
+        for _ in range(rng.randint(1, 3)):
+            operator.key(rng.choice(["plus", "minus"]))
+        time.sleep(SHOWN_LATE_S)
+        m = figures.row(operator.texts(), "Contour", r"(-?[\d.]+) *map units, *(-?[\d.]+) σ", "Scene")
+        level, sigmas = (float(m.group(1)), float(m.group(2))) if m else (None, None)
+        levels.add(level)
+        exact = (level - density["mean"]) / density["sigma"] if m else 0.0
+        figures.check("standard deviations of %s" % level, sigmas, exact - 0.0056, exact + 0.0056)
+    operator.end()
+    if len(levels) < 5:
+        figures.faults.append("contour: the keys moved it to %s only" % levels)
+    return figures
+
+
+# A recording in a paused replay: step, time, state and force of the step that is shown, as h5py reads them.
+def replayed(operator, rng):
+    import h5py
+
+    recording = operator.scene("run.h5")
+    operator.start("--record", recording, scene="touch.tact", hand="stroke")
+    operator.wait("the run is armed", lambda s: s["state"] == "active")
+    time.sleep(4.0)
+    operator.end()
+    with h5py.File(recording, "r") as f:
+        now_ns, state = f["cycles/now_ns"][:], f["cycles/run_state"][:]
+        force_n = [sum(x * x for x in w[:3]) ** 0.5 for w in f["hand0/wrench_model"][:]]
+    figures = Figures(operator, "replay")
+    operator.report = ""
+    operator.launch("replay", recording, "--show", "--scene", operator.scene("touch.tact"))
+    operator.see("REPLAY", "Replay")
+    operator.key("space")
+    operator.see("paused", "Timeline")
+    steps = set()
+    for _ in range(INSTANTS):
+        title = next(t for t in operator.texts() if t["owner"].startswith("Timeline") and " s of " in t["text"])
+        operator.xdotool("mousemove", str(rng.randint(600, 1230)), str(round(title["y"] + 2.2 * title["h"])))
+        for button in ("mousedown", "mouseup"):
+            time.sleep(0.2)
+            operator.xdotool(button, "1")
+        texts = operator.holds_within(lambda: found(operator), 20.0) or operator.texts()
+        words = [t["text"] for t in texts]
+        first = lambda pattern: next((m for w in words if (m := re.search(pattern, w))), None)
+        number = lambda m: float(m.group(1).replace(" ", "")) if m else None
+        step = int(number(first(r"step ([\d ]+) of ")) or 0)
+        if not 0 < step <= len(now_ns):
+            figures.check("step", None, 1, len(now_ns))
+            continue
+        steps.add(step)
+        at_s = 1e-9 * (now_ns[step - 1] - now_ns[0])
+        figures.check("steps", number(first(r"step [\d ]+ of ([\d ]+)")), len(now_ns), len(now_ns))
+        figures.check("time of step %d" % step, number(first(r"([\d.]+) s of ")), at_s - 0.0006, at_s + 0.0006)
+        figures.check("force of step %d" % step, number(first(r"model force ([\d.]+) N")), force_n[step - 1] - 0.0051, force_n[step - 1] + 0.0051)
+        figures.compared += 1
+        shown = next((n for n in STATES if n in words), None)
+        if shown != STATES[state[step - 1]]:
+            figures.faults.append("replay: the state of step %d is shown as %s, it was %s" % (step, shown, STATES[state[step - 1]]))
+    operator.end()
+    if len(steps) < INSTANTS // 2:
+        figures.faults.append("replay: only %d places were reached" % len(steps))
+    return figures
+
+
+STATES = ["off", "ready", "armed", "active", "fault"]  # of RunState
+
+
+# The texts, once two readings say that the replay is paused at the same step.
+def found(operator):
+    def read():
+        texts = operator.texts()
+        return next((t["text"] for t in texts if t["text"].startswith("step ")), None), any("paused" in t["text"] for t in texts), texts
+    before, _, _ = read()
+    time.sleep(0.5)
+    after, paused, texts = read()
+    return texts if paused and before is not None and before == after else None
+
+
 def main():
     bin_dir = arguments(__doc__, 1)[0]
     rng, bad = random.Random(SEED), 0
@@ -113,10 +207,9 @@ def main():
             for scene, hand in (("dock", "wander"), ("touch", "stroke"), ("drill", "drill")):
                 bake_demo(bin_dir, scene, os.path.join(folder, scene + ".tact"))
                 figures = mode(operator, scene, hand, rng)
-                for fault in figures.faults:
-                    print("FAIL " + fault)
-                bad += expect("%s: %d figures at %d instants (seed %d) are those of the controller" % (scene, figures.compared, INSTANTS, SEED),
-                              not figures.faults and figures.compared >= 5 * INSTANTS)
+                bad += judge(figures, "those of the controller", 5 * INSTANTS)
+            bad += judge(contoured(operator, rng), "those of the map", INSTANTS)
+            bad += judge(replayed(operator, rng), "those of the recording", 4 * INSTANTS)
         finally:
             operator.close()
     return 1 if bad else 0
