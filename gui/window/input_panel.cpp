@@ -8,7 +8,7 @@
 namespace tact {
 namespace {
 
-constexpr float kInputPanelWide = 330.0F, kInputLabelWide = 100.0F;
+constexpr float kInputLabelWide = 100.0F;
 
 void explain_input(const char* text) {
     if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", text);
@@ -19,7 +19,7 @@ void input_slider(const Theme& theme, const char* what, double& value, double le
     ImGui::AlignTextToFramePadding();
     text_coloured(colour::kDim, what);
     ImGui::SameLine(theme.px(kInputLabelWide));
-    ImGui::SetNextItemWidth(theme.px(kInputPanelWide - kInputLabelWide - 16.0F));
+    ImGui::SetNextItemWidth(theme.px(kViewPanelWide - kInputLabelWide - 16.0F));
     auto shown = static_cast<float>(value);
     if (ImGui::SliderFloat((std::string("##") + what).c_str(), &shown, static_cast<float>(least),
                            static_cast<float>(most), pattern))
@@ -54,23 +54,12 @@ void input_rows(const Theme& theme, const InputState& input, std::size_t i, Inpu
 }  // namespace
 
 void draw_input_panel(const Theme& theme, InputState& input, const PixelRect& view) {
-    const float width = std::min(theme.px(kInputPanelWide), view.width);
-    ImGui::SetNextWindowPos({view.x + view.width - width - theme.px(kViewButtonRight),
-                             view.y + theme.px(kInputButtonTop + 32.0F)});
-    ImGui::SetNextWindowSize({width, 0.0F});
-    ImGui::PushStyleColor(ImGuiCol_WindowBg, colour::kPanel);
-    ImGui::Begin("Devices", nullptr,
-                 ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoMove |
-                     ImGuiWindowFlags_NoCollapse | ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoNav);
-    ImGui::PushFont(theme.bold);
-    text_coloured(colour::kAccent, "SpaceMouse and gamepad");
-    ImGui::PopFont();
+    begin_view_panel(theme, "Devices", "SpaceMouse and gamepad", kInputButtonTop, view);
     for (std::size_t i = 0; i < kInputDevices; ++i) {
         if (i > 0) ImGui::Separator();
         input_rows(theme, input, i, input.choice[i]);
     }
-    ImGui::End();
-    ImGui::PopStyleColor();
+    end_view_panel();
 }
 
 }  // namespace tact

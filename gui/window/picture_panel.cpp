@@ -10,7 +10,7 @@
 namespace tact {
 namespace {
 
-constexpr float kPanelWide = 330.0F, kSecond = 150.0F;
+constexpr float kSecond = 150.0F;
 
 void explain(const char* text) {
     if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", text);
@@ -63,17 +63,7 @@ void size_row(const Theme& theme, PictureState& p, const PixelRect& view) {
 
 void draw_picture_panel(const Theme& theme, PictureState& picture, SceneToggles& t, bool labels,
                         const PixelRect& view) {
-    const float width = std::min(theme.px(kPanelWide), view.width);
-    ImGui::SetNextWindowPos({view.x + view.width - width - theme.px(kViewButtonRight),
-                             view.y + theme.px(kPictureButtonTop + 32.0F)});
-    ImGui::SetNextWindowSize({width, 0.0F});
-    ImGui::PushStyleColor(ImGuiCol_WindowBg, colour::kPanel);
-    ImGui::Begin("Picture", nullptr,
-                 ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoMove |
-                     ImGuiWindowFlags_NoCollapse | ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoNav);
-    ImGui::PushFont(theme.bold);
-    text_coloured(colour::kAccent, "Picture");
-    ImGui::PopFont();
+    begin_view_panel(theme, "Picture", "Picture", kPictureButtonTop, view);
     ImGui::Checkbox("Depth cue", &t.depth_cue);
     explain("what is far fades into the background");
     ImGui::SameLine(theme.px(kSecond));
@@ -106,8 +96,7 @@ void draw_picture_panel(const Theme& theme, PictureState& picture, SceneToggles&
                    format("from %d to %d pixels a side", PictureState::kSideMin, PictureState::kSideMax));
     else if (!picture.result.text.empty())
         text_small(theme, grade_colour(picture.result.grade), picture.result.text);
-    ImGui::End();
-    ImGui::PopStyleColor();
+    end_view_panel();
 }
 
 }  // namespace tact
