@@ -11,12 +11,12 @@
 
 #include "gui/window/dropped_files.hpp"
 #include "gui/window/import_progress.hpp"
-#include "ipc/scene/session/recent_scenes.hpp"
 #include "gui/window/scene_list.hpp"
 #include "ipc/base/error.hpp"
 #include "ipc/base/state_folder.hpp"
 #include "ipc/scene/bone/drilled_bone.hpp"
 #include "ipc/scene/file/scene_peek.hpp"
+#include "ipc/scene/session/recent_scenes.hpp"
 #include "tests/unit/scene_samples.hpp"
 
 namespace tact::gui_panel_controllers_test {
