@@ -37,6 +37,7 @@ bool LevelFit::set_rows(std::span<const Row> rows) noexcept {
         window_[count_] = {};
         rows_[count_++] = row;
     }
+    window_age_s_ = 0.0;
     tries_ = 0;
     tried_s_.fill(0.0);
     row_ = 0;
@@ -63,17 +64,28 @@ void LevelFit::calibrate(double model_s, double rest_s) noexcept {
     rows_[row].cost_s = std::max(rows_[row].cost_s, tried_s_[row]);
 }
 
-bool LevelFit::renew(std::size_t i, double cost_s, double error, double dt_s, double foreseen_s) noexcept {
+// The windows of all rows end together: rows compared with each other remember the same time.
+void LevelFit::pass(double dt_s) noexcept {
+    window_age_s_ += dt_s;
+    if (window_age_s_ < kKept_s) return;
+    window_age_s_ = 0.0;
+    for (std::size_t i = 0; i < count_; ++i) {
+        Window& w = window_[i];
+        if (!w.renewed) continue;
+        w = {.cost_before_s = w.cost_s, .error_before = w.error, .foreseen_s = w.foreseen_s};
+        rows_[i].cost_s = std::max({w.cost_before_s, tried_s_[i], w.foreseen_s});
+        rows_[i].error = w.error_before;
+    }
+}
+
+bool LevelFit::renew(std::size_t i, double cost_s, double error, double foreseen_s) noexcept {
     if (i >= count_ || !std::isfinite(cost_s + foreseen_s) || !std::isfinite(error)) return false;
     Row& row = rows_[i];
     Window& w = window_[i];
-    w.age_s += dt_s;
-    if (w.age_s >= kKept_s) {
-        const bool old = w.age_s >= 2.0 * kKept_s;
-        w = {.cost_before_s = old ? 0.0 : w.cost_s, .error_before = old ? 0.0 : w.error};
-    }
     w.cost_s = std::max(w.cost_s, cost_s);
     w.error = std::max(w.error, error);
+    w.foreseen_s = foreseen_s;
+    w.renewed = true;
     const double before = row.cost_s;
     row.cost_s = std::max({w.cost_s, w.cost_before_s, tried_s_[i], foreseen_s});
     row.error = std::max(w.error, w.error_before);

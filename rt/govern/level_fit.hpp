@@ -52,7 +52,7 @@ public:
     static constexpr double kSpeedLeast = 0.7;
     static constexpr std::uint32_t kTries = 3;  // dry steps per row
     static constexpr double kOver_s = 0.1;
-    static constexpr double kKept_s = 2.0;
+    static constexpr double kKept_s = 5.0;
     static constexpr double kTelling = 0.3;
     static constexpr double kLeapt = 1.1;
     static constexpr double kWorthGain = 0.15;
@@ -89,10 +89,11 @@ public:
     // Dry cycles: the level to measure next; false when every row has been measured.
     [[nodiscard]] bool calibrating(float& level) const noexcept TACT_RT;
     void calibrate(double model_s, double rest_s) noexcept TACT_RT;
-    // The model's present prediction for a row, dt_s after the previous one; foreseen_s: cost of a contact that may come,
-    // not kept. True: the row's cost leapt.
-    bool renew(std::size_t row, double cost_s, double error, double dt_s,
-               double foreseen_s = 0.0) noexcept TACT_RT;
+    // Once a cycle, before rows are renewed: predictions age.
+    void pass(double dt_s) noexcept TACT_RT;
+    // The model's present prediction for a row; foreseen_s: cost of a contact that may come, not kept. True: the row's
+    // cost leapt.
+    bool renew(std::size_t row, double cost_s, double error, double foreseen_s = 0.0) noexcept TACT_RT;
     // The row to renew in this cycle: each in turn.
     [[nodiscard]] std::size_t due() const noexcept TACT_RT { return count_ > 0 ? cycle_ % count_ : 0; }
     // Selects the best row that fits, whatever the present row.
@@ -124,9 +125,11 @@ private:
     std::array<double, kRowsMax> tried_s_{};  // smallest cost measured per row; 0: none
     // Largest predictions of the present window of kKept_s.
     struct Window {
-        double cost_s = 0.0, error = 0.0, cost_before_s = 0.0, error_before = 0.0, age_s = 0.0;
+        double cost_s = 0.0, error = 0.0, cost_before_s = 0.0, error_before = 0.0, foreseen_s = 0.0;
+        bool renewed = false;
     };
     std::array<Window, kRowsMax> window_{};
+    double window_age_s_ = 0.0;
     std::size_t count_ = 0, row_ = 0;
     std::uint32_t tries_ = 0;
     CostSpread spread_;

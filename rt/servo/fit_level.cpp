@@ -38,15 +38,16 @@ LevelFit::Sample sample_of(const CycleState& c) noexcept {
 void renew_rows(CycleState& c) noexcept {
     LevelFit& fit = c.govern.fit;
     const std::size_t rows = fit.rows().size();
-    const auto renew = [&](std::size_t row, double dt_s) {
+    const auto renew = [&](std::size_t row) {
         const PathLoad load = c.hand[0].model->predict(fit.rows()[row].level);
-        return fit.renew(row, to_s(load.cost_predicted), load.error, dt_s, to_s(load.cost_foreseen));
+        return fit.renew(row, to_s(load.cost_predicted), load.error, to_s(load.cost_foreseen));
     };
     if (rows == 0) return;
-    if (renew(fit.row(), 0.0)) {
-        for (std::size_t i = 0; i < rows; ++i) static_cast<void>(renew(i, 0.0));
+    fit.pass(to_s(c.dt));
+    if (renew(fit.row())) {
+        for (std::size_t i = 0; i < rows; ++i) static_cast<void>(renew(i));
     } else {
-        static_cast<void>(renew(fit.due(), static_cast<double>(rows) * to_s(c.dt)));
+        static_cast<void>(renew(fit.due()));
     }
 }
 

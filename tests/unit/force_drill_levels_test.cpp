@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
+#include <vector>
 
 #include "rt/force/drilling/drill_model.hpp"
 #include "tests/support/bone_block.hpp"
@@ -155,6 +157,35 @@ TEST(DrillLevels, predicted_work_is_that_of_the_step) {
             EXPECT_NEAR(expected, found, 0.1 * found) << radius_m << " m at " << level;
         }
     }
+}
+
+// The stiffness is measured in one direction a step, and a ball pressed deeper meets more bone: a step that was predicted to cost
+// what the one before did would look like an interrupted one.
+TEST(DrillLevels, a_step_is_predicted_with_the_direction_of_its_stiffness) {
+    constexpr double kRadiusM = 20e-3;
+    Drilled d(kRadiusM, 160);
+    const Vec3 pressed_m = stroke_m(kRadiusM, 0.3);
+    d.begin(pressed_m);
+    d.model->turn_burr({0.0, 1e-3});
+    for (int i = 0; i < 80; ++i) (void)d.step(pressed_m, 0.5F);
+    std::vector<double> predicted, items;
+    for (int i = 0; i < 16; ++i) {
+        const StepResult r = d.step(pressed_m, 0.5F);
+        predicted.push_back(to_us(r.load.cost_predicted));
+        items.push_back(r.load.items);
+    }
+    const auto [least, most] = std::minmax_element(items.begin(), items.end());
+    ASSERT_GT(*most, 1.1 * *least);
+    const auto about_mean = [](std::vector<double> v) {
+        const double mean = std::accumulate(v.begin(), v.end(), 0.0) / static_cast<double>(v.size());
+        for (double& x : v) x -= mean;
+        return v;
+    };
+    const std::vector<double> a = about_mean(predicted), b = about_mean(items);
+    const auto dot = [](const std::vector<double>& x, const std::vector<double>& y) {
+        return std::inner_product(x.begin(), x.end(), y.begin(), 0.0);
+    };
+    EXPECT_GT(dot(a, b), 0.9 * std::sqrt(dot(a, a) * dot(b, b)));
 }
 
 // What another level would do, told from this one.
