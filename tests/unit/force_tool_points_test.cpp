@@ -1,4 +1,5 @@
 // The points that a move touches, and the share of it that they allow, against all points one by one.
+#include "rt/force/surface/tool_lists.hpp"
 #include "rt/force/surface/tool_points.hpp"
 
 #include <gtest/gtest.h>
@@ -79,6 +80,50 @@ TEST(ToolPoints, what_is_remembered_of_other_places_never_promises_more_than_is_
         at.q = (quat_from_rotation_vector(Vec3(0.0, 0.01, 0.002)) * at.q).normalized();
     }
     EXPECT_GT(recalled, asked);  // or they need not be remembered
+}
+
+// From a place where a list of triangles was queried, to two others: neither at the first nor along the way between them is any
+// triangle nearer than the bounds say.
+TEST(ToolLists, what_was_seen_of_triangles_never_promises_more_than_is_free) {
+    const World& w = box_on_rough();
+    ToolLists lists(w.mesh, 1, false);
+    lists.begin_step(nullptr);
+    std::mt19937 random(9);
+    std::normal_distribution<double> normal;
+    const auto vector = [&] { return Vec3(normal(random), normal(random), normal(random)); };
+    const double ball_m = w.tool.ball_m;
+    int known = 0, close = 0, tight = 0;
+    for (int i = 0; i < 3000; ++i) {
+        const SurfacePoint on = w.mesh.nearest(0.05 / kWorldPerModel * vector().normalized(), 1.0);
+        const Vec3 place = on.point_m + ball_m * (1.0 + std::abs(normal(random))) * w.mesh.normal_at(on);
+        const ToolLists::Near list = lists.near(0, place, 12.0 * ball_m);
+        if (list.seen == nullptr) continue;
+        QueryJob job = w.mesh.query_job(place);
+        for (std::size_t first = 0; first < list.count; first += kLooks) {
+            job.triangle = list.triangle + first;
+            SeenTriangles& block = list.seen[first / kLooks];
+            best_query_kernel().query(job, block.seen);
+            block.place_m = place;
+            block.least_m = static_cast<double>(
+                *std::min_element(std::begin(block.seen.distance), std::end(block.seen.distance)));
+        }
+        const double size_m = ball_m * std::pow(10.0, -0.0005 * i);
+        const Vec3 begin = place + size_m * vector(), end = begin + size_m * vector();
+        const auto clear = lists.clearance_m(0, begin, end, i % 2 == 0 ? 0.0 : 4.0 * ball_m);
+        if (clear.way_m < 0.0) continue;  // nothing promised: too far, or a triangle is in the way
+        ++known;
+        const double free_m = w.mesh.nearest(begin, 1.0).distance_m;
+        ASSERT_LE(clear.begin_m, free_m + 1e-9) << i;
+        tight += clear.begin_m > 0.9 * free_m ? 1 : 0;
+        for (int k = 0; k <= 20; ++k) {
+            const double there_m = w.mesh.nearest(begin + 0.05 * k * (end - begin), 1.0).distance_m;
+            ASSERT_LE(clear.way_m, there_m + 1e-9) << i << ", " << k;
+            close += clear.way_m > 0.8 * there_m ? 1 : 0;
+        }
+    }
+    EXPECT_GT(known, 1000);
+    EXPECT_GT(tight, known / 2);
+    EXPECT_GT(close, 5 * known);
 }
 
 }  // namespace

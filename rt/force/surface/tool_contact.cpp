@@ -60,18 +60,31 @@ bool ToolContact::query(std::uint32_t point, double reach_m, ToolTouch& touch) n
     const double ball = settings_.ball_m, edge = ball - settings_.margin_m,
                  sunk = SurfaceContact::kSunkMargins * settings_.margin_m;
     QueryJob job = mesh_.query_job(place);
-    TriangleQueries seen;
+    SeenTriangles one;  // if the list is not kept
     for (int attempt = 0; attempt < 6; ++attempt, reach_m *= 0.5) {
         ++touch.looked;
         const ToolLists::Near list = lists_.near(point, place, ball + reach_m);
         if (!(list.radius_m > 0.0)) continue;
         job.limit = static_cast<float>(ball + reach_m);
-        auto least = static_cast<float>(list.radius_m);
+        double least = list.radius_m;
         for (std::size_t first = 0; first < list.count; first += kLooks) {
+            SeenTriangles& block = list.seen != nullptr ? list.seen[first / kLooks] : one;
+            if (list.seen != nullptr) {
+                const double known = block.coarse_m(place);
+                if (known > ball + reach_m) {
+                    least = std::min(least, known);
+                    continue;
+                }
+            }
             const std::size_t lanes = std::min(kLooks, list.count - first);
+            TriangleQueries& seen = block.seen;
             job.triangle = list.triangle + first;
             kernel_->query(job, seen);
-            for (std::size_t lane = 0; lane < lanes; ++lane) least = std::min(least, seen.distance[lane]);
+            // The lanes beyond the last triangle repeat the first one.
+            block.place_m = place;
+            block.least_m =
+                static_cast<double>(*std::min_element(std::begin(seen.distance), std::end(seen.distance)));
+            least = std::min(least, block.least_m);
             std::uint32_t near = seen.near & ((lanes < kLooks ? 1U << lanes : 0U) - 1U);
             for (; near != 0; near &= near - 1) {
                 const auto lane = static_cast<std::size_t>(std::countr_zero(near));
@@ -86,10 +99,26 @@ bool ToolContact::query(std::uint32_t point, double reach_m, ToolTouch& touch) n
                     return false;
             }
         }
-        points_.saw(point, static_cast<double>(least) * (1.0 - 1e-6), reach_m);
+        points_.saw(point, least * (1.0 - 1e-6), reach_m);
         return true;
     }
     return false;
+}
+
+// True if what queries found around a point before shows that it may go there.
+bool ToolContact::is_known_free(std::uint32_t point, const Vec3& v_m, const Vec3& w_rad,
+                                double way_m) noexcept {
+    const Vec3 begin = points_.place_m(point),
+               displacement = v_m + w_rad.cross(points_.lever_m(point).cast<double>());
+    const double ball = settings_.ball_m;
+    const SeenTriangles::Clearance clear =
+        lists_.clearance_m(point, begin, begin + displacement, ball + way_m + settings_.margin_m);
+    points_.clears(point, clear.begin_m);
+    if (points_.room_m(point) >= way_m) return true;
+    const double over = clear.way_m - ball - settings_.margin_m;
+    if (!(over > 0.0)) return false;
+    points_.passes(point, displacement, over);
+    return true;
 }
 
 // Friction is that of the triangles touched now. Those that the tool would touch at the end of the move bear nothing yet: with
@@ -210,7 +239,7 @@ ToolContact::Move ToolContact::find_move_within(const Vec6& request, double left
             if (touch.looked >= queries_most_ || touch.asked >= queries_most_) break;
             const double way = points_.way_m(i, v, w);
             // Update the distance bound of far points; query triangles only for near ones.
-            if (points_.recall(i, way)) continue;
+            if (points_.recall(i, way) || is_known_free(i, v, w, way)) continue;
             if (points_.asked_m(i) > kAskedRooms * way + settings_.ball_m) {
                 ++touch.asked;
                 points_.ask(i, way);

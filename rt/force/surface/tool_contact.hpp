@@ -106,6 +106,8 @@ private:
     Move find_move_within(const Vec6& request, double left_m, ToolTouch& touch,
                           const Deadline& deadline) noexcept TACT_RT;
     bool query(std::uint32_t point, double reach_m, ToolTouch& touch) noexcept TACT_RT;
+    bool is_known_free(std::uint32_t point, const Vec3& v_m, const Vec3& w_rad,
+                       double way_m) noexcept TACT_RT;
     [[nodiscard]] Vec6 held_back(const TwistHalfSpaces::Solution& touched, const Vec6& goal_m,
                                  const TwistHalfSpaces::Rules& rules,
                                  TwistHalfSpaces::Solution& held) const noexcept TACT_RT;

@@ -4,6 +4,8 @@
 //           lies inside it
 // Found     in the tree over the full mesh, or in an adaptive surface's tree if that contains the ball (same leaves), or
 //           among all triangles (brute), then again in each step
+// Seen      what the last query found of each sixteen of them (seen_triangles.hpp): a later query passes over those that are too far,
+//           and a move that they leave free needs none
 // Room      kLists lists of kEach triangles; the least recently used one is replaced. Denser triangles are searched each
 //           time.
 // Unit      metres of the model.  Thread  constructed anywhere (allocates); then servo, TACT_RT.
@@ -19,6 +21,7 @@
 #include "ipc/scene/mesh/surface_mesh.hpp"
 #include "rt/force/surface/all_triangles.hpp"
 #include "rt/force/surface/near_surface.hpp"
+#include "rt/force/surface/seen_triangles.hpp"
 
 namespace tact {
 
@@ -30,7 +33,8 @@ public:
         // `count` triangles, padded to a multiple of kLooks by repetition.
         const std::uint32_t* triangle = nullptr;
         std::size_t count = 0;
-        double radius_m = 0.0;  // contains every triangle nearer than this; 0: too many
+        double radius_m = 0.0;          // contains every triangle nearer than this; 0: too many
+        SeenTriangles* seen = nullptr;  // of each kLooks triangles; null: the list is not kept
     };
 
     ToolLists(const SurfaceMesh& mesh, std::uint32_t points, bool brute)
@@ -41,7 +45,8 @@ public:
           list_(kLists),
           triangle_(kLists * kEach),
           leaf_(kLeavesMost),
-          found_(4 * kLeavesMost + kLooks) {}
+          found_(4 * kLeavesMost + kLooks),
+          seen_(kLists * kBlocks) {}
 
     // near: of an adaptive surface, valid during the step; may be null.
     void begin_step(const NearSurface* near) noexcept TACT_RT {
@@ -61,7 +66,7 @@ public:
             const double left_m = l.radius_m - (place_m - l.place_m).norm();
             if (left_m >= radius_m) {
                 l.used = clock_;
-                return {&triangle_[known * kEach], l.count, left_m};
+                return {&triangle_[known * kEach], l.count, left_m, &seen_[known * kBlocks]};
             }
         }
         // As wide as the last list was dense: a list that does not fit is searched in vain.
@@ -71,13 +76,40 @@ public:
             if (!find(place_m, list_m, count)) continue;
             per_square_ = static_cast<double>(count + 1) / (list_m * list_m);
             if (count > kEach && list_m > radius_m) continue;
-            if (count > kEach) return {found_.data(), count, radius_m};
+            if (count > kEach) return {found_.data(), count, radius_m, nullptr};
             return keep(point, place_m, list_m, count);
         }
         return {};
     }
 
+    // What is known of a point that goes from one place to another: lower bounds of its distance. Triangles at least far_m away
+    // from both places are not looked at closely. Negative: nothing is known.
+    [[nodiscard]] SeenTriangles::Clearance clearance_m(std::uint32_t point, const Vec3& begin_m,
+                                                       const Vec3& end_m, double far_m) noexcept TACT_RT {
+        constexpr SeenTriangles::Clearance kUnknown{-1.0, -1.0};
+        const std::size_t at = list_of_[point];
+        if (at >= kLists || list_[at].point != point) return kUnknown;
+        List& l = list_[at];
+        // Triangles that are not in the list.
+        SeenTriangles::Clearance least;
+        least.begin_m = l.radius_m - (begin_m - l.place_m).norm();
+        least.way_m = std::min(least.begin_m, l.radius_m - (end_m - l.place_m).norm());
+        if (!(least.way_m > 0.0)) return kUnknown;
+        for (std::size_t b = 0; b * kLooks < l.count; ++b) {
+            const SeenTriangles& seen = seen_[at * kBlocks + b];
+            if (seen.least_m < 0.0) return kUnknown;
+            const double begin = seen.coarse_m(begin_m), way = std::min(begin, seen.coarse_m(end_m));
+            const SeenTriangles::Clearance c =
+                way >= far_m ? SeenTriangles::Clearance{begin, way} : seen.clearance_m(begin_m, end_m);
+            least.begin_m = std::min(least.begin_m, c.begin_m);
+            least.way_m = std::min(least.way_m, c.way_m);
+        }
+        l.used = ++clock_;
+        return least;
+    }
+
 private:
+    static constexpr std::size_t kBlocks = kEach / kLooks;
     struct List {
         std::uint32_t point = 0;
         std::size_t count = 0;
@@ -85,7 +117,7 @@ private:
         double radius_m = -1.0;
         Vec3 place_m = Vec3::Zero();
     };
-    static constexpr double kWider = 3.0, kFills = 0.6 * kEach;
+    static constexpr double kWider = 2.0, kFills = 0.6 * kEach;
 
     // False: too many triangles.
     bool find(const Vec3& place_m, double radius_m, std::size_t& count) noexcept TACT_RT {
@@ -122,7 +154,8 @@ private:
         list_[at] = {point, count, clock_, radius_m, place_m};
         const std::size_t filled = (count + kLooks - 1) / kLooks * kLooks;
         std::copy_n(found_.begin(), filled, triangle_.begin() + static_cast<std::ptrdiff_t>(at * kEach));
-        return {&triangle_[at * kEach], count, radius_m};
+        for (std::size_t b = 0; b < kBlocks; ++b) seen_[at * kBlocks + b].least_m = -1.0;
+        return {&triangle_[at * kEach], count, radius_m, &seen_[at * kBlocks]};
     }
 
     SurfaceMesh mesh_;  // a view
@@ -133,6 +166,7 @@ private:
     std::vector<std::size_t> list_of_;  // index of each point's list; kLists: none
     std::vector<List> list_;
     std::vector<std::uint32_t> triangle_, leaf_, found_;
+    std::vector<SeenTriangles> seen_;
     std::uint64_t clock_ = 0;
     double per_square_ = 1e-300;  // triangles of the last list over the square of its radius
 };

@@ -35,7 +35,8 @@ ToolPoints::ToolPoints(const SurfaceMesh& mesh, const TouchTool& tool, double ba
       cover_m_(tool.cover_m),
       bound_(filled_up(count_), -1.0F),
       room_(filled_up(count_), 0.0F),
-      known_(1.0) {
+      known_(1.0),
+      passed_(count_) {
     for (std::size_t axis = 0; axis < 3; ++axis) {
         for (auto* row : {&local_[axis], &lever_[axis], &asked_[axis]}) row->assign(filled_up(count_), 0.0F);
         for (std::size_t i = 0; i < count_; ++i) local_[axis][i] = tool.point_m[3 * i + axis];
@@ -265,6 +266,7 @@ void ToolPoints::wake(const Pose& pose, std::uint32_t points, std::span<const st
 }
 
 void ToolPoints::begin_move(const Pose& pose) noexcept {
+    ++move_;
     // Single precision does not suffice far from the anchor: move the anchor.
     if ((pose.p_m - anchor_m_).squaredNorm() > 4.0 * reach_m_ * reach_m_) {
         const Eigen::Vector3f by = (pose.p_m - anchor_m_).cast<float>();
@@ -314,8 +316,17 @@ void ToolPoints::visit_beyond(const Vec3& v_m, const Vec3& w_rad, float share, V
             any |= over[k];
         }
         for (std::size_t k = 0; any != 0 && k < n; ++k)
-            if (over[k] != 0 && !visit(static_cast<std::uint32_t>(begin + k))) return;
+            if (over[k] != 0 && !has_passed(begin + k, v, w) && !visit(static_cast<std::uint32_t>(begin + k)))
+                return;
     }
+}
+
+bool ToolPoints::has_passed(std::size_t i, const Eigen::Vector3f& v_m,
+                            const Eigen::Vector3f& w_rad) const noexcept {
+    const Passed& p = passed_[i];
+    if (p.move != move_) return false;
+    const Eigen::Vector3f lever(lever_[0][i], lever_[1][i], lever_[2][i]);
+    return (v_m + w_rad.cross(lever) - p.displacement_m).squaredNorm() <= p.over_m * p.over_m;
 }
 
 std::size_t ToolPoints::beyond(const Vec3& v_m, const Vec3& w_rad,
@@ -362,6 +373,16 @@ void ToolPoints::ask(std::uint32_t i, double wanted_m) noexcept {
     if (distance - ball_m_ <= room_m(i)) return;
     put(i, distance, SurfacePoint::kNone);
     room_[i] = static_cast<float>((distance - ball_m_) * (1.0 - 1e-6));
+}
+
+void ToolPoints::clears(std::uint32_t i, double distance_m) noexcept {
+    if (distance_m - ball_m_ <= room_m(i)) return;
+    put(i, distance_m, SurfacePoint::kNone);
+    room_[i] = static_cast<float>((distance_m - ball_m_) * (1.0 - 1e-6));
+}
+
+void ToolPoints::passes(std::uint32_t i, const Vec3& displacement_m, double over_m) noexcept {
+    passed_[i] = {displacement_m.cast<float>(), static_cast<float>(0.999 * over_m), move_};
 }
 
 void ToolPoints::saw(std::uint32_t i, double distance_m, double guarded_m) noexcept {

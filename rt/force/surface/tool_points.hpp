@@ -78,6 +78,10 @@ public:
     // Sets the result of a triangle query: nothing is nearer than distance_m. Within guarded_m half-spaces keep the ball
     // off the surface, so it may move that far.
     void saw(std::uint32_t i, double distance_m, double guarded_m) noexcept TACT_RT;
+    // Nothing is nearer than distance_m: renews the bound if that is more than is known.
+    void clears(std::uint32_t i, double distance_m) noexcept TACT_RT;
+    // In this move, the point may go along displacement_m, or any other that ends no farther than over_m from its end.
+    void passes(std::uint32_t i, const Vec3& displacement_m, double over_m) noexcept TACT_RT;
     [[nodiscard]] bool is_awake(std::uint32_t i) const noexcept TACT_RT {
         return bound_[i] >= 0.0F && (i != root_ || root_counts_);
     }
@@ -99,6 +103,8 @@ private:
     void turn_levers(const Pose& pose, std::uint32_t points) noexcept TACT_RT;  // of the first points
     template <class Visit>
     void visit_beyond(const Vec3& v_m, const Vec3& w_rad, float share, Visit visit) const noexcept TACT_RT;
+    [[nodiscard]] bool has_passed(std::size_t i, const Eigen::Vector3f& v_m,
+                                  const Eigen::Vector3f& w_rad) const noexcept TACT_RT;
     [[nodiscard]] double bound_now_m(std::uint32_t i) const noexcept TACT_RT;
 
     SurfaceMesh mesh_;  // a view
@@ -114,6 +120,13 @@ private:
     std::vector<float> bound_;  // distance at the last query; below 0: asleep
     std::vector<float> room_;   // displacement of the centre known to be free
     KnownPlaces known_;
+    struct Passed {
+        Eigen::Vector3f displacement_m = Eigen::Vector3f::Zero();
+        float over_m = 0.0F;
+        std::uint64_t move = 0;
+    };
+    std::vector<Passed> passed_;
+    std::uint64_t move_ = 0;
     Vec3 hand_m_ = Vec3::Zero(), anchor_m_ = Vec3::Zero();
     std::uint32_t points_ = 0, awake_ = 0, next_ = 0;
     std::uint32_t root_ = 0;  // the first awake point; in use only if among the first points or kept
