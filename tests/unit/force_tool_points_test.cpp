@@ -1,4 +1,5 @@
 // The points that a move touches, and the share of it that they allow, against all points one by one.
+#include "rt/force/surface/point_rows.hpp"
 #include "rt/force/surface/tool_lists.hpp"
 #include "rt/force/surface/tool_points.hpp"
 
@@ -51,6 +52,70 @@ TEST(ToolPoints, the_points_beyond_their_room_and_the_share_are_those_of_all_poi
         }
         EXPECT_GT(limited, 50) << used;
     }
+}
+
+TEST(PointRows, every_instruction_set_gives_the_same_rooms_and_points_to_the_bit) {
+    constexpr std::size_t kCount = 5 * kPointBlock;
+    std::mt19937 random(5);
+    std::normal_distribution<float> normal;
+    std::vector<float> local[3], asked[3], bound(kCount);
+    for (auto* rows : {local, asked})
+        for (std::size_t axis = 0; axis < 3; ++axis)
+            for (std::size_t i = 0; i < kCount; ++i) rows[axis].push_back(normal(random));
+    for (float& b : bound) b = 2.0F * normal(random) + 2.0F;
+    const Eigen::Matrix3f turn = Eigen::Quaternionf(0.5F, 0.1F, -0.7F, 0.4F).normalized().toRotationMatrix();
+    std::vector<float> room_of[2], lever_of[2][3];
+    std::vector<std::uint64_t> beyond_of[2];
+    std::size_t compared = 0;
+    for (std::size_t k = kPointKernelCount; k-- > 0;) {  // the generic one first
+        const PointKernels& kernels = kPointKernels[k];
+        if (!kernels.runs_here()) continue;
+        const std::size_t at = k + 1 == kPointKernelCount ? 0 : 1;
+        room_of[at].assign(kCount, -5.0F);
+        beyond_of[at].clear();
+        PointRooms rooms{};
+        PointsBeyond beyond{{}, room_of[at].data(), {0.3F, 0.2F, -0.1F}, {0.5F, -0.4F, 0.2F}, 0.9F};
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+            lever_of[at][axis].assign(kCount, -5.0F);
+            rooms.local[axis] = local[axis].data();
+            rooms.asked[axis] = asked[axis].data();
+            rooms.lever[axis] = lever_of[at][axis].data();
+            beyond.lever[axis] = lever_of[at][axis].data();
+            rooms.hand[axis] = 0.1F * static_cast<float>(axis);
+            for (std::size_t column = 0; column < 3; ++column)
+                rooms.turn[axis][column] =
+                    turn(static_cast<Eigen::Index>(axis), static_cast<Eigen::Index>(column));
+        }
+        rooms.bound = bound.data();
+        rooms.room = room_of[at].data();
+        rooms.count = kCount;
+        rooms.taken = 0.01F;
+        kernels.rooms(rooms);
+        for (std::size_t first = 0; first < kCount; first += kPointBlock)
+            beyond_of[at].push_back(kernels.beyond(beyond, first));
+        if (at == 0) {
+            for (std::size_t i = 0; i < kCount; ++i) {
+                const auto row = [i](const std::vector<float>* r) {
+                    return Eigen::Vector3f(r[0][i], r[1][i], r[2][i]);
+                };
+                const Eigen::Vector3f lever = turn * row(local), v(0.3F, 0.2F, -0.1F), w(0.5F, -0.4F, 0.2F);
+                const float gone = (lever + Eigen::Vector3f(0.0F, 0.1F, 0.2F) - row(asked)).norm(),
+                            room = bound[i] < 0.0F ? 1e30F : std::max(bound[i] - gone - 0.01F, 0.0F),
+                            way = (v + w.cross(lever)).norm(), least = std::sqrt(0.9F) * room;
+                EXPECT_NEAR(room_of[0][i], room, 1e-5F * room + 1e-5F) << i;
+                if (std::abs(way - least) < 1e-4F) continue;
+                EXPECT_EQ(beyond_of[0][i / kPointBlock] >> (i % kPointBlock) & 1U, way > least ? 1U : 0U)
+                    << i;
+            }
+            continue;
+        }
+        ++compared;
+        EXPECT_EQ(beyond_of[1], beyond_of[0]) << kernels.name;
+        EXPECT_EQ(room_of[1], room_of[0]) << kernels.name;
+        for (std::size_t axis = 0; axis < 3; ++axis)
+            EXPECT_EQ(lever_of[1][axis], lever_of[0][axis]) << kernels.name;
+    }
+    RecordProperty("compared", static_cast<int>(compared));
 }
 
 // Along a path, with every way by which a bound is renewed: none promises more room than the nearest triangle leaves.

@@ -1,6 +1,7 @@
 #include "rt/force/surface/tool_points.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 
 namespace tact {
@@ -20,7 +21,9 @@ constexpr float kNearlyBeyond = 1.0F - 1e-5F;  // share of the room; covers the 
 constexpr double kKnownCells = 0.12;           // edge of the cells of known places, in reaches of the tool
 constexpr float kRounding = 4e-7F;             // relative rounding of the coordinates
 
-std::size_t filled_up(std::uint32_t count) { return (std::size_t{count} + 3) / 4 * 4; }
+std::size_t filled_up(std::uint32_t count) {
+    return (std::size_t{count} + kPointBlock - 1) / kPointBlock * kPointBlock;
+}
 
 }  // namespace
 
@@ -36,7 +39,8 @@ ToolPoints::ToolPoints(const SurfaceMesh& mesh, const TouchTool& tool, double ba
       bound_(filled_up(count_), -1.0F),
       room_(filled_up(count_), 0.0F),
       known_(1.0),
-      passed_(count_) {
+      passed_(count_),
+      kernels_(&best_point_kernels()) {
     for (std::size_t axis = 0; axis < 3; ++axis) {
         for (auto* row : {&local_[axis], &lever_[axis], &asked_[axis]}) row->assign(filled_up(count_), 0.0F);
         for (std::size_t i = 0; i < count_; ++i) local_[axis][i] = tool.point_m[3 * i + axis];
@@ -274,20 +278,24 @@ void ToolPoints::begin_move(const Pose& pose) noexcept {
             for (float& a : asked_[axis]) a -= by[static_cast<Eigen::Index>(axis)];
         anchor_m_ = pose.p_m;
     }
-    const std::uint32_t used = std::max(points_, root_ + 1);
-    turn_levers(pose, used);
+    hand_m_ = pose.p_m;
+    const Eigen::Matrix3f turn = pose.q.toRotationMatrix().cast<float>();
     const Eigen::Vector3f from_anchor = (hand_m_ - anchor_m_).cast<float>();
-    const float x = from_anchor.x(), y = from_anchor.y(), z = from_anchor.z();
-    const float taken =
-        static_cast<float>(ball_m_ + 2e-7 * reach_m_) + kRounding * (static_cast<float>(3.0 * reach_m_));
-    const std::size_t n = filled_up(used);
-    for (std::size_t i = 0; i < n; ++i) {
-        const float dx = lever_[0][i] + x - asked_[0][i], dy = lever_[1][i] + y - asked_[1][i],
-                    dz = lever_[2][i] + z - asked_[2][i];
-        room_[i] = dx * dx + dy * dy + dz * dz;
+    PointRooms job{};
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        const auto a = static_cast<Eigen::Index>(axis);
+        job.local[axis] = local_[axis].data();
+        job.asked[axis] = asked_[axis].data();
+        job.lever[axis] = lever_[axis].data();
+        job.hand[axis] = from_anchor[a];
+        for (int column = 0; column < 3; ++column) job.turn[axis][column] = turn(a, column);
     }
-    for (std::size_t i = 0; i < n; ++i)
-        room_[i] = bound_[i] < 0.0F ? 1e30F : std::max(bound_[i] - std::sqrt(room_[i]) - taken, 0.0F);
+    job.bound = bound_.data();
+    job.room = room_.data();
+    job.count = filled_up(std::max(points_, root_ + 1));
+    job.taken =
+        static_cast<float>(ball_m_ + 2e-7 * reach_m_) + kRounding * (static_cast<float>(3.0 * reach_m_));
+    kernels_->rooms(job);
     if (!root_counts_) room_[root_] = 1e30F;
 }
 
@@ -296,28 +304,22 @@ double ToolPoints::way_m(std::uint32_t i, const Vec3& v_m, const Vec3& w_rad) co
 }
 
 // Calls visit(i) for each point whose displacement v + w x lever may exceed `share` of its room, until it returns false.
-// Almost always there is none: whole blocks are passed over without a branch per point.
+// Almost always there is none in a block.
 template <class Visit>
 void ToolPoints::visit_beyond(const Vec3& v_m, const Vec3& w_rad, float share, Visit visit) const noexcept {
     const Eigen::Vector3f v = v_m.cast<float>(), w = w_rad.cast<float>();
-    constexpr std::size_t kBlock = 64;
-    std::array<std::int32_t, kBlock> over;
-    const float *const lx = lever_[0].data(), *const ly = lever_[1].data(), *const lz = lever_[2].data(),
-                       *const room = room_.data();
-    const float vx = v.x(), vy = v.y(), vz = v.z(), wx = w.x(), wy = w.y(), wz = w.z(), part = share * share;
-    for (std::size_t begin = 0; begin < points_; begin += kBlock) {
-        const std::size_t n = std::min(kBlock, points_ - begin);
-        std::int32_t any = 0;
-        for (std::size_t k = 0; k < n; ++k) {
-            const std::size_t i = begin + k;
-            const float dx = vx + wy * lz[i] - wz * ly[i], dy = vy + wz * lx[i] - wx * lz[i],
-                        dz = vz + wx * ly[i] - wy * lx[i];
-            over[k] = dx * dx + dy * dy + dz * dz > part * (room[i] * room[i]) ? 1 : 0;
-            any |= over[k];
+    const PointsBeyond job{{lever_[0].data(), lever_[1].data(), lever_[2].data()},
+                           room_.data(),
+                           {v.x(), v.y(), v.z()},
+                           {w.x(), w.y(), w.z()},
+                           share * share};
+    for (std::size_t begin = 0; begin < points_; begin += kPointBlock) {
+        std::uint64_t over = kernels_->beyond(job, begin);
+        if (points_ - begin < kPointBlock) over &= (std::uint64_t{1} << (points_ - begin)) - 1;
+        for (; over != 0; over &= over - 1) {
+            const std::size_t i = begin + static_cast<std::size_t>(std::countr_zero(over));
+            if (!has_passed(i, v, w) && !visit(static_cast<std::uint32_t>(i))) return;
         }
-        for (std::size_t k = 0; any != 0 && k < n; ++k)
-            if (over[k] != 0 && !has_passed(begin + k, v, w) && !visit(static_cast<std::uint32_t>(begin + k)))
-                return;
     }
 }
 

@@ -23,6 +23,7 @@
 #include "ipc/scene/mesh/touch_tool.hpp"
 #include "rt/force/surface/all_triangles.hpp"
 #include "rt/force/surface/known_places.hpp"
+#include "rt/force/surface/point_rows.hpp"
 
 namespace tact {
 
@@ -114,7 +115,7 @@ private:
     std::uint32_t count_;
     std::vector<std::uint32_t> parent_, hint_;
     std::vector<float> cover_m_;
-    // Rows, padded to a multiple of four: points in the tool frame; levers of the pose; positions at the last query,
+    // Rows, padded to a multiple of kPointBlock: points in the tool frame; levers of the pose; positions at the last query,
     // relative to the anchor.
     std::vector<float> local_[3], lever_[3], asked_[3];
     std::vector<float> bound_;  // distance at the last query; below 0: asleep
@@ -127,6 +128,7 @@ private:
     };
     std::vector<Passed> passed_;
     std::uint64_t move_ = 0;
+    const PointKernels* kernels_;
     Vec3 hand_m_ = Vec3::Zero(), anchor_m_ = Vec3::Zero();
     std::uint32_t points_ = 0, awake_ = 0, next_ = 0;
     std::uint32_t root_ = 0;  // the first awake point; in use only if among the first points or kept
