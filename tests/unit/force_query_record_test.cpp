@@ -15,6 +15,8 @@ namespace {
 
 using namespace tool_test;
 
+constexpr std::uint32_t kMost = ToolContact::kQueriesMost;
+
 ToolTouch step_of(std::uint32_t looked, std::uint32_t asked, ContactState state = ContactState::settled) {
     ToolTouch touch;
     touch.looked = looked;
@@ -25,7 +27,7 @@ ToolTouch step_of(std::uint32_t looked, std::uint32_t asked, ContactState state 
 
 // Adds as many equal steps as make the prior fade to nothing.
 void fade_prior(QueryRecord& record) {
-    for (int i = 0; i < 200000; ++i) record.add(step_of(1, 0), 320, 1.0);
+    for (int i = 0; i < 200000; ++i) record.add(step_of(1, 0), kMost, 1.0);
 }
 
 TEST(QueryRecord, the_share_of_steps_beyond_each_limit_is_counted) {
@@ -36,8 +38,8 @@ TEST(QueryRecord, the_share_of_steps_beyond_each_limit_is_counted) {
     std::exponential_distribution<double> many(1.0 / 90.0);
     std::vector<std::uint32_t> needed;
     for (int i = 0; i < 400000; ++i) {
-        const auto n = std::min(static_cast<std::uint32_t>(many(random)), 320U), other = n / 2;
-        record.add(i % 2 == 0 ? step_of(n, other) : step_of(other, n), 320, 1.0);
+        const auto n = std::min(static_cast<std::uint32_t>(many(random)), kMost), other = n / 2;
+        record.add(i % 2 == 0 ? step_of(n, other) : step_of(other, n), kMost, 1.0);
         needed.push_back(n);
     }
     for (const std::uint32_t limit : {32U, 64U, 128U, 256U}) {
@@ -52,16 +54,16 @@ TEST(QueryRecord, a_step_that_ran_out_would_have_needed_the_most_and_one_at_the_
     fade_prior(record);
     for (int i = 0; i < 200000; ++i) record.add(step_of(32, 10, ContactState::lagging), 32, 1.0);
     EXPECT_NEAR(record.lagged(32), 1.0, 1e-3);
-    EXPECT_NEAR(record.lagged(312), 1.0, 1e-3);
-    EXPECT_NEAR(record.lagged(320), 0.0, 1e-3);
-    for (int i = 0; i < 200000; ++i) record.add(step_of(10, 321, ContactState::lagging), 320, 1.0);
-    EXPECT_NEAR(record.lagged(320), 1.0, 1e-3);
+    EXPECT_NEAR(record.lagged(kMost - 8), 1.0, 1e-3);
+    EXPECT_NEAR(record.lagged(kMost), 0.0, 1e-3);
+    for (int i = 0; i < 200000; ++i) record.add(step_of(10, kMost + 1, ContactState::lagging), kMost, 1.0);
+    EXPECT_NEAR(record.lagged(kMost), 1.0, 1e-3);
 }
 
 TEST(QueryRecord, before_the_first_contact_fewer_queries_lag_more_often) {
     const QueryRecord record;
     double before = 1.0;
-    for (std::uint32_t limit = 32; limit <= 320; limit += 32) {
+    for (std::uint32_t limit = 32; limit <= kMost; limit += 32) {
         const double share = record.lagged(limit);
         EXPECT_NEAR(share, 0.07 * std::exp(-static_cast<double>(limit) / 75.0), 2e-3) << limit;
         EXPECT_LT(share, before);

@@ -58,7 +58,7 @@ struct ToolTouch {
 class ToolContact {
 public:
     // Limits per step.
-    static constexpr std::uint32_t kQueriesMost = 320;  // of triangles, and of distances apart from waking
+    static constexpr std::uint32_t kQueriesMost = 448;  // of triangles, and of distances apart from waking
     static constexpr std::uint32_t kWakeQueries = 24;   // queries that wake points
     static constexpr std::uint32_t kSeatQueries = 96;   // the same, until every point was tried once
 

@@ -37,7 +37,7 @@ class ToolModel final : public ForceModel {
 public:
     static constexpr double kDampedDepthM = SurfaceModel::kDampedDepthM;
     static constexpr double kLostLimits = SurfaceModel::kLostLimits;
-    static constexpr std::uint32_t kPointsLeast = 32, kMovesMost = 32, kQueriesLeast = 32;
+    static constexpr std::uint32_t kPointsLeast = 32, kMovesMost = 64, kQueriesLeast = 32;
     static constexpr float kAllPointsAt = 0.5F;
 
     // settings.radius_m: radius of the points' balls in world metres; 0: the tool's. The memory behind mesh and forest
