@@ -147,6 +147,37 @@ TEST(ToolPoints, what_is_remembered_of_other_places_never_promises_more_than_is_
     EXPECT_GT(recalled, asked);  // or they need not be remembered
 }
 
+// A point that was found to be free on its way is left out of this move's list as long as it ends near the end of that way.
+TEST(ToolPoints, a_point_that_passed_is_listed_again_elsewhere_and_in_the_next_move) {
+    const World& w = box_on_rough();
+    ToolPoints points(w.mesh, w.tool, w.tool.ball_m);
+    Pose at{Vec3(0.0, 0.054 / kWorldPerModel, 0.0), Quat::Identity()};
+    at.p_m = points.seat(at);
+    for (int i = 0; i < 1000 && !points.tried_all(); ++i) points.wake(at, 1000, {}, 500);
+    points.begin_move(at);
+    const Vec3 v_m = 3.0 * points.reach_m() * Vec3(0.6, 0.0, 0.8), w_rad(0.2, -0.1, 0.3);
+    const double over_m = 0.05 * points.reach_m();
+    std::vector<std::uint32_t> listed(1000);
+    const auto is_listed = [&](std::uint32_t p, const Vec3& more_m) {
+        const auto end =
+            listed.begin() + static_cast<std::ptrdiff_t>(points.beyond(v_m + more_m, w_rad, listed));
+        return std::find(listed.begin(), end, p) != end;
+    };
+    int tried = 0;
+    for (std::uint32_t p = 0; p < 1000; p += 37) {
+        if (!is_listed(p, Vec3::Zero())) continue;
+        ++tried;
+        points.passes(p, v_m + w_rad.cross(points.lever_m(p).cast<double>()), over_m);
+        EXPECT_FALSE(is_listed(p, Vec3::Zero())) << p;
+        EXPECT_FALSE(is_listed(p, Vec3(0.0, 0.98 * over_m, 0.0))) << p;
+        EXPECT_TRUE(is_listed(p, Vec3(0.0, 1.02 * over_m, 0.0))) << p;
+    }
+    EXPECT_GT(tried, 10);
+    const std::size_t now = points.beyond(v_m, w_rad, listed);
+    points.begin_move(at);
+    EXPECT_EQ(points.beyond(v_m, w_rad, listed), now + static_cast<std::size_t>(tried));
+}
+
 // From a place where a list of triangles was queried, to two others: neither at the first nor along the way between them is any
 // triangle nearer than the bounds say.
 TEST(ToolLists, what_was_seen_of_triangles_never_promises_more_than_is_free) {

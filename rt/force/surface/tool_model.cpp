@@ -10,7 +10,7 @@ namespace {
 
 constexpr double kFarHandM = 1e3;
 constexpr double kBallMargin = 0.05;  // fraction of the ball's radius
-// Times of a step, of a move, of a point in a move and of queries: those measured at 2.4 GHz (TOOLS.md) times 1.25.
+// Times of a step, of a move, of a point in a move and of queries: those measured at 2.6 GHz (TOOLS.md) times 1.25.
 constexpr double kStepUs = 5.0, kMoveUs = 2.0, kMovePointUs = 0.0022, kQueryUs = 1.6;
 // Moves of a step that uses up its queries.
 constexpr double kMovesUsual = 4.0, kQueriesPerMove = 25.0;
