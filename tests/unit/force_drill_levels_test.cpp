@@ -159,9 +159,9 @@ TEST(DrillLevels, predicted_work_is_that_of_the_step) {
     }
 }
 
-// The stiffness is measured in one direction a step, and a ball pressed deeper meets more bone: a step that was predicted to cost
-// what the one before did would look like an interrupted one.
-TEST(DrillLevels, a_step_is_predicted_with_the_direction_of_its_stiffness) {
+// The stiffness is measured in one direction a step, a ball pressed deeper meets more bone, and blocks halve: a step that is compared
+// with the one before would look like an interrupted one.
+TEST(DrillLevels, a_whole_step_is_compared_with_the_work_that_it_did) {
     constexpr double kRadiusM = 20e-3;
     Drilled d(kRadiusM, 160);
     const Vec3 pressed_m = stroke_m(kRadiusM, 0.3);

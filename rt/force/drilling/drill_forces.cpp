@@ -114,11 +114,9 @@ Wrench DrillModel::still_wrench(const Pose& T_world_tool, const BlockDetail& det
 void DrillModel::measure_stiffness(const Pose& T_world_tool, const BlockDetail& detail) noexcept {
     const double h_m = std::max(kStiffnessReach * head_radius_m_, kStiffnessReachVoxels * per_voxel_m_);
     const BallLook& look = last_.look;
-    StillWork& direction = still_of_[measured_.direction()];
+    last_.still_look = {look.radius, look.depth, detail.asked(look.depth) * look.radius};
     const Pose at = measured_.next(T_world_tool, h_m, lever_m_);
     measured_.note(still_wrench(at, detail, last_.still), h_m, lever_m_);
-    direction =
-        still_ = {last_.still, {look.radius, look.depth, detail.asked(look.depth) * look.radius}, level_};
 }
 
 // Across the shaft, turning with the burr; never faster than a tenth of the servo's rate, which a hand still feels as

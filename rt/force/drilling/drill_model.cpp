@@ -136,19 +136,12 @@ double DrillModel::rate_per_s() const noexcept {
                  : 0.0;
 }
 
-const DrillModel::StillWork& DrillModel::next_still(float fidelity) const noexcept {
-    const StillWork& next = still_of_[measured_.direction()];
-    return still_.look.block > 0.0 && next.look.block > 0.0 && std::abs(next.level - fidelity) < kLevelJump
-               ? next
-               : still_;
-}
-
-DrillWork DrillModel::expected(float fidelity, double step_s, const StillWork& still) const noexcept {
+DrillWork DrillModel::expected(float fidelity, double step_s) const noexcept {
     const BlockDetail detail = detail_of(fidelity);
     const auto asked = [&](const BlockDetail& d) { return d.asked(last_.look.depth) * last_.look.radius; };
     DrillWork work = expected_work(last_.work, last_.look, asked(detail));
-    if (still.look.block > 0.0)
-        work.add(expected_work(still.work, still.look, asked(stiffness_detail(detail))));
+    if (last_.still_look.block > 0.0)
+        work.add(expected_work(last_.still, last_.still_look, asked(stiffness_detail(detail))));
     if (led_) {
         const std::uint32_t groups = turns_.groups_at(fidelity, step_s);
         const double share = static_cast<double>(groups) / turns_.groups();
@@ -179,7 +172,7 @@ DrillWork DrillModel::typical_work(float fidelity) const noexcept {
 
 PathLoad DrillModel::predict(float fidelity) const noexcept {
     PathLoad load;
-    const DrillWork work = expected(fidelity, usual_step_s_, still_);
+    const DrillWork work = expected(fidelity, usual_step_s_);
     load.items = work.items();
     load.cost_predicted = drill_cost(work);
     // The pocket that the burr will cut. A contact then shows what it costs in truth.
@@ -245,10 +238,9 @@ void DrillModel::publish(const ModelCycle& cycle) noexcept {
 StepResult DrillModel::step(const ToolState& tool, const Budget& budget) noexcept {
     const Instant begin = Monotonic::now();
     StepResult result;
-    const DrillWork planned = expected(budget.fidelity, drive_.step_s, next_still(budget.fidelity));
+    const DrillWork planned = expected(budget.fidelity, drive_.step_s);
     result.load.cost_predicted = drill_cost(planned);
     last_ = {};
-    still_ = {};
     fade_.begin_step(drive_.step_s);
     if (asked_) erosion_.begin();
     if (!hand_is_there(tool.T_world_tool)) {
@@ -342,6 +334,8 @@ StepResult DrillModel::step(const ToolState& tool, const Budget& budget) noexcep
         DrillWork all = last_.work;
         all.add(last_.still);
         result.load.items = all.items();
+        // A whole step is compared with the work that it did: what was not foreseen of it is no interrupt.
+        if (!late) result.load.cost_predicted = drill_cost(all);
         if (late) {
             DrillWork left;
             left.changed = std::max(turns_.bricks().changed / turns_.groups(), 1.0) * groups_left;

@@ -176,6 +176,7 @@ private:
         double pending_n = 0.0;  // error per exposure that waits
         bool held_in = false;    // one of them
         DrillWork still;         // of the stiffness
+        BallLook still_look;     // at that ball; block 0: not measured
     };
     [[nodiscard]] BallForces ball_forces(const ToolState& tool, const BlockDetail& detail, bool hurried,
                                          const Deadline& deadline) noexcept TACT_RT;
@@ -186,16 +187,7 @@ private:
     [[nodiscard]] double rate_per_s() const noexcept TACT_RT;
     [[nodiscard]] double error_n(const BallForces& sum, const BlockDetail& detail,
                                  double pending) const noexcept TACT_RT;
-    // Of measuring the stiffness.
-    struct StillWork {
-        DrillWork work;
-        BallLook look;       // at the ball with most work; block 0: not measured
-        float level = 0.0F;  // of that step
-    };
-    // Of the last step; of the direction that comes next, if its last step had this level.
-    [[nodiscard]] const StillWork& next_still(float fidelity) const noexcept TACT_RT;
-    [[nodiscard]] DrillWork expected(float fidelity, double step_s,
-                                     const StillWork& still) const noexcept TACT_RT;
+    [[nodiscard]] DrillWork expected(float fidelity, double step_s) const noexcept TACT_RT;
     [[nodiscard]] DrillWork typical_work(float fidelity) const noexcept TACT_RT;
     void follow_contact(bool touches) noexcept TACT_RT;
     void forget_depths() noexcept TACT_RT;
@@ -229,8 +221,6 @@ private:
     ErosionTurns turns_{1.0};
     BallForces last_;  // of the last step
     DrillStiffness measured_;
-    StillWork still_;  // of the last step
-    std::array<StillWork, DrillStiffness::kDirections> still_of_{};
     double lever_m_ = 0.0;                   // farthest part of the tool from its origin
     BallLook typical_;                       // of the head in flat bone
     double contact_s_ = 0.0, free_s_ = 0.0;  // of all contacts, since the last one

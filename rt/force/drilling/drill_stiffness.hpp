@@ -27,11 +27,6 @@ public:
         largest_ = {};
         back_ = false;
     }
-    // Directions differ in the work that an evaluation takes: a ball pressed deeper meets more bone. Of the next one.
-    static constexpr std::size_t kDirections = 8;
-    [[nodiscard]] std::size_t direction() const noexcept TACT_RT {
-        return 2 * static_cast<std::size_t>(turn_ % 4) + (back_ ? 1 : 0);
-    }
     // The pose at which the wrench is needed now, for a tool at `pose`: moved by h along the axis or, for an axis of
     // rotation, turned by h / lever about it; in every second call back by as much from the pose of the call before.
     [[nodiscard]] Pose next(const Pose& pose, double h_m, double lever_m) noexcept TACT_RT {
