@@ -152,15 +152,28 @@ MeshBench bench_mesh() {
         15, 1.0, [&] { prepare(all); }, [&] { prepare(few); });
     bench.jump_back_ms = times(
         15, 1.0, [&] { prepare(few); }, [&] { prepare(all); });
-    prepare(few);
-    std::vector<std::byte> copy(sizeof(PackedVertex) * few + std::size_t{12} * cut.triangles());
-    bench.copy_ms = times(
-        15, 1.0, [] {},
+    bench.jump_back_walked_ms = times(
+        5, 1.0,
         [&] {
-            std::memcpy(copy.data(), cut.vertex().data(), sizeof(PackedVertex) * few);
-            std::memcpy(copy.data() + sizeof(PackedVertex) * few, cut.index().data(),
-                        std::size_t{12} * cut.triangles());
-        });
+            prepare(all);
+            while (cut.vertices() != few) cut.approach(few, 0.0);
+            (void)cut.changes();
+        },
+        [&] { prepare(all); });
+    const auto copy_ms = [&](std::uint32_t vertices) {
+        prepare(vertices);
+        const std::size_t vertex_bytes = sizeof(PackedVertex) * vertices,
+                          index_bytes = std::size_t{12} * cut.triangles();
+        std::vector<std::byte> copy(vertex_bytes + index_bytes);
+        return times(
+            15, 1.0, [] {},
+            [&] {
+                std::memcpy(copy.data(), cut.vertex().data(), vertex_bytes);
+                std::memcpy(copy.data() + vertex_bytes, cut.index().data(), index_bytes);
+            });
+    };
+    bench.copy_ms = copy_ms(few);
+    bench.copy_back_ms = copy_ms(all);
     // A walk of 1000 steps that takes t ms takes 1000 t ns per step.
     bench.ns_per_contraction = times(
         101, 1e3, [&] { prepare(half); }, [&] { cut.set_vertices(half - 1000); });

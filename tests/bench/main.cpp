@@ -76,7 +76,9 @@ json docking() {
     put_percentiles(all, "force_us_atoms100k", b.force_us_atoms100k);
     put_percentiles(all, "jump_1m_ms", m.jump_ms);
     put_percentiles(all, "jump_1m_back_ms", m.jump_back_ms);
+    put_percentiles(all, "jump_1m_back_walked_ms", m.jump_back_walked_ms);
     put_percentiles(all, "jump_1m_copy_ms", m.copy_ms);
+    put_percentiles(all, "jump_1m_back_copy_ms", m.copy_back_ms);
     put_percentiles(all, "ns_per_vertex_contraction", m.ns_per_contraction);
     put_percentiles(all, "ns_per_vertex_split", m.ns_per_vertex_split);
     put_percentiles(all, "changes_1000_steps_ms", m.changes_ms);

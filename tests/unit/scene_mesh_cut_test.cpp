@@ -7,6 +7,7 @@
 #include <cstring>
 #include <deque>
 #include <new>
+#include <utility>
 
 #include "ipc/base/random.hpp"
 #include "ipc/scene/density/isosurface.hpp"
@@ -59,6 +60,50 @@ Reference reference(const ProgressiveMeshData& data, std::uint32_t level) {
     return r;
 }
 
+// Walks one contraction or split at a time, from a list of the corners at each vertex and a record of what each
+// contraction replaced.
+class Walker {
+public:
+    explicit Walker(const ProgressiveMeshData& data)
+        : data_(&data),
+          level_(static_cast<std::uint32_t>(data.vertex.size())),
+          corners_(data.vertex.size()),
+          replaced_(data.parent.size()),
+          now_{{}, data.triangle} {
+        for (const MeshVertex& v : data.vertex) now_.vertex.push_back(pack(v));
+        for (std::size_t c = 0; c < data.triangle.size(); ++c) corners_[data.triangle[c]].push_back(c);
+    }
+    const Reference& walk_to(std::uint32_t level) {
+        while (level_ > level) contract();
+        while (level_ < level) split();
+        shown_.vertex.assign(now_.vertex.begin(), now_.vertex.begin() + level);
+        shown_.index.assign(now_.index.begin(),
+                            now_.index.begin() + 3 * data_->triangle_count[level - data_->base_vertices]);
+        return shown_;
+    }
+
+private:
+    void contract() {
+        const std::uint32_t v = --level_, k = v - data_->base_vertices, parent = data_->parent[k];
+        replaced_[k] = {now_.vertex[parent], corners_[parent].size()};
+        now_.vertex[parent] = pack(data_->merged[k]);
+        for (const std::size_t c : corners_[v]) now_.index[c] = parent;
+        corners_[parent].insert(corners_[parent].end(), corners_[v].begin(), corners_[v].end());
+    }
+    void split() {
+        const std::uint32_t v = level_++, k = v - data_->base_vertices, parent = data_->parent[k];
+        now_.vertex[parent] = replaced_[k].first;
+        corners_[parent].resize(replaced_[k].second);
+        for (const std::size_t c : corners_[v]) now_.index[c] = v;
+    }
+
+    const ProgressiveMeshData* data_;
+    std::uint32_t level_;
+    std::vector<std::vector<std::size_t>> corners_;
+    std::vector<std::pair<PackedVertex, std::size_t>> replaced_;  // vertex and corners of the parent
+    Reference now_, shown_;
+};
+
 using Triangle = std::array<std::uint32_t, 3>;
 std::vector<Triangle> triangles(std::span<const std::uint32_t> index) {
     std::vector<Triangle> all;
@@ -95,12 +140,19 @@ bool same(const MeshCut& a, const MeshCut& b) {
 struct Mirror {
     explicit Mirror(const MeshCut& cut)
         : vertex(cut.vertex().size()), index(cut.index().size(), UINT32_MAX) {}
-    void upload(MeshCut& cut) {
+    // Returns the bytes sent.
+    std::size_t upload(MeshCut& cut) {
         const MeshChanges changes = cut.changes();
-        for (const MeshRange r : changes.vertex)
+        std::size_t sent = 0;
+        for (const MeshRange r : changes.vertex) {
             std::copy_n(cut.vertex().begin() + r.first, r.count, vertex.begin() + r.first);
-        for (const MeshRange r : changes.index)
+            sent += sizeof(PackedVertex) * r.count;
+        }
+        for (const MeshRange r : changes.index) {
             std::copy_n(cut.index().begin() + r.first, r.count, index.begin() + r.first);
+            sent += sizeof(std::uint32_t) * r.count;
+        }
+        return sent;
     }
     [[nodiscard]] bool shows(const MeshCut& cut) const {
         for (const MeshRange r : cut.draws()) {
@@ -195,6 +247,53 @@ TEST(MeshCut, single_steps_and_rebuilds_agree_exactly) {
                 ASSERT_TRUE(same(down, jumps)) << level;
             }
         }
+    }
+}
+
+// Random sequences of levels, of which many are the original or near it: the cut returns there by what it has written
+// since, from any mixture of steps and rebuilds, with or without uploads in between.
+TEST(MeshCut, random_jumps_and_returns_to_the_original_agree_with_a_slow_walk) {
+    for (const ProgressiveMeshData& data : {torus_data(), soup(2500, 3, 10000, 2)}) {
+        const ProgressiveMesh mesh(data);
+        Walker walker(data);
+        for (std::uint64_t seed = 1; seed <= 12; ++seed) {
+            SeededRandom random(seed);
+            MeshCut cut(mesh);
+            Mirror mirror(cut);
+            for (int move = 0; move < 30; ++move) {
+                const std::uint64_t kind = random.below(6), range = mesh.vertices() - mesh.vertices_min();
+                const auto away = static_cast<std::uint32_t>(random.below(kind < 2    ? 1
+                                                                          : kind == 2 ? 40
+                                                                          : kind == 3 ? range / 8
+                                                                                      : range + 1));
+                if (random.below(4) == 0)
+                    cut.approach(mesh.vertices() - away, 0.0);  // a few hundred steps
+                else
+                    cut.set_vertices(mesh.vertices() - away);
+                if (random.below(3) == 0) continue;
+                ASSERT_TRUE(same(cut, walker.walk_to(cut.vertices()))) << seed << ", move " << move;
+                mirror.upload(cut);
+                ASSERT_TRUE(mirror.shows(cut)) << seed << ", move " << move;
+            }
+        }
+    }
+}
+
+TEST(MeshCut, a_return_to_the_original_sends_only_what_the_coarse_level_replaced) {
+    const ProgressiveMesh& mesh = torus_mesh();
+    MeshCut cut(mesh);
+    Mirror mirror(cut);
+    const std::size_t all = cut.vertex().size_bytes() + cut.index().size_bytes();
+    EXPECT_EQ(mirror.upload(cut), all);
+    for (int round = 0; round < 3; ++round) {
+        cut.set_vertices(mesh.vertices());
+        mirror.upload(cut);
+        EXPECT_TRUE(mirror.shows(cut));
+        cut.set_vertices(mesh.vertices() / 4);
+        mirror.upload(cut);
+        cut.set_vertices(mesh.vertices());
+        EXPECT_LT(mirror.upload(cut), all / 2) << round;
+        EXPECT_TRUE(mirror.shows(cut));
     }
 }
 

@@ -96,6 +96,28 @@ TEST(ChangedBlocks, report_marked_blocks_and_join_small_gaps) {
     });
 }
 
+TEST(ChangedBlocks, are_unsettled_from_their_mark_until_they_are_settled_without_one) {
+    ChangedBlocks changed(1000, 2, 3);  // 250 blocks
+    EXPECT_EQ(changed.unsettled_blocks(), 0U);
+    changed.mark(8);
+    changed.mark(4 * 70, 4 * 72);
+    EXPECT_EQ(changed.unsettled(0), std::uint64_t{1} << 2);
+    EXPECT_EQ(changed.unsettled(1), std::uint64_t{3} << 6);
+    changed.settle();  // these marks still have to be sent, so they stay
+    EXPECT_EQ(changed.unsettled_blocks(), 3U);
+    EXPECT_EQ(changed.take().size(), 2U);
+    EXPECT_EQ(changed.unsettled_blocks(), 3U);
+    changed.settle();
+    EXPECT_EQ(changed.unsettled_blocks(), 0U);
+    EXPECT_TRUE(changed.take().empty());
+    changed.send_all();
+    const auto all = changed.take();
+    ASSERT_EQ(all.size(), 1U);
+    EXPECT_EQ(all[0], (MeshRange{0, 1000}));
+    EXPECT_EQ(changed.unsettled_blocks(), 0U);
+    EXPECT_EQ(changed.unsettled(1000), 0U);  // past the end
+}
+
 TEST(CacheOrder, holds_every_triangle_once) {
     CacheOrder order;
     rc::check([&] {

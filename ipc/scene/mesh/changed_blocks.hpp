@@ -4,7 +4,10 @@
 // these costs less than another call. Marks are bits, so that the marks of a large mesh stay in the L1
 // cache.
 //
-// Memory   one bit per block, and the runs of the worst case; no allocation after construction
+// Settled  the content that the owner can restore; unsettled() tells which blocks may differ from it: those
+//          marked since. A mark also counts until it is taken, so a block is rather listed once too often.
+//
+// Memory   two bits per block, and the runs of the worst case; no allocation after construction
 // Thread   belongs to one
 #pragma once
 
@@ -23,11 +26,12 @@ struct MeshRange {
 
 class ChangedBlocks {
 public:
-    // Blocks of 2^shift elements; up to `join` untouched blocks are sent too. Starts without marks.
+    // Blocks of 2^shift elements; up to `join` untouched blocks are sent too. Starts settled, without marks.
     ChangedBlocks(std::size_t elements, std::uint32_t shift, std::uint32_t join)
         : elements_(elements), shift_(shift), join_(join) {
         const std::size_t blocks = (elements >> shift) + 1;
         mark_.assign(blocks / 64 + 2, 0);  // the last word stays empty, so that every run ends
+        unsettled_.assign(mark_.size(), 0);
         const std::size_t runs = blocks / 2 + 1;
         start_.resize(runs + kSlack);
         end_.resize(runs + kSlack);
@@ -56,9 +60,33 @@ public:
         mark_[b / 64] |= to;
     }
 
+    // Marks bit b of `bits`: block 64 word + b.
+    void mark_word(std::size_t word, std::uint64_t bits) noexcept { mark_[word] |= bits; }
+
+    // The next take() returns all elements. They stay settled.
+    void send_all() noexcept { all_ = true; }
+
+    // The current content is the settled one. Marks that are still to be taken stay unsettled.
+    void settle() noexcept { std::fill(unsettled_.begin(), unsettled_.end(), 0); }
+    // Bit b: block 64 word + b may differ from the settled content. 0 past the last word.
+    [[nodiscard]] std::uint64_t unsettled(std::size_t word) const noexcept {
+        return word < mark_.size() ? mark_[word] | unsettled_[word] : 0;
+    }
+    [[nodiscard]] std::size_t unsettled_blocks() const noexcept {
+        std::size_t count = 0;
+        for (std::size_t i = 0; i < mark_.size(); ++i)
+            count += static_cast<std::size_t>(std::popcount(mark_[i] | unsettled_[i]));
+        return count;
+    }
+
     // Increasing and disjoint. Valid until the next call; clears the marks.
     std::span<const MeshRange> take() noexcept {
         const std::size_t runs = take_runs();
+        if (all_) {
+            all_ = false;
+            range_[0] = {0, static_cast<std::uint32_t>(elements_)};
+            return {range_.data(), elements_ != 0 ? 1U : 0U};
+        }
         if (runs == 0) return {};
         const auto range = [&](std::uint32_t first, std::uint32_t end) {
             const std::size_t a = std::size_t{first} << shift_,
@@ -103,6 +131,7 @@ private:
             list(now & ~shifted, at, start_.data(), starts);
             list(~now & shifted, at, end_.data(), ends);
             before = now >> 63;
+            unsettled_[i] |= now;
             mark_[i] = 0;
         }
         return starts;
@@ -110,7 +139,8 @@ private:
 
     std::size_t elements_;
     std::uint32_t shift_, join_;
-    std::vector<std::uint64_t> mark_;
+    bool all_ = false;
+    std::vector<std::uint64_t> mark_, unsettled_;
     std::vector<std::uint32_t> start_, end_;  // of runs, in blocks
     std::vector<MeshRange> range_;
 };

@@ -4,8 +4,10 @@
 //           then upload the changes and draw the ranges of draws(). Some of the triangles in these are
 //           degenerate (0, 0, 0). Vertices from vertices() on are not used
 // Repeats   the drawn mesh depends on the vertex count alone, bit for bit, independently of the path to it
-// Time      single steps, or a rebuild by the collapse map, whichever is cheaper in its cost model: 20 to
-//           60 ns per step, at most about 10 ns per vertex of the mesh. Never allocates
+// Time      whichever is cheapest in its cost model: single steps of 20 to 60 ns; a rebuild by the collapse map,
+//           at most about 10 ns per vertex of the mesh; or a return to the original, which rewrites only what
+//           changed since it was there, and steps from it. Never allocates
+// Memory    20 bytes per vertex and 12 per triangle of the original: the buffers and a map
 // Thread    a MeshCut belongs to one thread; the mesh may be shared and must outlive it
 #pragma once
 
@@ -26,7 +28,10 @@ struct MeshChanges {
 
 class MeshCut {
 public:
-    explicit MeshCut(const ProgressiveMesh& mesh);  // starts at the base, everything changed
+    static constexpr std::uint32_t kVertexShift = 4, kIndexShift = 6;  // blocks of 16 vertices, 64 indices
+
+    // Starts at the base. The first changes() are the whole buffers, which also hold the rest of the original.
+    explicit MeshCut(const ProgressiveMesh& mesh);
 
     // Changes to `wanted` vertices, clamped to [vertices_min, vertices] of the mesh. Returns the new count.
     std::uint32_t set_vertices(std::uint32_t wanted) noexcept;
@@ -54,10 +59,21 @@ public:
 private:
     [[nodiscard]] std::uint32_t distance(std::uint32_t wanted) const noexcept;
     [[nodiscard]] double rebuild_ns(std::uint32_t wanted) const noexcept;
-    [[nodiscard]] double send_ns(std::uint32_t wanted) const noexcept;
+    [[nodiscard]] double all_bytes(std::uint32_t wanted) const noexcept;
     void walk(std::uint32_t wanted) noexcept;
     void step_down() noexcept;
     void step_up() noexcept;
+    // The cheapest way to a level, in the cost model without the upload.
+    enum class Way : std::uint8_t { walk, rebuild, original };
+    struct Plan {
+        Way way;
+        double make_ns, send_ns;
+    };
+    [[nodiscard]] Plan plan(std::uint32_t wanted) const noexcept;
+    void restore_original() noexcept;
+    void restore_vertices() noexcept;
+    void restore_indices() noexcept;
+    void restore_patch(std::uint32_t patch) noexcept;
     void rebuild(std::uint32_t wanted) noexcept;
     void rebuild_vertices(std::uint32_t wanted) noexcept;
     void rebuild_indices(std::uint32_t wanted) noexcept;

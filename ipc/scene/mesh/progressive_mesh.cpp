@@ -130,6 +130,10 @@ void ProgressiveMesh::order_versions(const ProgressiveMeshData& data) {
         spans_[s].version_first = end;
         for (std::uint32_t v = 0; v < top; end += length[v++]) version_[place[v] = end] = now[v];
         spans_[s].version_end = end;
+        if (s == 0) {
+            for (std::uint32_t v = 0; v < top; v += kVersionStride) version_original_.push_back(place[v]);
+            version_original_.push_back(end);
+        }
         for (std::uint32_t v = top; v-- > low;) {
             const std::uint32_t k = v - base_, parent = data.parent[k], to = ++place[parent];
             version_[to] = now[parent] = pack(data.merged[k]);
@@ -217,8 +221,9 @@ ProgressiveMesh::Birth ProgressiveMesh::birth(std::uint32_t place,
 std::size_t ProgressiveMesh::memory_bytes() const {
     const auto bytes = [](const auto& v) { return v.capacity() * sizeof(v[0]); };
     return bytes(parent_) + bytes(error_m_) + bytes(triangle_count_) + bytes(version_) +
-           bytes(version_level_) + bytes(version_coarsest_) + bytes(version_merged_) +
-           patches_.memory_bytes() + bytes(birth_) + bytes(change_first_) + bytes(change_);
+           bytes(version_level_) + bytes(version_original_) + bytes(version_coarsest_) +
+           bytes(version_merged_) + patches_.memory_bytes() + bytes(birth_) + bytes(change_first_) +
+           bytes(change_);
 }
 
 void write_mesh(SceneWriter& out, std::uint32_t index, const ProgressiveMeshData& data) {

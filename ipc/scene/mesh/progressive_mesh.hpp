@@ -118,6 +118,8 @@ private:
     std::vector<Span> spans_;
     HugeVector<PackedVertex> version_;         // about 3N
     HugeVector<std::uint32_t> version_level_;  // plus one; finest level of the version, UINT32_MAX: the top
+    static constexpr std::uint32_t kVersionStride = 1024;
+    std::vector<std::uint32_t> version_original_;  // of vertices 0, 1024, …: the original; one more: the end
     std::vector<std::uint32_t> version_coarsest_;  // N-B+1, see coarsest_version()
     std::vector<std::uint32_t> version_merged_;    // N-B: [k] version of the parent after contraction k
     MeshPatches patches_;
