@@ -43,13 +43,20 @@ bool Contractor::try_pair(std::uint32_t u, std::uint32_t v) {
         keep_volume(sum, u, across, place);
     else
         keep_border(sum, u, v, place);
+    const bool limited = bent(u, v);
+    if (limited) pull_back(sum, across, place);
     // A part that touches another at a vertex may be absorbed by it.
     const bool joint =
         settings_.pair_distance > 0.0 && ((vertex_[u].stamp | vertex_[v].stamp) & kBorder) != 0;
     if (spoils(u, v, across, place.shift, joint)) {
-        if (place.shift == plain || spoils(u, v, across, plain, joint)) return false;
-        place = {plain, sum(plain)};
+        Place other{plain, sum(plain)};
+        if (limited) pull_back(sum, across, other);
+        if (place.shift == other.shift || spoils(u, v, across, other.shift, joint)) return false;
+        place = other;
     }
+    lost_next_ = lost_[v][3] != 0.0F ? lost_[v] : lost_[u];
+    if (limited && loses(sum, u, v, across, place)) return false;
+    lost_[u] = lost_next_;
     contract(u, v, sum, place);
     if (joint) drop_coincident(u);
     if (joint && alive(u)) clear_borders(u);

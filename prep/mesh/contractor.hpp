@@ -4,6 +4,7 @@
 //   contractor.cpp         the loop over the queue, and the changes of a contraction
 //   contractor_checks.cpp  prevents pinches, flipped triangles and folds
 //   contractor_place.cpp   preserves volume and border area
+//   contractor_stray.cpp   limits the largest distance
 //   contractor_join.cpp    pairs without an edge: surfaces that join, small parts that vanish
 #pragma once
 
@@ -97,6 +98,14 @@ private:
     void look(std::uint32_t self, const Eigen::Vector3f& origin, Star& star) const;
     void keep_volume(const Quadric& sum, std::uint32_t u, const Eigen::Vector3f& across, Place& place) const;
     void keep_border(const Quadric& sum, std::uint32_t u, std::uint32_t v, Place& place);
+    [[nodiscard]] bool bent(std::uint32_t u, std::uint32_t v) const;
+    [[nodiscard]] float square_level(const Quadric& sum, const Eigen::Vector3f& across,
+                                     const Place& place) const;
+    void pull_back(const Quadric& sum, const Eigen::Vector3f& across, Place& place) const;
+    [[nodiscard]] float to_new_star(const Eigen::Vector3f& p, std::uint32_t u, std::uint32_t v,
+                                    const Eigen::Vector3f& to, float enough) const;
+    bool loses(const Quadric& sum, std::uint32_t u, std::uint32_t v, const Eigen::Vector3f& across,
+               const Place& place);
     [[nodiscard]] bool topology_allows(std::uint32_t u, std::uint32_t v);
     bool turns_over(const Star& star, std::uint32_t other, const Eigen::Vector3f& from,
                     const Eigen::Vector3f& to, const Side<float>& side);
@@ -132,6 +141,10 @@ private:
         reach_;  // per vertex: distance of the farthest vertex that it represents; empty without locality
     // Per vertex: sum of the double areas that it represents, as vectors, and of their norms.
     HugeVector<Eigen::Vector4f> facing_;
+    // Per vertex: the farthest point that was lost at it, and 1; all 0: none. See contractor_stray.cpp.
+    using Lost = std::array<float, 4>;
+    HugeVector<Lost> lost_;
+    Lost lost_next_{};
     HugeVector<std::uint8_t> bend_;  // per vertex: an upper bound, see contractor_checks.cpp
     Star star_u_, star_v_;
     std::vector<Leaf> leaf_;    // triangles that a contraction would leave at the new vertex

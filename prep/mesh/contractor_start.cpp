@@ -69,6 +69,7 @@ void Contractor::touch() {
 void Contractor::add_planes() {
     HugeVector<Eigen::Vector3f> mean(vertex_.size(), Eigen::Vector3f::Zero());
     facing_.assign(vertex_.size(), Eigen::Vector4f::Zero());
+    lost_.assign(vertex_.size(), Lost{});
     for (const Corners& c : triangle_) {
         const Eigen::Vector3f normal = double_area(c);
         const float area = normal.norm();

@@ -50,17 +50,29 @@ public:
 
     [[nodiscard]] double diagonal_m() const { return diagonal_m_; }
 
+    struct Nearest {
+        double squared = 1e300;
+        std::uint32_t triangle = UINT32_MAX;  // none
+    };
     [[nodiscard]] double squared(const Eigen::Vector3d& p) const {
+        return nearest(p, [](std::uint32_t) { return true; }).squared;
+    }
+    // The nearest of the triangles for which accept(triangle) is true.
+    template <class Accept>
+    [[nodiscard]] Nearest nearest(const Eigen::Vector3d& p, Accept&& accept) const {
         const Eigen::Vector3i c = cell(p);
-        double best = 1e300;
+        Nearest best;
         for (int r = 0; r <= size_.maxCoeff(); ++r) {
-            if (std::sqrt(best) <= (r - 1) * cell_) break;
+            if (std::sqrt(best.squared) <= (r - 1) * cell_) break;
             for (int z = std::max(0, c.z() - r); z <= std::min(size_.z() - 1, c.z() + r); ++z) {
                 for (int y = std::max(0, c.y() - r); y <= std::min(size_.y() - 1, c.y() + r); ++y) {
                     const bool wall = std::abs(z - c.z()) == r || std::abs(y - c.y()) == r;
                     for (int x = c.x() - r; x <= c.x() + r; x += wall || r == 0 ? 1 : 2 * r) {
                         if (x < 0 || x >= size_.x()) continue;
-                        for (const std::uint32_t t : list(x, y, z)) best = std::min(best, to_triangle(p, t));
+                        for (const std::uint32_t t : list(x, y, z)) {
+                            const double square = to_triangle(p, t);
+                            if (square < best.squared && accept(t)) best = {square, t};
+                        }
                     }
                 }
             }

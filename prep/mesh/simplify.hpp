@@ -7,10 +7,12 @@
 // Folds     none is made: no triangle turns by more than 60 degrees in one step, becomes a needle, or comes within 26
 //           degrees of lying on a neighbour, at the new vertex or across from it. If the surface that a vertex
 //           represents mostly faces one side, its triangles stay within 60 degrees of that side over all steps.
+// Spikes    where the surface is bent, a new vertex stays within the error level of the surface before, and what a step
+//           removes within that level of the surface after: no spike grows, or is lost while larger.
 // Errors    integrated over the area: sum of triangle areas times squared distances. error_m is the root of its mean
 //           over the planes that a vertex represents; it never decreases along the sequence.
 // Repeats   the same mesh and settings give the same sequence.
-// Cost      about 1.6 us and 260 bytes per vertex, see tests/bench/simplify_bench.cpp.
+// Cost      about 1.6 us and 276 bytes per vertex, see tests/bench/simplify_bench.cpp.
 // Thread    any but the servo's.
 // Fails by  StartupError on indices out of range or positions that are not finite.
 #pragma once
