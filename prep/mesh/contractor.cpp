@@ -43,7 +43,7 @@ bool Contractor::try_pair(std::uint32_t u, std::uint32_t v) {
         keep_volume(sum, u, across, place);
     else
         keep_border(sum, u, v, place);
-    const bool limited = bent(u, v);
+    const bool limited = !(settings_.pair_distance > 0.0) && bent(u, v);  // joined parts may vanish
     if (limited) pull_back(sum, across, place);
     // A part that touches another at a vertex may be absorbed by it.
     const bool joint =
@@ -249,6 +249,7 @@ Simplified Contractor::run(const Progress& progress) {
             report(progress, 0.1 + 0.9 * (1.0 - static_cast<double>(alive_) / start), "simplify");
         if (!is_due(pair, due)) continue;
         Tried tried = Tried::refused;
+        tried_at_ = due;
         if ((pair.u & kNoEdge) != 0) {
             tried = try_apart(pair, due);
         } else {

@@ -145,6 +145,7 @@ private:
     using Lost = std::array<float, 4>;
     HugeVector<Lost> lost_;
     Lost lost_next_{};
+    float tried_at_ = 0.0F;          // the cost at which the pair is tried; rises when it is refused
     HugeVector<std::uint8_t> bend_;  // per vertex: an upper bound, see contractor_checks.cpp
     Star star_u_, star_v_;
     std::vector<Leaf> leaf_;    // triangles that a contraction would leave at the new vertex

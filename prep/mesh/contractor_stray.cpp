@@ -16,8 +16,10 @@ namespace {
 
 constexpr float kBent = 0.97F;      // |sum of areas| / sum of |areas|; 1: flat
 constexpr float kOvershoot = 0.8F;  // 1.0 to 0.7: largest distances of spikes 1.2 to 0.9, RMS 1.00 to 1.03
-constexpr float kWitness = 0.5F;    // lost points within this part of the limit are not remembered
-constexpr float kLeast = 1e-3F;     // of the pair's length: rounding
+constexpr float kPatience =
+    1.0F / 16.0F;                 // of the cost at which a pair is tried; 1: gears lose 1.13 times as much
+constexpr float kWitness = 0.5F;  // lost points within this part of the limit are not remembered
+constexpr float kLeast = 1e-3F;   // of the pair's length: rounding
 
 // Squared distance of the origin to a triangle, by Voronoi region as in nearest_point.hpp.
 float square_to(const Eigen::Vector3f& a, const Eigen::Vector3f& b, const Eigen::Vector3f& c) {
@@ -44,9 +46,10 @@ bool Contractor::bent(std::uint32_t u, std::uint32_t v) const {
     return !(facing.head<3>().norm() > kBent * facing.w());
 }
 
-// The square of the error level that this contraction would reach.
+// The square of the error level that this contraction would reach. A refused pair returns at twice the cost, so that it
+// is contracted once what it loses is due.
 float Contractor::square_level(const Quadric& sum, const Eigen::Vector3f& across, const Place& place) const {
-    const float own = place.cost / std::max(sum.trace(), 1e-30F);
+    const float own = std::max(place.cost, kPatience * tried_at_) / std::max(sum.trace(), 1e-30F);
     return std::max({error_ * error_, own, kLeast * kLeast * across.squaredNorm()});
 }
 

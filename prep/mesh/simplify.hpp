@@ -8,7 +8,7 @@
 //           degrees of lying on a neighbour, at the new vertex or across from it. If the surface that a vertex
 //           represents mostly faces one side, its triangles stay within 60 degrees of that side over all steps.
 // Spikes    where the surface is bent, a new vertex stays within the error level of the surface before, and what a step
-//           removes within that level of the surface after: no spike grows, or is lost while larger.
+//           removes within that level of the surface after: no spike grows, or is lost while larger. Not with pair_distance.
 // Errors    integrated over the area: sum of triangle areas times squared distances. error_m is the root of its mean
 //           over the planes that a vertex represents; it never decreases along the sequence.
 // Repeats   the same mesh and settings give the same sequence.
