@@ -45,9 +45,8 @@ enum class LevelReason : std::uint8_t {
 // Cost and error of one step. The unit of the error belongs to the path (N for forces).
 struct PathLoad {
     Duration cost{0};
-    Duration cost_predicted{
-        0};  // of a whole step at the level, by predict() or by the work that the step did; 0: unknown
-    Duration cost_foreseen{0};  // of a contact that may come, ForceModel::predict(); 0: none
+    Duration cost_predicted{0};  // of a whole step at the level, or of the work of this step; 0: unknown
+    Duration cost_foreseen{0};   // of a contact that may come, ForceModel::predict(); 0: none
     double error = 0.0;
     std::uint32_t items = 0;  // vertices drawn, points summed, particles moved
     float recomputed_fraction =
