@@ -10,6 +10,8 @@ if(Python3_FOUND)
     add_test(NAME tidy_servo_words COMMAND ${Python3_EXECUTABLE} tests/tidy/servo_words.py WORKING_DIRECTORY ${CMAKE_SOURCE_DIR})
     add_test(NAME tidy_servo_words_finds_violations COMMAND ${Python3_EXECUTABLE} tests/tidy/servo_words.py --self-test
         WORKING_DIRECTORY ${CMAKE_SOURCE_DIR})
+    add_test(NAME tidy_mutants COMMAND ${Python3_EXECUTABLE} tests/mutants/run --check WORKING_DIRECTORY ${CMAKE_SOURCE_DIR})
+    set_tests_properties(tidy_mutants PROPERTIES LABELS tidy)
     add_test(NAME tidy_words COMMAND ${Python3_EXECUTABLE} tests/tidy/words.py WORKING_DIRECTORY ${CMAKE_SOURCE_DIR})
     add_test(NAME tidy_words_finds_violations COMMAND ${Python3_EXECUTABLE} tests/tidy/words.py --self-test
         WORKING_DIRECTORY ${CMAKE_SOURCE_DIR})
