@@ -67,11 +67,11 @@ public:
         return Kind::usual;
     }
     [[nodiscard]] double speed() const noexcept TACT_RT { return speed_; }
-    [[nodiscard]] double spread() const noexcept TACT_RT {
+    [[nodiscard]] double spread(double tail = kTail) const noexcept TACT_RT {
         double above = 0.0;
         for (std::size_t i = kBins; i-- > 0;) {
             above += ratio_[i];
-            if (above > kTail * total_) return std::max(upper(i), 1.0);
+            if (above > tail * total_) return std::max(upper(i), 1.0);
         }
         return 1.0;
     }

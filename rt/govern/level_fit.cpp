@@ -44,6 +44,7 @@ bool LevelFit::set_rows(std::span<const Row> rows) noexcept {
     since_fall_s_ = 1e9;
     leapt_ = false;
     spread_.restart();
+    near_ = 1.0;
     return count_ > 0;
 }
 
@@ -72,22 +73,21 @@ void LevelFit::pass(double dt_s) noexcept {
     for (std::size_t i = 0; i < count_; ++i) {
         Window& w = window_[i];
         if (!w.renewed) continue;
-        w = {.cost_before_s = w.cost_s, .error_before = w.error, .foreseen_s = w.foreseen_s};
-        rows_[i].cost_s = std::max({w.cost_before_s, tried_s_[i], w.foreseen_s});
+        w = {.cost_before_s = w.cost_s, .error_before = w.error};
+        rows_[i].cost_s = std::max(w.cost_before_s, tried_s_[i]);
         rows_[i].error = w.error_before;
     }
 }
 
-bool LevelFit::renew(std::size_t i, double cost_s, double error, double foreseen_s) noexcept {
-    if (i >= count_ || !std::isfinite(cost_s + foreseen_s) || !std::isfinite(error)) return false;
+bool LevelFit::renew(std::size_t i, double cost_s, double error) noexcept {
+    if (i >= count_ || !std::isfinite(cost_s) || !std::isfinite(error)) return false;
     Row& row = rows_[i];
     Window& w = window_[i];
     w.cost_s = std::max(w.cost_s, cost_s);
     w.error = std::max(w.error, error);
-    w.foreseen_s = foreseen_s;
     w.renewed = true;
     const double before = row.cost_s;
-    row.cost_s = std::max({w.cost_s, w.cost_before_s, tried_s_[i], foreseen_s});
+    row.cost_s = std::max({w.cost_s, w.cost_before_s, tried_s_[i]});
     row.error = std::max(w.error, w.error_before);
     const bool leapt = row.cost_s > kLeapt * before;
     leapt_ = leapt_ || (leapt && i == row_);
@@ -108,7 +108,8 @@ double LevelFit::at(float level, ValueOf value_of) const noexcept {
 
 double LevelFit::predicted_s(std::size_t row, double interrupts_s_most) const noexcept {
     const double usual_s = spread_.speed() * rows_[row].cost_s;
-    return std::max(usual_s * spread_.spread(), usual_s + std::min(spread_.interrupt_s(), interrupts_s_most));
+    return std::max(usual_s * spread_.spread(CostSpread::kTail / near_),
+                    usual_s + std::min(spread_.interrupt_s(), interrupts_s_most));
 }
 
 bool LevelFit::fits(std::size_t row, const Limits& limits, double part) const noexcept {
@@ -142,8 +143,8 @@ std::size_t LevelFit::best(const Limits& limits, double part, double cost_s_most
     return chosen;
 }
 
-float LevelFit::choose(const Limits& limits) noexcept {
-    row_ = best(limits, kRise, 1e9);
+float LevelFit::choose(const Limits& limits, double part) noexcept {
+    row_ = best(limits, part, 1e9);
     return rows_[row_].level;
 }
 
@@ -153,11 +154,14 @@ CostSpread::Kind LevelFit::learn(const Sample& s) noexcept {
     CostSpread::Kind kind = CostSpread::Kind::usual;
     if (!(s.predicted_s > 0.0))
         kind = spread_.add(s.model_s / part, of_row_s, kSpeedLeast);
-    else if (s.predicted_s >= kTelling * of_row_s)
+    else if (s.predicted_s >= kTelling * of_row_s) {
+        near_ += kNearStep * ((s.predicted_s >= kNear * of_row_s ? 1.0 : 0.0) - near_);
+        near_ = std::max(near_, kNearLeast);
         kind = spread_.add(
             s.model_s / part,
             std::max(s.predicted_s, at(s.level, [this](std::size_t row) { return tried_s_[row]; })),
             kSpeedLeast);
+    }
     follow_rest(s.rest_s);
     since_fall_s_ += s.dt_s;
     misses_ *= kMissKept;

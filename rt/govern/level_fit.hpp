@@ -12,7 +12,9 @@
 //               speed      median of measured / predicted cost of the steps whose predicted cost is at least kTelling
 //                          of their row's: cheap steps in free space tell nothing of steps in contact. Follows
 //                          within 0.1 s
-//               spread     of measured / (speed x predicted), the quantile that one step in 2000 exceeds
+//               spread     of measured / (speed x predicted), the quantile that one step in 2000 exceeds. A row keeps
+//                          its largest prediction: where a share `near` of the steps is predicted to cost kNear of
+//                          that, one in 2000 x near of these may exceed it, and the rest is below
 //               interrupts the same quantile of the excess of steps that cost more than kInterrupted times the usual.
 //                          A level does not change the length of an interrupt, so the excess is added, not
 //                          multiplied, and takes at most kInterruptShare of the budget
@@ -45,7 +47,7 @@ namespace tact {
 class LevelFit {
 public:
     static constexpr std::size_t kRowsMax = 33;
-    static constexpr double kUse = 0.7, kRise = 0.88;
+    static constexpr double kUse = 0.7, kRise = 0.88, kForeseen = 0.94;
     static constexpr double kInterruptShare = 0.3;
     static constexpr double kHold_s = 0.5, kHoldMost_s = 8.0, kHoldForgotten_s = 10.0;
     // Lower bound of the speed: steps in free space are cheaper than steps in contact.
@@ -55,6 +57,7 @@ public:
     static constexpr double kKept_s = 5.0;
     static constexpr double kTelling = 0.3;
     static constexpr double kLeapt = 1.1;
+    static constexpr double kNear = 0.9, kNearLeast = 0.05, kNearStep = 1e-3;  // of the share of costly steps
     static constexpr double kWorthGain = 0.15;
     static constexpr double kFreeSpread = 1.1;
     static constexpr double kSmallLoss = 0.05;    // of the error
@@ -91,13 +94,13 @@ public:
     void calibrate(double model_s, double rest_s) noexcept TACT_RT;
     // Once a cycle, before rows are renewed: predictions age.
     void pass(double dt_s) noexcept TACT_RT;
-    // The model's present prediction for a row; foreseen_s: cost of a contact that may come, not kept. True: the row's
-    // cost leapt.
-    bool renew(std::size_t row, double cost_s, double error, double foreseen_s = 0.0) noexcept TACT_RT;
+    // The model's present prediction for a row. True: the row's cost leapt.
+    bool renew(std::size_t row, double cost_s, double error) noexcept TACT_RT;
     // The row to renew in this cycle: each in turn.
     [[nodiscard]] std::size_t due() const noexcept TACT_RT { return count_ > 0 ? cycle_ % count_ : 0; }
-    // Selects the best row that fits, whatever the present row.
-    float choose(const Limits& limits) noexcept TACT_RT;
+    // Selects the best row that fits, whatever the present row. part: of the budget; kForeseen where the rows hold what a
+    // contact may cost at most.
+    float choose(const Limits& limits, double part = kRise) noexcept TACT_RT;
 
     // Call once a cycle. Returns the new level, whether it changed, and why.
     struct Choice {
@@ -125,7 +128,7 @@ private:
     std::array<double, kRowsMax> tried_s_{};  // smallest cost measured per row; 0: none
     // Largest predictions of the present window of kKept_s.
     struct Window {
-        double cost_s = 0.0, error = 0.0, cost_before_s = 0.0, error_before = 0.0, foreseen_s = 0.0;
+        double cost_s = 0.0, error = 0.0, cost_before_s = 0.0, error_before = 0.0;
         bool renewed = false;
     };
     std::array<Window, kRowsMax> window_{};
@@ -133,6 +136,7 @@ private:
     std::size_t count_ = 0, row_ = 0;
     std::uint32_t tries_ = 0;
     CostSpread spread_;
+    double near_ = 1.0;    // share of the steps that are predicted to cost as much as their row, or nearly
     double rest_s_ = 0.0;  // p99 cost of the rest of a cycle
     double since_fall_s_ = 1e9, hold_s_ = kHold_s;
     bool rose_ = false;    // the level rose since the last fall

@@ -7,7 +7,7 @@ namespace tact::servo {
 
 namespace {
 
-constexpr std::uint32_t kContinuousRows = 20;
+constexpr std::uint32_t kContinuousRows = 10;
 constexpr float kLevelMaxLeast = 0.05F, kLevelMaxRise = 1.1F;
 
 LevelFit::Limits limits_of(const CycleState& c, const ServoSettings& settings) noexcept {
@@ -40,7 +40,7 @@ void renew_rows(CycleState& c) noexcept {
     const std::size_t rows = fit.rows().size();
     const auto renew = [&](std::size_t row) {
         const PathLoad load = c.hand[0].model->predict(fit.rows()[row].level);
-        return fit.renew(row, to_s(load.cost_predicted), load.error, to_s(load.cost_foreseen));
+        return fit.renew(row, to_s(std::max(load.cost_predicted, load.cost_foreseen)), load.error);
     };
     if (rows == 0) return;
     fit.pass(to_s(c.dt));
@@ -95,8 +95,10 @@ void calibrate_level(CycleState& c, const ServoSettings& settings) noexcept {
 
 void choose_level(CycleState& c, const ServoSettings& settings) noexcept {
     if (c.govern.fit.rows().empty()) return;
-    static_cast<void>(c.governor.set_fitted_level(
-        kForcePathIndex, c.govern.fit.choose(limits_of(c, settings)), LevelReason::start));
+    const bool foreseen = c.hand[0].model->predict(1.0F).cost_foreseen.count() > 0;
+    const float level =
+        c.govern.fit.choose(limits_of(c, settings), foreseen ? LevelFit::kForeseen : LevelFit::kRise);
+    static_cast<void>(c.governor.set_fitted_level(kForcePathIndex, level, LevelReason::start));
 }
 
 bool fit_level(CycleState& c, const ServoSettings& settings) noexcept {

@@ -29,6 +29,7 @@ struct Drilled {
         bone.bricks.origin_m = -kVoxelM * Vec3::Constant(0.5 * edge - 0.5);
         shared = std::make_unique<DrillBone>(bone.bricks, bone.density, bone.revision);
         DrillSettings s;
+        s.burr_rad_s = kFullRadS;
         s.tool.radius_m = radius_m;
         s.tool.shaft_radius_m = 0.0;
         s.rate_per_s = rate_per_s;
@@ -209,12 +210,41 @@ TEST(DrillLevels, work_predicted_from_another_level_is_right_within_a_factor_of_
     }
 }
 
+// Which blocks are looked at in halves is no smooth function of the level: the bone in the burr's surface decides.
+TEST(DrillLevels, work_in_a_pocket_is_expected_from_another_level_within_a_third) {
+    constexpr double kRadiusM = 20e-3;
+    const std::vector<float> levels{0.15F, 0.3F, 0.5F, 0.7F};
+    std::vector<std::unique_ptr<Drilled>> at;
+    for (std::size_t k = 0; k < levels.size(); ++k) {
+        at.push_back(std::make_unique<Drilled>(kRadiusM, 160));
+        at.back()->begin(stroke_m(kRadiusM, 0.0));
+    }
+    std::vector<std::vector<double>> us(levels.size(), std::vector<double>(levels.size(), 0.0));
+    for (int i = 0; i < 900; ++i) {
+        const Vec3 p_m = stroke_m(kRadiusM, 0.5e-3 * i);
+        for (std::size_t from = 0; from < levels.size(); ++from) {
+            for (std::size_t to = 0; to < levels.size() && i > 500; ++to)
+                us[from][to] += to_us(at[from]->model->predict(levels[to]).cost_predicted);
+            (void)at[from]->step(p_m, levels[from]);
+        }
+    }
+    for (std::size_t from = 0; from < levels.size(); ++from) {
+        for (std::size_t to = 0; to < levels.size(); ++to) {
+            EXPECT_LT(us[from][to], 1.33 * us[to][to]) << levels[from] << " to " << levels[to];
+            EXPECT_GT(us[from][to], us[to][to] / 1.33) << levels[from] << " to " << levels[to];
+        }
+    }
+}
+
 // The level of a hand in free space must fit when it touches, and later in the pocket that it cuts: it may not be chosen by
 // the cost of free space.
 TEST(DrillLevels, in_free_space_a_level_is_predicted_to_cost_what_a_pocket_costs) {
     constexpr int kSteps = 4000, kGrown = 2000;
     for (const double radius_m : {8e-3, 20e-3}) {
         Drilled d(radius_m, radius_m > 0.01 ? 160 : 72);
+        DrillRehearsal rehearsal = rehearse_drill(d.model->settings(), kVoxelM, 1e-3);
+        rehearsal.speed = {};  // work, not the time of this machine
+        d.model->foresee(rehearsal);
         double z_m = radius_m + 1e-3;
         d.begin({0.0, 0.0, z_m});
         const double free_us = to_us(d.model->predict(0.25F).cost_foreseen);

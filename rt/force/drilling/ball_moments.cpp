@@ -62,9 +62,11 @@ private:
         return std::clamp((block - part) / (edge - part), 0.0, 1.0);
     }
     // Smaller blocks where bone and none share one: from nothing to a quarter of it.
-    double block_for(double m0, double edge) const noexcept {
+    double block_for(double m0, double edge) noexcept {
         const double filled = m0 / (255.0 * edge * edge * edge);
         const double mixed = std::min(1.0, 16.0 * filled * (1.0 - filled));
+        ++sums_.surface;
+        sums_.mixed += mixed;
         return block_ * (1.0 - (1.0 - mixed_) * mixed);
     }
 
@@ -154,6 +156,7 @@ private:
         for (std::size_t k = 0; k < 8; ++k) {
             if (p.m0[k] == 0) continue;
             ++sums_.blocks;
+            ++sums_.parts;
             const Vec3 there = from + Vec3((k & 1U) != 0 ? 2.0 : -2.0, (k & 2U) != 0 ? 2.0 : -2.0,
                                            (k & 4U) != 0 ? 2.0 : -2.0);
             const double far2 = there.squaredNorm();

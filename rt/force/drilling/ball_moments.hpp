@@ -17,9 +17,12 @@ namespace tact {
 
 struct BallMoments {
     double m0 = 0.0;
-    Vec3 m1 = Vec3::Zero();    // about the ball's centre
-    std::uint32_t blocks = 0;  // visited, voxels included
-    std::uint32_t bricks = 0;  // of them summed voxel by voxel, each of which counts 512 in `blocks`
+    Vec3 m1 = Vec3::Zero();     // about the ball's centre
+    std::uint32_t blocks = 0;   // visited, voxels included
+    std::uint32_t bricks = 0;   // of them summed voxel by voxel, each of which counts 512 in `blocks`
+    std::uint32_t parts = 0;    // of them eighths of a brick
+    std::uint32_t surface = 0;  // blocks that the ball covers partly
+    double mixed = 0.0;         // of them those that are partly bone, by weight: looked at in halves
 };
 
 // block: edge of the smallest block looked at, at most kBlockMost of the radius; below 4 single voxels are counted, below 2 they alone. Blocks

@@ -58,7 +58,8 @@ DrillModel::BallForces DrillModel::ball_forces(const ToolState& tool, const Bloc
             most_blocks = m.blocks;
             // As if it had been asked for at this depth.
             const double part = depth_part(depth < 0.0 ? f.depth : depth);
-            sum.look = {radius, f.depth, used * part / depth_part(f.depth)};
+            sum.look = {radius, f.depth, used * part / depth_part(f.depth),
+                        m.mixed / std::max(m.surface, 1U)};
         }
         if (ball.cuts)
             sum.pending_n += ball.weight * ball.weight *
@@ -114,7 +115,7 @@ Wrench DrillModel::still_wrench(const Pose& T_world_tool, const BlockDetail& det
 void DrillModel::measure_stiffness(const Pose& T_world_tool, const BlockDetail& detail) noexcept {
     const double h_m = std::max(kStiffnessReach * head_radius_m_, kStiffnessReachVoxels * per_voxel_m_);
     const BallLook& look = last_.look;
-    last_.still_look = {look.radius, look.depth, detail.asked(look.depth) * look.radius};
+    last_.still_look = {look.radius, look.depth, detail.asked(look.depth) * look.radius, look.mixed};
     const Pose at = measured_.next(T_world_tool, h_m, lever_m_);
     measured_.note(still_wrench(at, detail, last_.still), h_m, lever_m_);
 }

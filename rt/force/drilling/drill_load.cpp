@@ -7,11 +7,9 @@
 namespace tact {
 namespace {
 
-// ns, 2026-11-27, AVX2 at 2.4 GHz over 1.4: fit to steps of burrs of 20 and 40 mm at four levels, 1 and 4 kHz.
-constexpr double kDrillStepNs = 3400.0, kBallNs = 150.0, kBlockNs = 12.0, kSumNs = 145.0, kCutNs = 25.0,
-                 kChangedNs = 1240.0, kWalkedNs = 11.0;
-// Of the bricks that a burr meets, those that lose something in a step; blocks looked at to find one group of them.
-constexpr double kChangedShare = 0.6, kWalkedPerCut = 0.7;
+// ns, 2026-11-29, AVX-512: fit to steps of a burr of 40 mm at five levels and 2 kHz.
+constexpr double kDrillStepNs = 2400.0, kBallNs = 100.0, kBlockNs = 11.0, kPartNs = 6.6, kSumNs = 60.0,
+                 kCutNs = 60.0, kChangedNs = 480.0, kWalkedNs = 17.0;
 constexpr double kErrorLeast = 0.012, kErrorPerBlock = 0.2, kErrorRough = 0.6;
 constexpr double kErrorPerVoxel2 = 1.0, kErrorPerVoxel4 = 2.8, kErrorThinCap = 0.08;
 constexpr double kSurfacePerEdge2 = 1.5;  // cubes that a surface meets, on average of its directions
@@ -33,11 +31,12 @@ DrillWork surface_work(const BallLook& look, double block) noexcept {
     const SurfaceInBone surface(r, x);
     const double l = std::clamp(block * depth_part(x), 1.0, kBlockMost * r);
     // Of the blocks of an edge, those that are larger than asked: asked is l in bone, l / 2 where bone and air meet.
-    const auto share = [&](double edge) { return std::clamp(2.0 * edge / l - 1.0, 0.0, 1.0); };
+    const auto share = [&](double edge) { return edge > l ? 1.0 : 2.0 * edge > l ? look.mixed : 0.0; };
     DrillWork work;
     const double parts = share(8.0), voxels = share(4.0);
     // Where voxels alone are summed their parts still count, so that no finer level is expected to be cheaper.
-    work.blocks = 8.0 + 8.0 * surface.met(8.0) * parts;
+    work.blocks = 8.0;
+    work.parts = 8.0 * surface.met(8.0) * parts;
     work.summed = surface.met(8.0) * voxels;
     for (double edge = 16.0; edge < 2.0 * r; edge *= 2.0)
         work.blocks += 8.0 * surface.met(edge) * share(edge);
@@ -46,9 +45,11 @@ DrillWork surface_work(const BallLook& look, double block) noexcept {
 
 }  // namespace
 
-Duration drill_cost(const DrillWork& w) noexcept {
-    return Duration(std::llround(kDrillStepNs + kBallNs * w.balls + kBlockNs * w.blocks + kSumNs * w.summed +
-                                 kCutNs * w.cut + kChangedNs * w.changed + kWalkedNs * w.walked));
+double sum_cost_ns(const DrillWork& w) noexcept {
+    return kDrillStepNs + kBallNs * w.balls + kBlockNs * w.blocks + kPartNs * w.parts + kSumNs * w.summed;
+}
+double cut_cost_ns(const DrillWork& w) noexcept {
+    return kCutNs * w.cut + kChangedNs * w.changed + kWalkedNs * w.walked;
 }
 
 DrillWork expected_work(const DrillWork& found, const BallLook& as, double block) noexcept {
@@ -56,22 +57,14 @@ DrillWork expected_work(const DrillWork& found, const BallLook& as, double block
     work.cut = work.changed = work.walked = 0.0;
     if (!(as.block > 0.0) || !(as.depth > 0.0)) return work;
     const DrillWork then = surface_work(as, as.block), now = surface_work(as, block);
-    work.blocks *= now.blocks / then.blocks;
-    // Where few bricks were summed yet, those of the blocks' scale in addition.
     const double scale = found.blocks / then.blocks;
-    if (then.summed > 1.0 && found.summed > 0.0)
-        work.summed = found.summed * now.summed / then.summed;
-    else
-        work.summed = std::max(found.summed + scale * (now.summed - then.summed), 0.0);
-    return work;
-}
-
-DrillWork flat_work(const BallLook& look, double block) noexcept {
-    DrillWork work = surface_work(look, block);
-    work.balls = 1.0;
-    work.cut = SurfaceInBone(look.radius, look.depth).met(8.0);
-    work.changed = kChangedShare * work.cut;
-    work.walked = kWalkedPerCut * work.cut;
+    work.blocks = scale * now.blocks;
+    // Where few were looked at yet, those of the blocks' scale in addition.
+    const auto scaled = [scale](double was, double of, double to) {
+        return of > 1.0 && was > 0.0 ? was * to / of : std::max(was + scale * (to - of), 0.0);
+    };
+    work.parts = scaled(found.parts, then.parts, now.parts);
+    work.summed = scaled(found.summed, then.summed, now.summed);
     return work;
 }
 

@@ -21,6 +21,7 @@ namespace tact {
 
 struct DrillWork {
     double balls = 0.0, blocks = 0.0;  // whose moments were summed
+    double parts = 0.0;                // eighths of bricks, in addition
     double summed = 0.0;               // bricks, voxel by voxel
     double cut = 0.0;                  // bricks whose voxels erosion computed
     double changed = 0.0;              // of them, those that lost something
@@ -28,12 +29,14 @@ struct DrillWork {
 
     void add(const BallMoments& m) noexcept {
         balls += 1.0;
-        blocks += static_cast<double>(m.blocks) - 512.0 * m.bricks;
+        blocks += static_cast<double>(m.blocks) - m.parts - 512.0 * m.bricks;
+        parts += m.parts;
         summed += m.bricks;
     }
     void add(const DrillWork& w) noexcept {
         balls += w.balls;
         blocks += w.blocks;
+        parts += w.parts;
         summed += w.summed;
         cut += w.cut;
         changed += w.changed;
@@ -41,11 +44,20 @@ struct DrillWork {
     }
     // Balls, blocks and voxels.
     [[nodiscard]] std::uint32_t items() const noexcept {
-        return static_cast<std::uint32_t>(std::lround(balls + blocks + 512.0 * (summed + cut)));
+        return static_cast<std::uint32_t>(std::lround(balls + blocks + parts + 512.0 * (summed + cut)));
     }
 };
 
-[[nodiscard]] Duration drill_cost(const DrillWork& work) noexcept TACT_RT;
+// Of a machine: its times over the constants, for summing and for cutting (drill_rehearsal.hpp).
+struct DrillSpeed {
+    double sum = 1.0, cut = 1.0;
+};
+[[nodiscard]] double sum_cost_ns(const DrillWork& work) noexcept TACT_RT;
+[[nodiscard]] double cut_cost_ns(const DrillWork& work) noexcept TACT_RT;
+[[nodiscard]] inline Duration drill_cost(const DrillWork& work,
+                                         const DrillSpeed& speed = {}) noexcept TACT_RT {
+    return Duration(std::llround(speed.sum * sum_cost_ns(work) + speed.cut * cut_cost_ns(work)));
+}
 
 // Of a level: the smallest block over the radius, and how little blocks shrink near the surface: 0 as in ball_moments(),
 // 1 not at all.
@@ -59,13 +71,11 @@ struct BlockDetail {
 struct BallLook {
     double radius = 1.0, depth = 0.0;  // h / R
     double block = 0.0;                // smallest, as asked; 0: there was no look
+    double mixed = 1.0;                // of the blocks in its surface, those that are partly bone
 };
 // The force's part of `found`, which a look at `as` found, at another smallest block.
 [[nodiscard]] DrillWork expected_work(const DrillWork& found, const BallLook& as,
                                       double block) noexcept TACT_RT;
-
-// Of a ball in flat solid bone, by the sizes alone.
-[[nodiscard]] DrillWork flat_work(const BallLook& look, double block) noexcept TACT_RT;
 
 // shallow_n: the part of the elastic force for which rough blocks are too large, by shallow_share() of each ball's.
 [[nodiscard]] double block_error_n(const BlockDetail& detail, double elastic_n,

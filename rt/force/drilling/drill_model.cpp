@@ -21,10 +21,6 @@ BlockDetail stiffness_detail(const BlockDetail& d) noexcept {
 }
 constexpr double kRoughUntil = 0.2;                      // level
 constexpr float kLateLevel = -1.0F, kLevelJump = 0.03F;  // a knob's slew rate moves less in a step
-constexpr double kTypicalForceN = 3.0;                   // of a surgeon's hand
-// In the pocket that it has cut, a burr touches over 3.5 times the area of flat bone at the same force; a deeper one touches
-// more.
-constexpr double kPocketArea = 5.5;
 constexpr double kUsualStep = 0.02;
 constexpr double kContactKnownS = 0.25, kContactForgottenS = 10.0;
 
@@ -93,11 +89,8 @@ DrillModel::DrillModel(const SceneMeta& meta, DrillBone& bone, const DrillSettin
         const double full = elastic_pa_[i] * radius_m * radius_m;
         const double x = std::min(std::cbrt(std::pow(settings.force_n_max / full, 2.0)), 2.0);
         lever_m_ = std::max(lever_m_, tool_.ball[i].centre_tool_m.norm() + radius_m);
-        if (radius_m == head_radius_m_) {
+        if (radius_m == head_radius_m_)
             stiffness_n_m_ = std::max(stiffness_n_m_, 1.5 * elastic_pa_[i] * radius_m * std::sqrt(x));
-            typical_ = {.radius = radius_m / per_voxel_m_,
-                        .depth = std::min(std::cbrt(std::pow(kTypicalForceN / full, 2.0)), 1.0)};
-        }
     }
 }
 
@@ -152,31 +145,13 @@ DrillWork DrillModel::expected(float fidelity, double step_s) const noexcept {
     return work;
 }
 
-DrillWork DrillModel::typical_work(float fidelity) const noexcept {
-    const BlockDetail detail = detail_of(fidelity);
-    const auto asked = [&](const BlockDetail& d) { return d.asked(typical_.depth) * typical_.radius; };
-    DrillWork typical = flat_work(typical_, asked(detail));
-    DrillWork still = flat_work(typical_, asked(stiffness_detail(detail)));
-    still.cut = still.changed = still.walked = 0.0;
-    typical.add(still);
-    const double pocket = std::min(kPocketArea, 1.0 / typical_.depth);  // no more than half of the ball
-    typical.blocks *= pocket;
-    typical.summed *= pocket;
-    const std::uint32_t groups = turns_.groups_at(fidelity, usual_step_s_);
-    const double share = static_cast<double>(groups) / turns_.groups();
-    typical.cut *= pocket * share;
-    typical.changed *= pocket * share;
-    typical.walked *= pocket * turns_.passes_of(groups);
-    return typical;
-}
-
 PathLoad DrillModel::predict(float fidelity) const noexcept {
     PathLoad load;
     const DrillWork work = expected(fidelity, usual_step_s_);
     load.items = work.items();
-    load.cost_predicted = drill_cost(work);
-    // The pocket that the burr will cut. A contact then shows what it costs in truth.
-    if (contact_s_ < kContactKnownS) load.cost_foreseen = drill_cost(typical_work(fidelity));
+    load.cost_predicted = drill_cost(work, rehearsal_.speed);
+    // A contact then shows what it costs in truth.
+    if (contact_s_ < kContactKnownS) load.cost_foreseen = rehearsal_.contact_cost(fidelity);
     // A group waits for all steps between its cuts.
     const std::uint32_t groups = turns_.groups_at(fidelity, usual_step_s_);
     const double steps = static_cast<double>(turns_.groups()) / groups;
@@ -239,7 +214,7 @@ StepResult DrillModel::step(const ToolState& tool, const Budget& budget) noexcep
     const Instant begin = Monotonic::now();
     StepResult result;
     const DrillWork planned = expected(budget.fidelity, drive_.step_s);
-    result.load.cost_predicted = drill_cost(planned);
+    result.load.cost_predicted = drill_cost(planned, rehearsal_.speed);
     last_ = {};
     fade_.begin_step(drive_.step_s);
     if (asked_) erosion_.begin();
@@ -331,17 +306,17 @@ StepResult DrillModel::step(const ToolState& tool, const Budget& budget) noexcep
         last_.work.cut = erosion_.pass().visited;
         last_.work.changed = erosion_.pass().bricks;
         last_.work.walked = erosion_.pass().walked;
-        DrillWork all = last_.work;
-        all.add(last_.still);
+        const DrillWork all = work();
         result.load.items = all.items();
         // A whole step is compared with the work that it did: what was not foreseen of it is no interrupt.
-        if (!late) result.load.cost_predicted = drill_cost(all);
+        if (!late) result.load.cost_predicted = drill_cost(all, rehearsal_.speed);
         if (late) {
             DrillWork left;
             left.changed = std::max(turns_.bricks().changed / turns_.groups(), 1.0) * groups_left;
-            const auto done = static_cast<double>(drill_cost(all).count()),
-                       whole = std::max(done + static_cast<double>(drill_cost(left).count()),
-                                        static_cast<double>(drill_cost(planned).count()));
+            const auto done = static_cast<double>(drill_cost(all, rehearsal_.speed).count()),
+                       whole =
+                           std::max(done + static_cast<double>(drill_cost(left, rehearsal_.speed).count()),
+                                    static_cast<double>(drill_cost(planned, rehearsal_.speed).count()));
             result.load.work_done = static_cast<float>(std::clamp(done / whole, 0.01, 1.0));
         }
     }

@@ -36,6 +36,7 @@
 #include "rt/force/drilling/burr_shapes.hpp"
 #include "rt/force/drilling/drill_bone.hpp"
 #include "rt/force/drilling/drill_load.hpp"
+#include "rt/force/drilling/drill_rehearsal.hpp"
 #include "rt/force/drilling/drill_stiffness.hpp"
 #include "rt/force/drilling/erosion.hpp"
 #include "rt/force/drilling/erosion_turns.hpp"
@@ -117,11 +118,20 @@ public:
     }
     StepResult step(const ToolState& tool, const Budget& budget) noexcept TACT_RT override;
     [[nodiscard]] ModelBodies bodies() const noexcept TACT_RT override;
+    // Before the first step: what predict() knows of this machine and of a contact that may come.
+    void foresee(const DrillRehearsal& rehearsal) noexcept { rehearsal_ = rehearsal; }
     // Before the first step; the publisher outlives the model.
     void publish_to(DrillPublisher& publisher);
     void publish(const ModelCycle& cycle) noexcept TACT_RT override;
 
+    // Of a step of step_s at a level, from what the last one found.
+    [[nodiscard]] DrillWork expected(float fidelity, double step_s) const noexcept TACT_RT;
     // Of the last step.
+    [[nodiscard]] DrillWork work() const noexcept TACT_RT {
+        DrillWork all = last_.work;
+        all.add(last_.still);
+        return all;
+    }
     [[nodiscard]] const ErosionPass& cut() const noexcept TACT_RT { return erosion_.pass(); }
     [[nodiscard]] std::span<const BoneDust> dust() const noexcept TACT_RT { return erosion_.dust(); }
     [[nodiscard]] double depth() const noexcept TACT_RT {
@@ -187,8 +197,6 @@ private:
     [[nodiscard]] double rate_per_s() const noexcept TACT_RT;
     [[nodiscard]] double error_n(const BallForces& sum, const BlockDetail& detail,
                                  double pending) const noexcept TACT_RT;
-    [[nodiscard]] DrillWork expected(float fidelity, double step_s) const noexcept TACT_RT;
-    [[nodiscard]] DrillWork typical_work(float fidelity) const noexcept TACT_RT;
     void follow_contact(bool touches) noexcept TACT_RT;
     void forget_depths() noexcept TACT_RT;
     [[nodiscard]] Vec3 shaken_n(const ToolState& tool, double elastic_n) noexcept TACT_RT;
@@ -221,8 +229,8 @@ private:
     ErosionTurns turns_{1.0};
     BallForces last_;  // of the last step
     DrillStiffness measured_;
-    double lever_m_ = 0.0;                   // farthest part of the tool from its origin
-    BallLook typical_;                       // of the head in flat bone
+    double lever_m_ = 0.0;  // farthest part of the tool from its origin
+    DrillRehearsal rehearsal_;
     double contact_s_ = 0.0, free_s_ = 0.0;  // of all contacts, since the last one
     bool cuts_ = false;                      // the clutch is open
     bool asked_ = false;                     // reset() was called

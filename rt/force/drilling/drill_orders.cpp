@@ -85,6 +85,7 @@ std::unique_ptr<ForceModel> DrillModel::rebuild(const ModelBodies& /*bodies*/) c
     if (s.tool.shaft_radius_m < kRadiusLeast * per_voxel_m_) s.tool.shaft_radius_m = 0.0;
     s.tool.shaft_length_m = head_m + std::min(beyond_m, 2.0 * kShaftBallsMost * s.tool.shaft_radius_m);
     std::unique_ptr<DrillModel> made(new DrillModel(meta_, bone_, s, pushing_bit_));
+    if (rehearsal_.step_s > 0.0) made->foresee(rehearse_drill(s, per_voxel_m_, rehearsal_.step_s));
     made->started_ = started_;
     made->publisher_ = publisher_;
     return made;

@@ -1,0 +1,152 @@
+#include "rt/force/drilling/drill_rehearsal.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <thread>
+#include <vector>
+
+#include "rt/force/drilling/drill_model.hpp"
+
+namespace tact {
+namespace {
+
+constexpr double kContactS = 0.5, kInS = 0.1, kInM_s = 0.1, kOutM_s = 0.03;
+constexpr std::uint32_t kStepsMost = 2400, kFadeSteps = 40, kPausedOf = 10;
+constexpr double kBesideVoxels = 16.0;
+constexpr double kSpeedLeast = 0.1, kSpeedMost = 10.0;
+constexpr int kFits = 20;
+
+// A slab of solid bone, as wide as a burr's pocket in it. Its upper surface is z = 0.
+struct Slab {
+    BoneBricks bricks;
+    std::vector<std::uint8_t> density;
+    std::vector<std::uint32_t> revision;
+
+    Slab(double radius_m, double voxel_m) {
+        const double side = 2.0 * radius_m / voxel_m + kBesideVoxels,
+                     deep = radius_m / voxel_m + kBesideVoxels;
+        const auto whole = [](double voxels) {
+            return BoneBricks::kEdge * static_cast<std::uint32_t>(std::ceil(voxels / BoneBricks::kEdge));
+        };
+        bricks.size = {whole(side), whole(side), whole(deep)};
+        bricks.voxel_m = voxel_m;
+        bricks.origin_m = voxel_m * Vec3(-0.5 * bricks.size[0], -0.5 * bricks.size[1], 0.5 - bricks.size[2]);
+        density.assign(bricks.bytes(), 255);
+        revision.assign(bricks.brick_count(), 0);
+    }
+};
+
+// Of a ball into a flat surface, by eq. 3.
+double pressed_m(const DrillSettings& settings, double radius_m) {
+    const double elastic_pa = settings.depth_at_1_n_m > 0.0 ? elastic_for(radius_m, settings.depth_at_1_n_m)
+                                                            : settings.law.elastic_pa;
+    return radius_m * std::cbrt(std::pow(DrillRehearsal::kPressN / (elastic_pa * radius_m * radius_m), 2.0));
+}
+
+// The work of the costliest step of a contact at a level.
+DrillWork press(const DrillSettings& settings, double voxel_m, double step_s, float level, double most_s,
+                std::vector<TimedWork>& samples) {
+    SceneMeta meta{};
+    meta.world_per_model = 1.0;
+    const DrillTool tool = make_drill_tool(settings.tool);
+    double radius_m = 0.0, lowest_m = 0.0;  // lowest: below the tool's origin
+    for (std::uint32_t i = 0; i < tool.count; ++i) {
+        radius_m = std::max(radius_m, tool.ball[i].radius_m);
+        lowest_m = std::min(lowest_m, tool.ball[i].centre_tool_m.z() - tool.ball[i].radius_m);
+    }
+    Slab slab(radius_m, voxel_m);
+    DrillBone bone(slab.bricks, slab.density, slab.revision);
+    DrillModel model(meta, bone, settings);
+    ToolState hand;
+    hand.T_world_tool.p_m.z() = -lowest_m;
+    const double depth_m = std::min(DrillRehearsal::kDeeper * pressed_m(settings, radius_m), radius_m);
+    model.reset(hand);
+    const Budget budget{.fidelity = level};
+    for (std::uint32_t i = 0; i < kFadeSteps; ++i) {
+        model.drive({.enabled = true, .on = true, .step_s = ForceFade::kStepMostS});
+        static_cast<void>(model.step(hand, budget));
+    }
+    const auto steps = static_cast<std::uint32_t>(std::clamp(kContactS / step_s, 1.0, double{kStepsMost}));
+    const Instant end = Monotonic::now() + Duration(std::llround(1e9 * most_s));
+    DrillWork most;
+    Duration most_cost{0};
+    for (std::uint32_t i = 0; i < steps && Monotonic::now() < end; ++i) {
+        model.drive({.enabled = true, .on = true, .step_s = step_s});
+        const bool paused = i % kPausedOf == 0;
+        if (paused) std::this_thread::sleep_for(Duration(std::llround(1e9 * step_s)));
+        const StepResult result = model.step(hand, budget);
+        if (paused && to_s(result.load.cost) < step_s)  // longer ones do not occur in a loop
+            samples.push_back({model.work(), 1e9 * to_s(result.load.cost)});
+        const DrillWork next = model.expected(level, step_s);
+        if (const Duration cost = drill_cost(next); cost > most_cost) {
+            most_cost = cost;
+            most = next;
+        }
+        double& z_m = hand.T_world_tool.p_m.z();
+        if (i * step_s < kInS)
+            z_m = std::max(z_m - kInM_s * step_s, -lowest_m - depth_m);
+        else if (result.wrench_world.force_n.z() > DrillRehearsal::kLightN)
+            z_m += kOutM_s * step_s;
+    }
+    return most;
+}
+
+}  // namespace
+
+// By reweighted least squares.
+DrillSpeed fit_speed(std::span<const TimedWork> steps) {
+    DrillSpeed speed;
+    for (int fit = 0; fit < kFits; ++fit) {
+        double ss = 0.0, sc = 0.0, cc = 0.0, sy = 0.0, cy = 0.0;
+        for (const TimedWork& step : steps) {
+            const double sum_ns = sum_cost_ns(step.work), cut_ns = cut_cost_ns(step.work),
+                         ns = step.measured_ns;
+            const double off_ns = ns - speed.sum * sum_ns - speed.cut * cut_ns;
+            const double weight = 1.0 / (ns * std::max(std::abs(off_ns), 0.01 * ns));
+            ss += weight * sum_ns * sum_ns;
+            sc += weight * sum_ns * cut_ns;
+            cc += weight * cut_ns * cut_ns;
+            sy += weight * sum_ns * ns;
+            cy += weight * cut_ns * ns;
+        }
+        const double size = ss * cc - sc * sc;
+        if (size > 1e-6 * ss * cc)
+            speed = {(sy * cc - cy * sc) / size, (cy * ss - sy * sc) / size};
+        else if (ss > 0.0)
+            speed.sum = speed.cut = sy / ss;
+        speed.sum = std::clamp(speed.sum, kSpeedLeast, kSpeedMost);
+        speed.cut = std::clamp(speed.cut, kSpeedLeast, kSpeedMost);
+    }
+    return speed;
+}
+
+Duration DrillRehearsal::contact_cost(float level) const noexcept {
+    if (!(step_s > 0.0)) return Duration{0};
+    const auto cost = [this](std::size_t i) {
+        return static_cast<double>(drill_cost(contact[i], speed).count());
+    };
+    std::size_t above = 1;
+    while (above + 1 < kLevels.size() && level > kLevels[above]) ++above;
+    const double part = std::clamp(
+        static_cast<double>((level - kLevels[above - 1]) / (kLevels[above] - kLevels[above - 1])), 0.0, 1.0);
+    return Duration(std::llround(std::pow(cost(above - 1), 1.0 - part) * std::pow(cost(above), part)));
+}
+
+DrillRehearsal rehearse_drill(const DrillSettings& settings, double voxel_m, double step_s) {
+    DrillRehearsal made;
+    std::vector<TimedWork> samples;
+    for (std::size_t i = 0; i < made.contact.size(); ++i) {
+        // Levels above one that takes a period are as far out of reach.
+        if (i > 0 && to_s(drill_cost(made.contact[i - 1])) > step_s) {
+            made.contact[i] = made.contact[i - 1];
+            continue;
+        }
+        made.contact[i] = press(settings, voxel_m, step_s, DrillRehearsal::kLevels[i],
+                                DrillRehearsal::kMostS / static_cast<double>(made.contact.size()), samples);
+    }
+    made.speed = fit_speed(samples);
+    made.step_s = step_s;
+    return made;
+}
+
+}  // namespace tact

@@ -1,0 +1,46 @@
+// What a first contact of a drill costs on this machine, tried before the loop starts.
+//
+// Trial    At each of kLevels a copy of the tool goes kDeeper times as deep into a slab of solid bone as kPressN press it, which
+//          a hand reaches while the force fades in, and is then let out until it presses with kLightN: first it cuts most
+//          bone, then it touches most. In steps of the loop's period, without a deadline
+// Work     of each level: that of the step which was expected to cost most. Between levels the logarithm of the cost is linear
+// Speed    of this machine, for summing and for cutting: two factors of the constants in drill_load.hpp. They are fitted to
+//          steps that follow a pause, as in a loop that sleeps: those find less of their data in the processor's caches
+// Time     at most kMostS
+// Thread   any but the servo: allocates
+#pragma once
+
+#include <array>
+#include <span>
+
+#include "rt/force/drilling/drill_load.hpp"
+
+namespace tact {
+
+struct DrillSettings;
+
+struct DrillRehearsal {
+    static constexpr std::array<float, 6> kLevels{0.0F, 0.15F, 0.3F, 0.5F, 0.75F, 1.0F};
+    static constexpr double kPressN = 3.0, kLightN = 1.0, kDeeper = 2.5;
+    static constexpr double kMostS = 3.0;
+
+    std::array<DrillWork, kLevels.size()> contact{};
+    DrillSpeed speed;
+    double step_s = 0.0;  // for which it was tried; 0: it was not
+
+    // Of a contact that may come; 0: not tried.
+    [[nodiscard]] Duration contact_cost(float level) const noexcept TACT_RT;
+};
+
+struct TimedWork {
+    DrillWork work;
+    double measured_ns;
+};
+// The factors with the least sum of relative errors. Without cutting both are the same.
+[[nodiscard]] DrillSpeed fit_speed(std::span<const TimedWork> steps);
+
+// voxel_m: edge of a voxel in the world. step_s: period of the loop.
+// Fails by StartupError where the model would.
+[[nodiscard]] DrillRehearsal rehearse_drill(const DrillSettings& settings, double voxel_m, double step_s);
+
+}  // namespace tact
