@@ -139,16 +139,23 @@ private:
             [&](const Vec3& place_m, double within_m) { return cells_.near(place_m, within_m); }, ball_,
             hand_m, levers, gyration_m_, -way_m, 4.0 * ball_.margin);
     }
-    // The least on a slide of two margins along what is left of the pull: normals at an edge turn by a twentieth in a margin.
-    [[nodiscard]] double unborne_m(ref::ToolJudgement j, Vec3 hand_m, Quat turn, Vec6 way_m) const {
-        double least_m = j.unborne;
-        for (int i = 0; i < 8 && least_m > 2.0 * ball_.margin; ++i) {
-            const Vec6 step_m = 0.25 * ball_.margin * j.left.normalized();
-            hand_m += step_m.head<3>();
-            turn = (quat_from_rotation_vector(step_m.tail<3>() / gyration_m_) * turn).normalized();
-            way_m += step_m;
-            j = judged(hand_m, turn, way_m);
-            least_m = std::min(least_m, j.unborne);
+    // The least on slides of two margins with what is left of the pull and against it: normals at an edge turn by a twentieth in a
+    // margin, away from a rest as well as towards it.
+    [[nodiscard]] double unborne_m(const ref::ToolJudgement& here, const Vec3& hand_m, const Quat& turn,
+                                   const Vec6& way_m) const {
+        double least_m = here.unborne;
+        for (const double sign : {1.0, -1.0}) {
+            ref::ToolJudgement j = here;
+            Pose at{hand_m, turn};
+            Vec6 way = way_m;
+            for (int i = 0; i < 8 && least_m > 2.0 * ball_.margin; ++i) {
+                const Vec6 step_m = sign * 0.25 * ball_.margin * j.left.normalized();
+                at.p_m += step_m.head<3>();
+                at.q = (quat_from_rotation_vector(step_m.tail<3>() / gyration_m_) * at.q).normalized();
+                way += step_m;
+                j = judged(at.p_m, at.q, way);
+                if (j.deepest <= 2.0 * ball_.margin) least_m = std::min(least_m, j.unborne);
+            }
         }
         return least_m;
     }
