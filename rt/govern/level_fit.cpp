@@ -143,8 +143,8 @@ std::size_t LevelFit::best(const Limits& limits, double part, double cost_s_most
     return chosen;
 }
 
-float LevelFit::choose(const Limits& limits, double part) noexcept {
-    row_ = best(limits, part, 1e9);
+float LevelFit::choose(const Limits& limits) noexcept {
+    row_ = best(limits, kRise, 1e9);
     return rows_[row_].level;
 }
 

@@ -47,7 +47,7 @@ namespace tact {
 class LevelFit {
 public:
     static constexpr std::size_t kRowsMax = 33;
-    static constexpr double kUse = 0.7, kRise = 0.88, kForeseen = 0.94;
+    static constexpr double kUse = 0.7, kRise = 0.88;
     static constexpr double kInterruptShare = 0.3;
     static constexpr double kHold_s = 0.5, kHoldMost_s = 8.0, kHoldForgotten_s = 10.0;
     // Lower bound of the speed: steps in free space are cheaper than steps in contact.
@@ -98,9 +98,8 @@ public:
     bool renew(std::size_t row, double cost_s, double error) noexcept TACT_RT;
     // The row to renew in this cycle: each in turn.
     [[nodiscard]] std::size_t due() const noexcept TACT_RT { return count_ > 0 ? cycle_ % count_ : 0; }
-    // Selects the best row that fits, whatever the present row. part: of the budget; kForeseen where the rows hold what a
-    // contact may cost at most.
-    float choose(const Limits& limits, double part = kRise) noexcept TACT_RT;
+    // Selects the best row that fits, whatever the present row.
+    float choose(const Limits& limits) noexcept TACT_RT;
 
     // Call once a cycle. Returns the new level, whether it changed, and why.
     struct Choice {

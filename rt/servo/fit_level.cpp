@@ -95,10 +95,8 @@ void calibrate_level(CycleState& c, const ServoSettings& settings) noexcept {
 
 void choose_level(CycleState& c, const ServoSettings& settings) noexcept {
     if (c.govern.fit.rows().empty()) return;
-    const bool foreseen = c.hand[0].model->predict(1.0F).cost_foreseen.count() > 0;
-    const float level =
-        c.govern.fit.choose(limits_of(c, settings), foreseen ? LevelFit::kForeseen : LevelFit::kRise);
-    static_cast<void>(c.governor.set_fitted_level(kForcePathIndex, level, LevelReason::start));
+    static_cast<void>(c.governor.set_fitted_level(
+        kForcePathIndex, c.govern.fit.choose(limits_of(c, settings)), LevelReason::start));
 }
 
 bool fit_level(CycleState& c, const ServoSettings& settings) noexcept {

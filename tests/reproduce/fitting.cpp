@@ -249,22 +249,31 @@ private:
         FitRow row{p.name, s.name, text("bent by %.0f A, back in its map", kBentM / kAngstromM), 0, 0, 0,
                    0.0,    0.0};
         std::vector<double> seconds, left;
+        int torn = 0;
         for (int k = 0; k < e_.starts; ++k) {
             SeededRandom random(e_.seed + static_cast<std::uint64_t>(k));
             const auto begin = std::chrono::steady_clock::now();
-            const double left_m = left_after_bending_m(s, random);
-            if (left_m < 0.0) return;  // too small to bend
+            const Bending bending = bend_back(s, random);
+            torn += bending.torn;
+            if (bending.left_m < 0.0) {
+                std::printf(
+                    "%-26s %-30s cannot be bent by %.0f A: too small, or every answer was torn (%d)\n",
+                    p.name.c_str(), s.name.c_str(), kBentM / kAngstromM, bending.torn);
+                return;
+            }
             seconds.push_back(
                 std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count());
-            left.push_back(left_m / kAngstromM);
+            left.push_back(bending.left_m / kAngstromM);
             ++row.starts;
-            row.right += left_m < kBentRightM ? 1 : 0;
+            row.right += bending.left_m < kBentRightM ? 1 : 0;
         }
         row.seconds = median(seconds);
         row.away_a = median(left);
-        std::printf("%-26s %-30s %-38s %3d right of %d; %.2f A left, at most %.2f; %.1f s\n",
-                    row.pair.c_str(), row.model.c_str(), row.test.c_str(), row.right, row.starts, row.away_a,
-                    *std::max_element(left.begin(), left.end()), row.seconds);
+        std::printf(
+            "%-26s %-30s %-38s %3d right of %d; %.2f A left, at most %.2f; %.1f s; %d torn answers not "
+            "used\n",
+            row.pair.c_str(), row.model.c_str(), row.test.c_str(), row.right, row.starts, row.away_a,
+            *std::max_element(left.begin(), left.end()), row.seconds, torn);
         std::fflush(stdout);
         rows_.push_back(row);
     }

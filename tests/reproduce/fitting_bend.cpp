@@ -17,6 +17,7 @@ namespace tact::launch {
 namespace {
 
 constexpr std::size_t kModesBent = 6;
+constexpr double kNeighboursM = 10.0 * kAngstromM;  // a larger gap: residues that the file lacks
 constexpr Duration kBendStep = std::chrono::milliseconds(1);
 
 std::array<float, kModesMax> random_bend(const NormalModes& modes, SeededRandom& random) {
@@ -33,6 +34,31 @@ std::array<float, kModesMax> random_bend(const NormalModes& modes, SeededRandom&
 
 Vec3 atom(const Structure& s, std::size_t i) {
     return Eigen::Vector3f(s.x_m[i], s.y_m[i], s.z_m[i]).cast<double>();
+}
+
+// The largest relative change of the distance of residues that follow each other in a chain.
+double chain_strain(const Structure& straight, const Structure& bent, const NormalModes& modes) {
+    struct Residue {
+        Vec3 straight_m = Vec3::Zero(), bent_m = Vec3::Zero();
+        double atoms = 0.0;
+        std::uint16_t chain = 0;
+    };
+    std::vector<Residue> residues(modes.nodes());
+    for (std::size_t i = 0; i < straight.size(); ++i) {
+        Residue& r = residues[modes.node[i]];
+        r.straight_m += atom(straight, i);
+        r.bent_m += atom(bent, i);
+        r.atoms += 1.0;
+        r.chain = straight.chain[i];
+    }
+    double most = 0.0;
+    for (std::size_t n = 1; n < residues.size(); ++n) {
+        const Residue &a = residues[n - 1], &b = residues[n];
+        const double rest_m = (b.straight_m / b.atoms - a.straight_m / a.atoms).norm();
+        if (a.chain != b.chain || !(rest_m > 0.0) || rest_m > kNeighboursM) continue;
+        most = std::max(most, std::abs((b.bent_m / b.atoms - a.bent_m / a.atoms).norm() / rest_m - 1.0));
+    }
+    return most;
 }
 
 DensityGrid map_of(const Structure& s) {
@@ -54,10 +80,15 @@ DensityGrid map_of(const Structure& s) {
 
 }  // namespace
 
-double left_after_bending_m(const Structure& structure, SeededRandom& random) {
+Bending bend_back(const Structure& structure, SeededRandom& random) {
+    Bending found;
     const NormalModes modes = elastic_modes(structure, kBendModes);
-    if (modes.count() == 0) return -1.0;
-    const Structure answer = bent_structure(structure, modes, random_bend(modes, random));
+    if (modes.count() == 0) return found;
+    Structure answer = bent_structure(structure, modes, random_bend(modes, random));
+    while (chain_strain(structure, answer, modes) > kTornStrain) {
+        if (++found.torn == kDrawsMost) return found;
+        answer = bent_structure(structure, modes, random_bend(modes, random));
+    }
     DockingInput input;
     input.title = "bending";
     input.grid = map_of(answer);
@@ -85,7 +116,8 @@ double left_after_bending_m(const Structure& structure, SeededRandom& random) {
     double square = 0.0;
     for (std::size_t i = 0; i < bent.size(); ++i)
         square += (T_model_body * atom(bent, i) - answer.home() * atom(answer, i)).squaredNorm();
-    return std::sqrt(square / static_cast<double>(bent.size()));
+    found.left_m = std::sqrt(square / static_cast<double>(bent.size()));
+    return found;
 }
 
 }  // namespace tact::launch
