@@ -7,7 +7,7 @@ namespace tact::servo {
 
 namespace {
 
-constexpr std::uint32_t kContinuousRows = 10;
+constexpr std::uint32_t kContinuousRows = 20;
 constexpr float kLevelMaxLeast = 0.05F, kLevelMaxRise = 1.1F;
 
 LevelFit::Limits limits_of(const CycleState& c, const ServoSettings& settings) noexcept {
