@@ -51,7 +51,7 @@ if(TACT_GUI)
             image TIMEOUT 900)
     target_compile_definitions(gui_window_tests PRIVATE TACT_GUI_PROGRAM="$<TARGET_FILE:tact-gui>"
         TACT_PROGRAM="$<TARGET_FILE:tact>")
-    add_dependencies(gui_window_tests tact tact-gui tact-rt tact-prep)
+    add_dependencies(gui_window_tests tact tact-gui tact-rt tact-prep tact-record)
     set_tests_properties(gui_calibration_window_test gui_keys_window_test gui_browser_window_test gui_window_test
         PROPERTIES RUN_SERIAL ON)
     tact_tests(gui_state_tests SOURCES
