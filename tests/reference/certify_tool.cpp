@@ -139,8 +139,8 @@ private:
             [&](const Vec3& place_m, double within_m) { return cells_.near(place_m, within_m); }, ball_,
             hand_m, levers, gyration_m_, -way_m, 4.0 * ball_.margin);
     }
-    // The least on slides of two margins with what is left of the pull and against it: normals at an edge turn by a twentieth in a
-    // margin, away from a rest as well as towards it.
+    // The least on a slide of two margins with what is left of the pull, and of a quarter of one against it: normals at an edge turn
+    // by a twentieth in a margin, and a proxy that moves by a tenth of one may have passed its rest.
     [[nodiscard]] double unborne_m(const ref::ToolJudgement& here, const Vec3& hand_m, const Quat& turn,
                                    const Vec6& way_m) const {
         double least_m = here.unborne;
@@ -148,7 +148,8 @@ private:
             ref::ToolJudgement j = here;
             Pose at{hand_m, turn};
             Vec6 way = way_m;
-            for (int i = 0; i < 8 && least_m > 2.0 * ball_.margin; ++i) {
+            const int steps = sign > 0.0 ? 8 : 1;
+            for (int i = 0; i < steps && least_m > 2.0 * ball_.margin; ++i) {
                 const Vec6 step_m = sign * 0.25 * ball_.margin * j.left.normalized();
                 at.p_m += step_m.head<3>();
                 at.q = (quat_from_rotation_vector(step_m.tail<3>() / gyration_m_) * at.q).normalized();

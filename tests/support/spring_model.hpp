@@ -18,6 +18,7 @@ public:
     ManualClock* clock = nullptr;  // a step then takes `cost` times the level
     Duration cost{0};
     Duration predicted = std::chrono::microseconds(300);  // cost at full level that predict() expects
+    Duration foreseen{0};                                 // of a contact that may come, at every level
     bool keeps_sums = false;  // a step with a work fraction takes proportionally less
     double turn_s = 0.0;      // duration of its slow update times the level; 0: it has none
     int* destroyed = nullptr;
@@ -35,6 +36,7 @@ public:
     // The error falls from 1 N to 0.
     [[nodiscard]] PathLoad predict(float fidelity) const noexcept override {
         PathLoad load;
+        load.cost_foreseen = foreseen;
         load.cost_predicted = Duration(static_cast<std::int64_t>(static_cast<double>(predicted.count()) *
                                                                  static_cast<double>(fidelity)));
         load.error = 1.0 - static_cast<double>(fidelity);

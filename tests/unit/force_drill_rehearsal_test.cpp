@@ -30,7 +30,7 @@ TEST(DrillRehearsal, finds_the_speeds_of_a_machine_among_steps_that_other_progra
     std::vector<TimedWork> steps;
     for (int i = 0; i < 400; ++i) {
         const DrillWork work = cutting(500.0 + 37.0 * (i % 31), 5.0 * (i % 17));
-        const double held = i % 10 == 3 ? 4.0 : 1.0;
+        const double held = i % 5 == 3 ? 1.9 : 1.0;
         steps.push_back({work, held * (0.8 * sum_cost_ns(work) + 1.7 * cut_cost_ns(work))});
     }
     const DrillSpeed speed = fit_speed(steps);

@@ -153,6 +153,22 @@ TEST(StageGovern, dry_cycles_try_each_level_and_the_first_armed_cycle_has_the_on
     EXPECT_GT(1.5 * static_cast<double>(f.c.governor.level(kForcePathIndex)), 0.45);
 }
 
+// In free space nothing costs what a contact will.
+TEST(StageGovern, rows_cost_what_a_contact_is_foreseen_to_cost) {
+    CycleFixture f;
+    f.settings.period = milliseconds(1);
+    f.model.foreseen = microseconds(250);
+    servo::make_level_rows(f.c);
+    for (const LevelFit::Row& row : f.c.govern.fit.rows()) EXPECT_GE(row.cost_s, 250e-6);
+    // So do those that are renewed.
+    f.model.foreseen = microseconds(290);
+    for (int i = 0; i < 100; ++i) {
+        f.c.now += milliseconds(1);
+        servo::govern(f.c, f.settings, *f.region);
+    }
+    for (const LevelFit::Row& row : f.c.govern.fit.rows()) EXPECT_GE(row.cost_s, 290e-6);
+}
+
 TEST(StageGovern, dry_cycles_count_and_publish_no_levels) {
     CycleFixture f;
     f.c.dry = true;
