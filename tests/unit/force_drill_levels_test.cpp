@@ -419,7 +419,7 @@ TEST(DrillLevels, a_late_step_that_did_more_than_it_planned_is_still_not_whole) 
     for (int i = 0; i < 20; ++i) {
         Drilled d(kRadiusM, 120);
         const Vec3 p_m(0.0, 0.0, kRadiusM - 1.5e-3);
-        d.begin(p_m + Vec3(0.0, 0.0, 2e-3));  // in the air: nothing is expected of the next step
+        d.begin(p_m + Vec3(0.0, 0.0, 12e-3));  // in the air: nothing is expected of the next step
         DeadlineChecks checks;
         checks.replayed = true;
         checks.passed_at = 3;
