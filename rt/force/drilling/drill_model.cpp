@@ -314,9 +314,8 @@ StepResult DrillModel::step(const ToolState& tool, const Budget& budget) noexcep
             DrillWork left;
             left.changed = std::max(turns_.bricks().changed / turns_.groups(), 1.0) * groups_left;
             const auto done = static_cast<double>(drill_cost(all, rehearsal_.speed).count()),
-                       whole =
-                           std::max(done + static_cast<double>(drill_cost(left, rehearsal_.speed).count()),
-                                    static_cast<double>(drill_cost(planned, rehearsal_.speed).count()));
+                       whole = std::max(done + rehearsal_.speed.cut * cut_cost_ns(left),
+                                        static_cast<double>(drill_cost(planned, rehearsal_.speed).count()));
             result.load.work_done = static_cast<float>(std::clamp(done / whole, 0.01, 1.0));
         }
     }
