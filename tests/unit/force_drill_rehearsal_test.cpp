@@ -40,6 +40,7 @@ TEST(DrillRehearsal, finds_the_speeds_of_a_machine_among_steps_that_other_progra
 
 TEST(DrillRehearsal, a_tool_that_does_not_cut_tells_one_speed) {
     std::vector<TimedWork> steps;
+    steps.reserve(50);
     for (int i = 0; i < 50; ++i) steps.push_back({summing(100.0 + i), 1.3 * sum_cost_ns(summing(100.0 + i))});
     const DrillSpeed speed = fit_speed(steps);
     EXPECT_NEAR(speed.sum, 1.3, 1e-6);

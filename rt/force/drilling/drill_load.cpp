@@ -38,8 +38,10 @@ DrillWork surface_work(const BallLook& look, double block) noexcept {
     work.blocks = 8.0;
     work.parts = 8.0 * surface.met(8.0) * parts;
     work.summed = surface.met(8.0) * voxels;
-    for (double edge = 16.0; edge < 2.0 * r; edge *= 2.0)
+    for (int power = 4; std::ldexp(1.0, power) < 2.0 * r; ++power) {
+        const double edge = std::ldexp(1.0, power);
         work.blocks += 8.0 * surface.met(edge) * share(edge);
+    }
     return work;
 }
 
