@@ -298,7 +298,8 @@ TEST(DrillModel, the_reported_stiffness_is_the_largest_slope_of_the_force_up_to_
         return result.wrench_world.force_n.norm();
     };
     double steepest = 0.0;
-    for (double depth_m = 0.5e-3; depth_m < 5e-3; depth_m += 0.25e-3) {
+    for (int quarters = 2; quarters < 20; ++quarters) {
+        const double depth_m = 0.25e-3 * quarters;
         const double low = force_n(depth_m - 0.25e-3), high = force_n(depth_m + 0.25e-3);
         if (high < DrillSettings{}.force_n_max) steepest = std::max(steepest, (high - low) / 0.5e-3);
     }

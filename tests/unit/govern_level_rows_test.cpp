@@ -14,8 +14,9 @@ TEST(LevelRows, the_largest_predicted_cost_and_error_of_the_last_seconds_count) 
     LevelFit fit = with(doubling(3, 10.0));
     EXPECT_TRUE(fit.renew(1, 100 * kUs, 5.0));
     // Unfaded for kKept_s at least, and for twice as long at most, however seldom a row is renewed.
-    double age_s = 0.0, kept_s = 0.0;
-    for (; age_s < 2.5 * LevelFit::kKept_s; age_s += 0.03) {
+    double kept_s = 0.0;
+    for (int i = 0; 0.03 * i < 2.5 * LevelFit::kKept_s; ++i) {
+        const double age_s = 0.03 * i;
         fit.pass(0.03);
         EXPECT_FALSE(fit.renew(1, 1 * kUs, 0.1));
         if (fit.rows()[1].cost_s < 100 * kUs || fit.rows()[1].error < 5.0) continue;

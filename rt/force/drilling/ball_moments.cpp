@@ -251,8 +251,10 @@ BallMoments ball_moments_exact(const MomentOctree& octree, const Vec3& centre_vo
                 }
                 for (int k = 0; k < parts * parts * parts; ++k) {
                     const Vec3 point =
-                        from + Vec3((k % parts + 0.5) / parts - 0.5, (k / parts % parts + 0.5) / parts - 0.5,
-                                    (k / (parts * parts) + 0.5) / parts - 0.5);
+                        from +
+                        (Vec3(k % parts, k / parts % parts, k / (parts * parts)).array() + 0.5).matrix() /
+                            parts -
+                        Vec3::Constant(0.5);
                     if (point.squaredNorm() >= square) continue;
                     sums.m0 += weight * level;
                     sums.m1 += weight * level * point;
