@@ -350,7 +350,7 @@ def draw_fitting(folder):
         rows = json.load(f)["rows"]
     models = list(dict.fromkeys((r["pair"], r["model"]) for r in rows))
     tests = list(dict.fromkeys(r["test"] for r in rows))
-    figure, (axes,) = start("Right places found from random starts", "%d starts each; a place of equal score counts" % rows[0]["starts"], 1,
+    figure, (axes,) = start("Right places found from random starts", "%d starts each; a place of equal score counts; where nothing is drawn, the test was not run" % rows[0]["starts"], 1,
                             height=0.9 + 0.12 * (len(tests) + 2) * len(models))
     step = 0.8 / len(tests)
     for i, test in enumerate(tests):
@@ -358,6 +358,9 @@ def draw_fitting(folder):
         y = [k + step * (i - 0.5 * (len(tests) - 1)) for k, m in enumerate(models) if m in of]
         share = [100 * (of[m]["right"] + of[m]["equal"]) / of[m]["starts"] for m in models if m in of]
         axes.barh(y, share, 0.9 * step, color=COLOURS[i % len(COLOURS)], label=test)
+        for at, value in zip(y, share):
+            if value == 0:
+                axes.text(1, at, "0", fontsize=8, va="center")
     axes.set_yticks(range(len(models)), ["%s\n%s" % (m[1], m[0]) for m in models], fontsize=8)
     axes.set_ylim(len(models) - 0.5, -0.5)
     axes.set_xlim(0, 100)
