@@ -3,7 +3,8 @@
 // Work     blocks and bricks that the force and the measurement of its stiffness visit, bricks that erosion computes and
 //          changes; as counted in a step, or expected at another level. Blocks of the force go as (touched area) / block^2,
 //          octree level by octree level; the last step's count sets the scale.
-// Time     constants of one core (README.md); another core or instruction set has a factor common to all levels.
+// Time     constants of one core (README.md), times two factors of this machine, for summing and for cutting
+//          (drill_rehearsal.hpp).
 // Error    against the published equations: shares of the elastic force for blocks and voxels, bounds of what README.md
 //          measured, and what the bone still to be cut may change: with e the exposure that is pending, a cap loses e s x m0 at most (its mean of 1 - (r/R)^2
 //          is 2x/3, half as much again for other shapes), which changes eqs 2, 3, 13 and 14 by their slopes.
