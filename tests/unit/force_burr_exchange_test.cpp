@@ -138,6 +138,21 @@ TEST(BurrExchange, the_new_burr_is_the_one_that_was_asked_for) {
     EXPECT_EQ(s.model->predict(0.5F).cost_predicted, other.model->predict(0.5F).cost_predicted);
 }
 
+// The governor needs the cost of the new tool before its first contact. Without a loop nothing is tried.
+TEST(BurrExchange, the_new_burr_is_tried_as_the_first_one_was) {
+    for (const bool tried : {false, true}) {
+        Site s;
+        if (tried) s.drilling().foresee(rehearse_drill(settings(), kVoxelM, kStepS));
+        const Duration first = s.model->predict(1.0F).cost_foreseen;
+        ASSERT_TRUE(s.model->order(burr_order(DrillShape::sphere, DrillGrit::cutting, 6e-3)));
+        s.exchange();
+        const Duration now = s.model->predict(1.0F).cost_foreseen;
+        EXPECT_EQ(first.count() > 0, tried);
+        EXPECT_EQ(now.count() > 0, tried);
+        if (tried) EXPECT_NE(now, first);
+    }
+}
+
 TEST(BurrExchange, heads_have_their_length_and_a_small_one_a_thin_shaft_and_a_large_one_the_first_again) {
     Site s;
     ASSERT_TRUE(s.model->order(burr_order(DrillShape::cylinder, DrillGrit::cutting, 4e-3, 7e-3)));

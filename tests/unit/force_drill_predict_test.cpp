@@ -117,7 +117,7 @@ TEST(DrillPrediction, in_free_space_a_level_is_predicted_to_cost_what_a_pocket_c
     for (const double radius_m : {8e-3, 20e-3}) {
         Drilled d(radius_m, radius_m > 0.01 ? 160 : 72);
         DrillRehearsal rehearsal = rehearse_drill(d.model->settings(), kDrilledVoxelM, 1e-3);
-        rehearsal.speed = {};  // work, not the time of this machine
+        rehearsal.set_speed({});  // work, not the time of this machine
         d.model->foresee(rehearsal);
         double z_m = radius_m + 1e-3;
         d.begin({0.0, 0.0, z_m});

@@ -54,12 +54,13 @@ TEST(DrillRehearsal, between_two_levels_the_cost_rises_by_equal_factors) {
     r.step_s = 1e-3;
     for (std::size_t i = 0; i < r.contact.size(); ++i)
         r.contact[i] = summing(1000.0 * std::exp2(static_cast<double>(i)));
+    r.set_speed({});
     for (std::size_t i = 0; i < r.contact.size(); ++i)
         EXPECT_NEAR(to_s(r.contact_cost(DrillRehearsal::kLevels[i])), to_s(drill_cost(r.contact[i])), 2e-9);
     const float between = 0.5F * (DrillRehearsal::kLevels[1] + DrillRehearsal::kLevels[2]);
     EXPECT_NEAR(to_s(r.contact_cost(between)),
                 std::sqrt(to_s(drill_cost(r.contact[1])) * to_s(drill_cost(r.contact[2]))), 2e-9);
-    r.speed = {2.0, 1.0};
+    r.set_speed({2.0, 1.0});
     EXPECT_NEAR(to_s(r.contact_cost(1.0F)), 2.0 * to_s(drill_cost(r.contact.back())), 2e-9);
 }
 
@@ -69,7 +70,7 @@ TEST(DrillRehearsal, higher_levels_cost_more_and_a_burr_that_stands_cuts_nothing
     s.burr_rad_s = s.rate_at_rad_s;
     DrillRehearsal r = rehearse_drill(s, kVoxelM, 1e-3);
     EXPECT_EQ(r.step_s, 1e-3);
-    r.speed = {};
+    r.set_speed({});
     EXPECT_GT(r.contact[0].changed, 0.0);
     EXPECT_GT(r.contact_cost(1.0F).count(), 1.3 * static_cast<double>(r.contact_cost(0.0F).count()));
     for (std::size_t i = 1; i < r.contact.size(); ++i)

@@ -2,7 +2,11 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cstring>
+#include <memory>
+#include <vector>
 
+#include "ipc/scene/bone/bone_volume.hpp"
 #include "rt/start/start_drill.hpp"
 
 namespace tact::start_drill_test {
@@ -77,6 +81,31 @@ TEST(StartDrill, a_tool_thinner_than_a_voxel_is_thickened_to_a_voxel) {
     fine.tool.shaft_radius_m = 0.0;  // no shaft
     bricks.voxel_m = 1.25e-3;
     EXPECT_FALSE(fit_to_voxels(fine, meta, bricks));
+}
+
+// A level is chosen before the first touch: what one costs is known then, of both tools.
+TEST(StartDrill, the_tools_are_tried_before_the_loop_starts) {
+    BoneBricks bricks;
+    bricks.size = {24, 24, 24};
+    bricks.voxel_m = 3e-4;
+    const std::vector<std::uint8_t> density(bricks.bytes(), 255);
+    BoneVolumeView volume;
+    volume.bricks = bricks;
+    volume.density = density;
+    SceneMeta meta{};
+    meta.kind = SceneKind::drilling;
+    meta.world_per_model = 1.0;
+    std::strcpy(meta.title, "a block");
+    SceneWriter out;
+    write_meta(out, meta, "made by a test\n");
+    write_bone_volume(out, volume);
+    const std::vector<std::byte> bytes = out.to_bytes();
+    const SceneFile scene = SceneFile::from_bytes(bytes, "a block");
+    const auto region = std::make_unique<RtRegion>();
+    const RtConfig config;
+    DrillScene shared(scene, config, *region);
+    for (const std::uint32_t hand : {0U, 1U})
+        EXPECT_GT(load_drill(scene, config, 1, shared, hand)->predict(0.5F).cost_foreseen.count(), 0) << hand;
 }
 
 }  // namespace

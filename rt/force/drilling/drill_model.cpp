@@ -149,7 +149,7 @@ PathLoad DrillModel::predict(float fidelity) const noexcept {
     PathLoad load;
     const DrillWork work = expected(fidelity, usual_step_s_);
     load.items = work.items();
-    load.cost_predicted = drill_cost(work, rehearsal_.speed);
+    load.cost_predicted = drill_cost(work, rehearsal_.speed());
     // A contact then shows what it costs in truth.
     if (contact_s_ < kContactKnownS) load.cost_foreseen = rehearsal_.contact_cost(fidelity);
     // A group waits for all steps between its cuts.
@@ -214,7 +214,7 @@ StepResult DrillModel::step(const ToolState& tool, const Budget& budget) noexcep
     const Instant begin = Monotonic::now();
     StepResult result;
     const DrillWork planned = expected(budget.fidelity, drive_.step_s);
-    result.load.cost_predicted = drill_cost(planned, rehearsal_.speed);
+    result.load.cost_predicted = drill_cost(planned, rehearsal_.speed());
     last_ = {};
     fade_.begin_step(drive_.step_s);
     if (asked_) erosion_.begin();
@@ -309,13 +309,13 @@ StepResult DrillModel::step(const ToolState& tool, const Budget& budget) noexcep
         const DrillWork all = work();
         result.load.items = all.items();
         // A whole step is compared with the work that it did: what was not foreseen of it is no interrupt.
-        if (!late) result.load.cost_predicted = drill_cost(all, rehearsal_.speed);
+        if (!late) result.load.cost_predicted = drill_cost(all, rehearsal_.speed());
         if (late) {
             DrillWork left;
             left.changed = std::max(turns_.bricks().changed / turns_.groups(), 1.0) * groups_left;
-            const auto done = static_cast<double>(drill_cost(all, rehearsal_.speed).count()),
-                       whole = std::max(done + rehearsal_.speed.cut * cut_cost_ns(left),
-                                        static_cast<double>(drill_cost(planned, rehearsal_.speed).count()));
+            const auto done = static_cast<double>(drill_cost(all, rehearsal_.speed()).count()),
+                       whole = std::max(done + rehearsal_.speed().cut * cut_cost_ns(left),
+                                        static_cast<double>(drill_cost(planned, rehearsal_.speed()).count()));
             result.load.work_done = static_cast<float>(std::clamp(done / whole, 0.01, 1.0));
         }
     }

@@ -120,16 +120,19 @@ DrillSpeed fit_speed(std::span<const TimedWork> steps) {
     return speed;
 }
 
+void DrillRehearsal::set_speed(const DrillSpeed& speed) {
+    speed_ = speed;
+    for (std::size_t i = 0; i < contact.size(); ++i)
+        log_ns_[i] = std::log(static_cast<double>(drill_cost(contact[i], speed).count()));
+}
+
 Duration DrillRehearsal::contact_cost(float level) const noexcept {
     if (!(step_s > 0.0)) return Duration{0};
-    const auto cost = [this](std::size_t i) {
-        return static_cast<double>(drill_cost(contact[i], speed).count());
-    };
     std::size_t above = 1;
     while (above + 1 < kLevels.size() && level > kLevels[above]) ++above;
     const double part = std::clamp(
         static_cast<double>((level - kLevels[above - 1]) / (kLevels[above] - kLevels[above - 1])), 0.0, 1.0);
-    return Duration(std::llround(std::pow(cost(above - 1), 1.0 - part) * std::pow(cost(above), part)));
+    return Duration(std::llround(std::exp(std::lerp(log_ns_[above - 1], log_ns_[above], part))));
 }
 
 DrillRehearsal rehearse_drill(const DrillSettings& settings, double voxel_m, double step_s) {
@@ -144,7 +147,7 @@ DrillRehearsal rehearse_drill(const DrillSettings& settings, double voxel_m, dou
         made.contact[i] = press(settings, voxel_m, step_s, DrillRehearsal::kLevels[i],
                                 DrillRehearsal::kMostS / static_cast<double>(made.contact.size()), samples);
     }
-    made.speed = fit_speed(samples);
+    made.set_speed(fit_speed(samples));
     made.step_s = step_s;
     return made;
 }

@@ -19,17 +19,24 @@ namespace tact {
 
 struct DrillSettings;
 
-struct DrillRehearsal {
+class DrillRehearsal {
+public:
     static constexpr std::array<float, 6> kLevels{0.0F, 0.15F, 0.3F, 0.5F, 0.75F, 1.0F};
     static constexpr double kPressN = 3.0, kLightN = 1.0, kDeeper = 2.5;
     static constexpr double kMostS = 3.0;
 
     std::array<DrillWork, kLevels.size()> contact{};
-    DrillSpeed speed;
     double step_s = 0.0;  // for which it was tried; 0: it was not
 
+    // Of contacts too. Before the loop starts.
+    void set_speed(const DrillSpeed& speed);
+    [[nodiscard]] const DrillSpeed& speed() const noexcept TACT_RT { return speed_; }
     // Of a contact that may come; 0: not tried.
     [[nodiscard]] Duration contact_cost(float level) const noexcept TACT_RT;
+
+private:
+    DrillSpeed speed_;
+    std::array<double, kLevels.size()> log_ns_{};  // of the contacts' costs
 };
 
 struct TimedWork {
