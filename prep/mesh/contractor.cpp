@@ -9,6 +9,7 @@ namespace tact {
 namespace {
 
 constexpr float kRefusedFactor = 2.0F;  // a refused pair is queued again at twice its cost
+constexpr float kOpposedFactor = 8.0F;  // because it would turn a triangle over, which costs more to find out
 constexpr float kCostMax = 1e6F;
 // Prefetch pipeline: number of pairs popped and of due pairs, and the lag of each further stage.
 constexpr std::uint32_t kPoppedDepth = 10, kDueDepth = 12, kTrianglesBack = 3, kNeighboursBack = 7;
@@ -48,10 +49,13 @@ bool Contractor::try_pair(std::uint32_t u, std::uint32_t v) {
     // A part that touches another at a vertex may be absorbed by it.
     const bool joint =
         settings_.pair_distance > 0.0 && ((vertex_[u].stamp | vertex_[v].stamp) & kBorder) != 0;
-    if (spoils(u, v, across, place.shift, joint)) {
+    const auto unsound = [&](const Place& p) {
+        return spoils(u, v, across, p.shift, joint) || opposes(sum, u, v, across, p);
+    };
+    if (unsound(place)) {
         Place other{plain, sum(plain)};
         if (limited) pull_back(sum, across, other);
-        if (place.shift == other.shift || spoils(u, v, across, other.shift, joint)) return false;
+        if (place.shift == other.shift || unsound(other)) return false;
         place = other;
     }
     lost_next_ = lost_[v][3] != 0.0F ? lost_[v] : lost_[u];
@@ -91,6 +95,7 @@ void Contractor::compact_touch() {
 void Contractor::record(std::uint32_t kept, std::uint32_t gone, float cost, float weight) {
     vertex_[gone].count = 0;
     vertex_[gone].first = kept;
+    original_.join(kept, gone);
     --alive_;
     const float own = std::sqrt(cost / std::max(weight, 1e-30F));
     error_ = std::max(error_, own);
@@ -153,6 +158,7 @@ void Contractor::fetch_lists(const QueuedPair& pair) const {
     for (const std::uint32_t v : {pair.u & ~kNoEdge, pair.v}) {
         prefetch(touch_.data() + vertex_[v].first);
         prefetch(facing_.data() + v);
+        original_.prefetch_joint(v);
     }
 }
 
@@ -171,6 +177,7 @@ void Contractor::fetch_neighbours(const QueuedPair& pair) const {
             for (const std::uint32_t w : triangle_[list[i]]) {
                 prefetch(vertex_.data() + w);
                 prefetch(mark_.data() + w);
+                prefetch(facing_.data() + w);
             }
         }
     }
@@ -250,6 +257,7 @@ Simplified Contractor::run(const Progress& progress) {
         if (!is_due(pair, due)) continue;
         Tried tried = Tried::refused;
         tried_at_ = due;
+        opposed_ = false;
         if ((pair.u & kNoEdge) != 0) {
             tried = try_apart(pair, due);
         } else {
@@ -257,7 +265,7 @@ Simplified Contractor::run(const Progress& progress) {
             if (try_pair(wider ? pair.u : pair.v, wider ? pair.v : pair.u)) tried = Tried::done;
         }
         if (tried != Tried::refused) continue;
-        const float later = std::max(due * kRefusedFactor, 1e-20F);
+        const float later = std::max(due * (opposed_ ? kOpposedFactor : kRefusedFactor), 1e-20F);
         if (later < kCostMax) queue_.push(later, pair);
     }
     take_rest();

@@ -14,6 +14,7 @@
 
 #include "ipc/base/huge_pages.hpp"
 #include "prep/mesh/bucket_queue.hpp"
+#include "prep/mesh/opposed.hpp"
 #include "prep/mesh/placement.hpp"
 #include "prep/mesh/simplify.hpp"
 #include "prep/mesh/turn_limits.hpp"
@@ -115,6 +116,8 @@ private:
     void note_bends(std::uint32_t u);
     bool spoils(std::uint32_t u, std::uint32_t v, const Eigen::Vector3f& across, const Eigen::Vector3f& to,
                 bool joining = false);
+    bool opposes(const Quadric& sum, std::uint32_t u, std::uint32_t v, const Eigen::Vector3f& across,
+                 const Place& place);
     bool try_pair(std::uint32_t u, std::uint32_t v);
     void contract(std::uint32_t u, std::uint32_t v, const Quadric& sum, const Place& place);
     void record(std::uint32_t kept, std::uint32_t gone, float cost, float weight);
@@ -146,6 +149,8 @@ private:
     HugeVector<Lost> lost_;
     Lost lost_next_{};
     float tried_at_ = 0.0F;          // the cost at which the pair is tried; rises when it is refused
+    Opposed original_;
+    bool opposed_ = false;  // the reason of the last refusal
     HugeVector<std::uint8_t> bend_;  // per vertex: an upper bound, see contractor_checks.cpp
     Star star_u_, star_v_;
     std::vector<Leaf> leaf_;    // triangles that a contraction would leave at the new vertex

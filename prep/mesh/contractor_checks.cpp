@@ -12,8 +12,10 @@
 namespace tact {
 namespace {
 
-constexpr float kFoldChord = 1.94F;  // |n - m| at kFoldCosine, minus a margin
+constexpr float kFoldChord = 1.922F;  // |n - m| at kFoldCosine, minus a margin
 constexpr float kThin = 1e-3F;
+constexpr float kOpposed = 0.5F;     // times the error level; 1: eight of dragon -> 5000 remain; 0.3: takes longer
+constexpr double kOpposedWork = 200;  // per vertex: bounds the time for this where everything is refused, near the end
 constexpr float kBendUnit = 2.0F / 255.0F;
 
 // 4 sqrt(3) area / sum of squared sides: 1 for an equilateral triangle.
@@ -173,6 +175,38 @@ bool Contractor::spoils(std::uint32_t u, std::uint32_t v, const Eigen::Vector3f&
     const Side<float> side(facing.head<3>(), facing.w());
     return turns_over(star_u_, v, Eigen::Vector3f::Zero(), to, side) ||
            turns_over(star_v_, u, across, to, side) || folds(u, v, joining);
+}
+
+// True if a triangle would face away from the original by more than the error level, and by more than before. spoils()
+// has listed the triangles.
+bool Contractor::opposes(const Quadric& sum, std::uint32_t u, std::uint32_t v, const Eigen::Vector3f& across,
+                         const Place& place) {
+    if (static_cast<double>(original_.work()) > kOpposedWork * static_cast<double>(vertex_.size())) return false;
+    const Eigen::Vector4f facing = facing_[u] + facing_[v];
+    const auto suspect = [&](const Eigen::Vector3f& normal, const Eigen::Vector4f& f) {
+        return normal.dot(f.head<3>()) < 0.0F;
+    };
+    const auto model = [&](const Eigen::Vector3f& p) -> Eigen::Vector3d {
+        return centre_ + extent_ * p.cast<double>();
+    };
+    for (const Leaf& leaf : leaf_) {
+        if (!suspect(leaf.normal, facing) && !suspect(leaf.normal, facing_[leaf.next]) &&
+            !suspect(leaf.normal, facing_[leaf.last]))
+            continue;
+        const double limit_m =
+            extent_ * static_cast<double>(kOpposed * std::sqrt(square_level(sum, across, place)));
+        const Eigen::Vector3d to = model(vertex_[u].at() + place.shift);
+        Opposed::Face face{{u, leaf.next, leaf.last},
+                           {to, model(vertex_[leaf.next].at()), model(vertex_[leaf.last].at())}};
+        original_.join(u, v);  // a second time parts them again
+        const double after = original_.opposed_m(face, limit_m);
+        original_.join(u, v);
+        if (after <= limit_m) continue;
+        face.vertex[0] = leaf.other == v ? u : v;
+        face.corner[0] = model(vertex_[face.vertex[0]].at());
+        if (after > original_.opposed_m(face, limit_m)) return opposed_ = true;
+    }
+    return false;
 }
 
 }  // namespace tact

@@ -6,7 +6,8 @@
 
 namespace tact {
 
-Contractor::Contractor(const TriangleMesh& mesh, const SimplifySettings& settings) : settings_(settings) {
+Contractor::Contractor(const TriangleMesh& mesh, const SimplifySettings& settings)
+    : settings_(settings), original_(mesh) {
     scale(mesh);
     touch();
     add_planes();

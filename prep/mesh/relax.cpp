@@ -19,6 +19,7 @@
 #include "prep/mesh/mesh_distance.hpp"
 #include "prep/mesh/mesh_stars.hpp"
 #include "prep/mesh/nearest_point.hpp"
+#include "prep/mesh/opposed.hpp"
 #include "prep/mesh/turn_limits.hpp"
 
 namespace tact {
@@ -29,6 +30,7 @@ constexpr int kSolverSteps = 12;
 constexpr double kStay = 0.02;  // mu
 constexpr double kBorderWeight = 6.0;
 constexpr double kStray = 16.0;            // times the mean squared offset
+constexpr double kOpposedOffset = 1.0;     // times the root of the mean squared offset
 constexpr double kStartCosine = 0.3;       // a triangle may turn by 72 degrees over all rounds
 constexpr std::uint32_t kRoundsMost = 40;  // by default
 constexpr std::size_t kPullsMost = 60000;
@@ -69,11 +71,13 @@ private:
     }
     std::vector<Vec> solve();
     void limit_stray();
+    void set_opposed_limit();
     [[nodiscard]] double from_border(const Vec& p) const;
     [[nodiscard]] double from_original(std::uint32_t v, const Vec& p) const {
         return star_.border()[v] != kNoIndex ? from_border(p) : grid_->squared(p);
     }
     bool move(std::uint32_t v, const Vec& to);
+    bool opposes(std::uint32_t v, const Vec& from);
     [[nodiscard]] Vec double_area(const Corners& c) const {
         return (at_[c[1]] - at_[c[0]]).cross(at_[c[2]] - at_[c[0]]);
     }
@@ -88,6 +92,9 @@ private:
     std::vector<Sample> sample_;
     std::vector<Row> row_;
     std::vector<Side<double>> side_;          // per vertex
+    std::vector<Vec> facing_;                 // per vertex: sum of the double areas that it represents
+    Opposed opposed_;
+    double opposed_limit_m_ = 0.0;
     std::vector<std::array<Vec, 2>> border_;  // border edges of the original
     std::optional<MeshGrid> grid_;            // of the original, if vertices must stay near it
     std::vector<double> stray_;               // per vertex: allowed squared distance from the original
@@ -104,7 +111,9 @@ Relaxer::Relaxer(const TriangleMesh& original, Simplified& simplified)
     : original_(original),
       simplified_(simplified),
       triangle_(corners(simplified.mesh)),
-      star_(simplified.mesh) {
+      star_(simplified.mesh),
+      opposed_(original) {
+    for (const Contraction& c : simplified.contraction) opposed_.join(c.kept, c.gone);
     went_.assign(original.vertices(), kNoIndex);
     for (std::uint32_t v = 0; v < simplified.origin.size(); ++v) went_[simplified.origin[v]] = v;
     for (std::size_t i = simplified.contraction.size(); i-- > 0;)
@@ -123,18 +132,18 @@ Relaxer::Relaxer(const TriangleMesh& original, Simplified& simplified)
 void Relaxer::hold() { grid_.emplace(original_, 64.0); }
 
 void Relaxer::take_sides() {
-    std::vector<Vec> facing(at_.size(), Vec::Zero());
+    facing_.assign(at_.size(), Vec::Zero());
     std::vector<double> area(at_.size(), 0.0);
     for (std::size_t t = 0; t < original_.triangles(); ++t) {
         const std::uint32_t* c = &original_.triangle[3 * t];
         const Vec normal = (original(c[1]) - original(c[0])).cross(original(c[2]) - original(c[0]));
         for (const std::uint32_t v : {went_[c[0]], went_[c[1]], went_[c[2]]}) {
             if (v == kNoIndex) continue;
-            facing[v] += normal;
+            facing_[v] += normal;
             area[v] += normal.norm();
         }
     }
-    for (std::size_t v = 0; v < at_.size(); ++v) side_.emplace_back(facing[v], area[v]);
+    for (std::size_t v = 0; v < at_.size(); ++v) side_.emplace_back(facing_[v], area[v]);
 }
 
 // Samples the centres of triangles, weighted by area; skips triangles if there are more than needed.
@@ -302,6 +311,16 @@ void Relaxer::limit_stray() {
             std::max(from_original(v, at_[v]), star_.border()[v] != kNoIndex ? border : surface));
 }
 
+void Relaxer::set_opposed_limit() {
+    double sum = 0.0, weight = 0.0;
+    for (const Row& row : row_) {
+        if (row.corner[1] == row.corner[2]) continue;  // of a border
+        sum += row.weight * row.offset * row.offset;
+        weight += row.weight;
+    }
+    opposed_limit_m_ = kOpposedOffset * std::sqrt(sum / std::max(weight, 1e-300));
+}
+
 // Returns false and changes nothing if a triangle would flip or two would fold onto each other.
 bool Relaxer::move(std::uint32_t v, const Vec& to) {
     const Vec from = at_[v];
@@ -331,7 +350,25 @@ bool Relaxer::move(std::uint32_t v, const Vec& to) {
             }
         }
     }
-    return true;
+    return !opposes(v, from) || refuse();
+}
+
+// True if a triangle faces away from the original by more than the limit, and by more than before v was moved.
+bool Relaxer::opposes(std::uint32_t v, const Vec& from) {
+    for (const std::uint32_t t : star_.triangles(v)) {
+        const Corners& c = triangle_[t];
+        const Vec normal = double_area(c);
+        if (std::none_of(c.begin(), c.end(), [&](std::uint32_t w) { return normal.dot(facing_[w]) < 0.0; }))
+            continue;
+        const std::vector<std::uint32_t>& origin = simplified_.origin;
+        Opposed::Face face{{origin[c[0]], origin[c[1]], origin[c[2]]}, {at_[c[0]], at_[c[1]], at_[c[2]]}};
+        const double after = opposed_.opposed_m(face, opposed_limit_m_);
+        if (after <= opposed_limit_m_) continue;
+        for (std::size_t i = 0; i < 3; ++i)
+            if (c[i] == v) face.corner[i] = from;
+        if (after > opposed_.opposed_m(face, opposed_limit_m_)) return true;
+    }
+    return false;
 }
 
 void Relaxer::round() {
@@ -343,6 +380,7 @@ void Relaxer::round() {
             pull(sample);
     }
     if (grid_ && stray_.empty()) limit_stray();
+    set_opposed_limit();
     const std::vector<Vec> shift = solve();
     for (std::uint32_t v = 0; v < at_.size(); ++v) {
         if (shift[v].allFinite() && !move(v, at_[v] + shift[v])) move(v, at_[v] + 0.3 * shift[v]);

@@ -4,7 +4,7 @@
 // Topology  edge contractions that would pinch, close or double the surface are refused (link condition). Borders, and
 //           edges with more than two triangles, contract along themselves, held by planes perpendicular to them. Any
 //           mesh is accepted; parts that cannot be contracted soundly are left unchanged.
-// Folds     none is made: no triangle turns by more than 60 degrees in one step, becomes a needle, or comes within 26
+// Folds     none is made: no triangle turns by more than 60 degrees in one step, becomes a needle, or comes within 30
 //           degrees of lying on a neighbour, at the new vertex or across from it. If the surface that a vertex
 //           represents mostly faces one side, its triangles stay within 60 degrees of that side over all steps.
 // Spikes    where the surface is bent, a new vertex stays within the error level of the surface before, and what a step

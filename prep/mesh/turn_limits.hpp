@@ -7,9 +7,9 @@ namespace tact {
 
 template <class T>
 inline constexpr T kTurnCosine = T(0.5);  // at most 60 degrees
-// A triangle comes no nearer than 26 degrees to lying on its neighbour.
+// A triangle comes no nearer than 30 degrees to lying on its neighbour.
 template <class T>
-inline constexpr T kFoldCosine = T(-0.9);
+inline constexpr T kFoldCosine = T(-0.866);
 // If the surface that a vertex represents mostly faces one side, its triangles stay on that side over all steps.
 template <class T>
 class Side {
