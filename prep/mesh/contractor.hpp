@@ -63,7 +63,7 @@ private:
     void touch();
     void add_planes();
     void add_borders();
-    void add_border(std::uint32_t u, std::uint32_t w);
+    void add_border(std::uint32_t u, std::uint32_t w, float boundary_weight);
     void queue_all(const Progress& progress);
     void queue_near();
     void push(std::uint32_t u, std::uint32_t v, std::uint32_t flag = 0);
@@ -148,9 +148,9 @@ private:
     using Lost = std::array<float, 4>;
     HugeVector<Lost> lost_;
     Lost lost_next_{};
-    float tried_at_ = 0.0F;          // the cost at which the pair is tried; rises when it is refused
+    float tried_at_ = 0.0F;  // the cost at which the pair is tried; rises when it is refused
     Opposed original_;
-    bool opposed_ = false;  // the reason of the last refusal
+    bool opposed_ = false;           // the reason of the last refusal
     HugeVector<std::uint8_t> bend_;  // per vertex: an upper bound, see contractor_checks.cpp
     Star star_u_, star_v_;
     std::vector<Leaf> leaf_;    // triangles that a contraction would leave at the new vertex

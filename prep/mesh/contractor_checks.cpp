@@ -14,8 +14,11 @@ namespace {
 
 constexpr float kFoldChord = 1.922F;  // |n - m| at kFoldCosine, minus a margin
 constexpr float kThin = 1e-3F;
-constexpr float kOpposed = 0.5F;     // times the error level; 1: eight of dragon -> 5000 remain; 0.3: takes longer
-constexpr double kOpposedWork = 200;  // per vertex: bounds the time for this where everything is refused, near the end
+constexpr float kOpposed =
+    0.3F;  // times the error level; 1: eight of dragon -> 5000 remain; 0.3: takes longer
+constexpr float kOpposedTurn =
+    0.2F;  // as a chord: steps that turn a triangle less are not compared with the original
+constexpr double kOpposedWork = 24;  // per vertex: bounds the time where most pairs are refused, near the end
 constexpr float kBendUnit = 2.0F / 255.0F;
 
 // 4 sqrt(3) area / sum of squared sides: 1 for an equilateral triangle.
@@ -181,7 +184,8 @@ bool Contractor::spoils(std::uint32_t u, std::uint32_t v, const Eigen::Vector3f&
 // has listed the triangles.
 bool Contractor::opposes(const Quadric& sum, std::uint32_t u, std::uint32_t v, const Eigen::Vector3f& across,
                          const Place& place) {
-    if (static_cast<double>(original_.work()) > kOpposedWork * static_cast<double>(vertex_.size())) return false;
+    if (static_cast<double>(original_.work()) > kOpposedWork * static_cast<double>(vertex_.size()))
+        return false;
     const Eigen::Vector4f facing = facing_[u] + facing_[v];
     const auto suspect = [&](const Eigen::Vector3f& normal, const Eigen::Vector4f& f) {
         return normal.dot(f.head<3>()) < 0.0F;
@@ -190,6 +194,7 @@ bool Contractor::opposes(const Quadric& sum, std::uint32_t u, std::uint32_t v, c
         return centre_ + extent_ * p.cast<double>();
     };
     for (const Leaf& leaf : leaf_) {
+        if (leaf.turn < kOpposedTurn) continue;
         if (!suspect(leaf.normal, facing) && !suspect(leaf.normal, facing_[leaf.next]) &&
             !suspect(leaf.normal, facing_[leaf.last]))
             continue;

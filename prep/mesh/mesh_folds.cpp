@@ -36,7 +36,7 @@ std::size_t count_folds(const TriangleMesh& mesh) {
         // Neighbours that use the edge in the same direction face opposite sides.
         const float sign = side[i].forward == side[i + 1].forward ? -1.0F : 1.0F;
         const Eigen::Vector3f &m = unit[side[i].triangle], &n = unit[side[i + 1].triangle];
-        if (sign * m.dot(n) < -0.9F || m.isZero() || n.isZero()) ++folds;
+        if (sign * m.dot(n) < -0.866F || m.isZero() || n.isZero()) ++folds;
     }
     return folds;
 }

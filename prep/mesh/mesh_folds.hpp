@@ -1,4 +1,4 @@
-// Counts pairs of triangles at an edge that are nearly face to face: their normals differ by more than 154 degrees.
+// Counts pairs of triangles at an edge that are nearly face to face: their normals differ by more than 150 degrees.
 #pragma once
 
 #include <cstddef>

@@ -10,6 +10,8 @@
 namespace tact {
 namespace {
 
+constexpr float kUp = 1.0001F;  // rounds up
+
 Eigen::Vector3d opposed_area(const std::array<Eigen::Vector3d, 3>& c) {
     return (c[1] - c[0]).cross(c[2] - c[0]);
 }
@@ -35,7 +37,7 @@ void Opposed::list_triangles() {
     spot_.resize(original_.vertices());
     for (std::size_t v = 0; v < spot_.size(); ++v) {
         const float* p = &original_.position_m[3 * v];
-        spot_[v] = {{p[0], p[1], p[2]}, 0.0F};
+        spot_[v] = {{p[0], p[1], p[2]}, 0.0F, Eigen::Vector3f::Zero()};
     }
     std::vector<std::uint32_t> place(first_.begin(), first_.end() - 1);
     for (std::uint32_t i = 0; i < original_.triangle.size(); ++i) {
@@ -45,19 +47,25 @@ void Opposed::list_triangles() {
         a.reach = std::max(a.reach, edge);
         b.reach = std::max(b.reach, edge);
         list_[place[original_.triangle[i]]++] = i / 3;
+        if (i % 3 == 0) {
+            const Eigen::Vector3f normal = opposed_area(corners(i / 3)).normalized().cast<float>();
+            for (std::uint32_t k = i; k < i + 3; ++k) spot_[original_.triangle[k]].mean += normal;
+        }
     }
 }
 
-// Calls take(vertex of the original) until it returns true.
 template <class Take>
-void Opposed::each_in_part(const Face& face, Take&& take) const {
+void Opposed::each_in_part(const Face& face, Take&& take) {
+    std::uint64_t visits = 0;
     for (const std::uint32_t start : face.vertex) {
         std::uint32_t v = start;
         do {
-            if (take(v)) return;
+            ++visits;
+            take(v);
             v = after_[v];
         } while (v != start);
     }
+    work_ += visits / 4;
 }
 
 std::array<Eigen::Vector3d, 3> Opposed::corners(std::uint32_t t) const {
@@ -68,35 +76,40 @@ std::array<Eigen::Vector3d, 3> Opposed::corners(std::uint32_t t) const {
 double Opposed::opposed_m(const Face& face, double enough_m) {
     if (first_.empty()) list_triangles();
     const Eigen::Vector3d normal = opposed_area(face.corner);
+    const Eigen::Vector3f way = normal.normalized().cast<float>();
+    const auto enough = static_cast<float>(enough_m);
     double most = 0.0;
     for (const Eigen::Vector3d& p : opposed_points(face.corner)) {
-        ++turn_;
+        // Bounds from the vertices: one whose mean normal faces the triangle's way has a triangle that does.
         const Eigen::Vector3f near = p.cast<float>();
+        float any_square = 1e30F, alike_square = 1e30F;
+        each_in_part(face, [&](std::uint32_t v) {
+            const float square = (spot_[v].at - near).squaredNorm();
+            any_square = std::min(any_square, square);
+            if (square < alike_square && spot_[v].mean.dot(way) > 0.0F) alike_square = square;
+        });
+        if (alike_square <= enough * enough) continue;
+        ++turn_;
+        float any_m = kUp * std::sqrt(any_square), alike_m = kUp * std::sqrt(alike_square);
         double any = 1e300, alike = kNowhere * kNowhere;
-        float any_m = 1e15F, alike_m = 1e15F;  // the roots, rounded up
         each_in_part(face, [&](std::uint32_t v) {
             const float away = (spot_[v].at - near).squaredNorm(), far = alike_m + spot_[v].reach;
-            ++work_;
-            if (away > far * far) return false;
+            if (away > far * far) return;
             const bool far_from_any = away > (any_m + spot_[v].reach) * (any_m + spot_[v].reach);
             for (std::uint32_t i = first_[v]; i < first_[v + 1]; ++i) {
                 if (seen_[list_[i]] == turn_) continue;  // from another of its corners
-                work_ += 4;
+                ++work_;
                 const std::array<Eigen::Vector3d, 3> c = corners(list_[i]);
                 const bool along = opposed_area(c).dot(normal) > 0.0;
                 if (!along && far_from_any) continue;
                 seen_[list_[i]] = turn_;
                 const double square = nearest_point(p, c[0], c[1], c[2]).square;
-                if (square < any) {
-                    any = square;
-                    any_m = 1.0001F * static_cast<float>(std::sqrt(square));
-                }
-                if (along && square < alike) {
-                    alike = square;
-                    alike_m = 1.0001F * static_cast<float>(std::sqrt(square));
-                }
+                any = std::min(any, square);
+                any_m = std::min(any_m, kUp * static_cast<float>(std::sqrt(square)));
+                if (!along || square >= alike) continue;
+                alike = square;
+                alike_m = std::min(alike_m, kUp * static_cast<float>(std::sqrt(square)));
             }
-            return alike <= enough_m * enough_m;
         });
         if (any < alike) most = std::max(most, std::sqrt(alike) - std::sqrt(any));
     }

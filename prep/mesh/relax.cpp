@@ -30,7 +30,8 @@ constexpr int kSolverSteps = 12;
 constexpr double kStay = 0.02;  // mu
 constexpr double kBorderWeight = 6.0;
 constexpr double kStray = 16.0;            // times the mean squared offset
-constexpr double kOpposedOffset = 1.0;     // times the root of the mean squared offset
+constexpr double kOpposedOffset = 0.25;    // times the root of the mean squared offset
+constexpr double kShiftMost = 2.0;         // times the largest offset at a vertex, in a single round
 constexpr double kStartCosine = 0.3;       // a triangle may turn by 72 degrees over all rounds
 constexpr std::uint32_t kRoundsMost = 40;  // by default
 constexpr std::size_t kPullsMost = 60000;
@@ -72,6 +73,7 @@ private:
     std::vector<Vec> solve();
     void limit_stray();
     void set_opposed_limit();
+    void shorten(std::vector<Vec>& shift) const;
     [[nodiscard]] double from_border(const Vec& p) const;
     [[nodiscard]] double from_original(std::uint32_t v, const Vec& p) const {
         return star_.border()[v] != kNoIndex ? from_border(p) : grid_->squared(p);
@@ -91,8 +93,8 @@ private:
     MeshStars star_;
     std::vector<Sample> sample_;
     std::vector<Row> row_;
-    std::vector<Side<double>> side_;          // per vertex
-    std::vector<Vec> facing_;                 // per vertex: sum of the double areas that it represents
+    std::vector<Side<double>> side_;  // per vertex
+    std::vector<Vec> facing_;         // per vertex: sum of the double areas that it represents
     Opposed opposed_;
     double opposed_limit_m_ = 0.0;
     std::vector<std::array<Vec, 2>> border_;  // border edges of the original
@@ -311,6 +313,19 @@ void Relaxer::limit_stray() {
             std::max(from_original(v, at_[v]), star_.border()[v] != kNoIndex ? border : surface));
 }
 
+// A vertex with few samples could leave the surface by many times what the samples ask for.
+void Relaxer::shorten(std::vector<Vec>& shift) const {
+    std::vector<double> most(shift.size(), 0.0);
+    for (const Row& row : row_) {
+        for (const std::uint32_t v : row.corner)
+            most[v] = std::max(most[v], kShiftMost * std::abs(row.offset));
+    }
+    for (std::size_t v = 0; v < shift.size(); ++v) {
+        const double length = shift[v].norm();
+        if (length > most[v]) shift[v] *= most[v] / length;
+    }
+}
+
 void Relaxer::set_opposed_limit() {
     double sum = 0.0, weight = 0.0;
     for (const Row& row : row_) {
@@ -381,7 +396,8 @@ void Relaxer::round() {
     }
     if (grid_ && stray_.empty()) limit_stray();
     set_opposed_limit();
-    const std::vector<Vec> shift = solve();
+    std::vector<Vec> shift = solve();
+    if (!grid_) shorten(shift);
     for (std::uint32_t v = 0; v < at_.size(); ++v) {
         if (shift[v].allFinite() && !move(v, at_[v] + shift[v])) move(v, at_[v] + 0.3 * shift[v]);
     }

@@ -12,7 +12,7 @@
 // Errors    integrated over the area: sum of triangle areas times squared distances. error_m is the root of its mean
 //           over the planes that a vertex represents; it never decreases along the sequence.
 // Repeats   the same mesh and settings give the same sequence.
-// Cost      about 1.6 us and 276 bytes per vertex, see tests/bench/simplify_bench.cpp.
+// Cost      about 1.6 us and 350 bytes per vertex, see tests/bench/simplify_bench.cpp.
 // Thread    any but the servo's.
 // Fails by  StartupError on indices out of range or positions that are not finite.
 #pragma once
@@ -30,7 +30,9 @@ inline constexpr double kPublishedBoundaryWeight = 1000.0;  // f of the publishe
 
 struct SimplifySettings {
     std::uint32_t vertices_min = 4;  // stops there, or earlier if no further contraction is possible
-    double boundary_weight = 100.0;  // f: weight of planes at border edges, relative to triangle planes
+    // f: weight of planes at border edges, relative to triangle planes; a tenth of it where more than 5 % of these edges
+    // have three or more triangles
+    double boundary_weight = 100.0;
     // t, in mean edge lengths: unconnected vertices that are nearer to each other are pairs too; 0: only edges.
     double pair_distance = 0.0;
     std::uint32_t pairs_per_vertex_max = 4;  // the nearest of these pairs

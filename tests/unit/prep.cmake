@@ -10,7 +10,7 @@ set_tests_properties(prep_search_places_test PROPERTIES LABELS long)
 tact_tests(prep_mesh_tests SOURCES
         unit/prep_contraction_test.cpp unit/prep_mesh_file_test.cpp unit/prep_clean_mesh_test.cpp
         unit/prep_forest_test.cpp unit/prep_simplify_test.cpp unit/prep_simplify_to_keep_test.cpp
-        unit/prep_largest_error_test.cpp
+        unit/prep_largest_error_test.cpp unit/prep_opposed_test.cpp
     USES prep_mesh prep_synthetic prep_mesh_file prep_surface scene SYSTEM ZLIB::ZLIB rapidcheck)
 find_package(nlohmann_json REQUIRED)
 tact_tests(prep_files_tests SOURCES

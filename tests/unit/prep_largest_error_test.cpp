@@ -1,10 +1,12 @@
 // Largest distance between a mesh and its simplification, and triangles that face the wrong way.
 //
-// Flipped   a triangle that faces away from the surface nearest to its centre, while the surface that faces its way is farther by
-//           more than three times the RMS distance. (At a crease or in a narrow gap both are equally near.)
+// Flipped   a triangle that, at its centre or half-way between centre and a corner, faces away from the nearest surface, while
+//           the surface that faces its way is farther by more than three times the RMS distance. (At a crease or in a
+//           narrow gap both are equally near.) At the centre: counted there alone.
 // Distances two-sided, from samples and from all vertices
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <cstdlib>
 #include <filesystem>
@@ -12,6 +14,7 @@
 
 #include "ipc/scene/density/isosurface.hpp"
 #include "prep/mesh/mesh_distance.hpp"
+#include "prep/mesh/mesh_folds.hpp"
 #include "prep/mesh/simplify_to_keep.hpp"
 #include "prep/mesh_file/import_mesh.hpp"
 #include "prep/synthetic/rough_torus.hpp"
@@ -22,7 +25,7 @@ namespace {
 
 struct Quality {
     double rms_m = 0.0, max_m = 0.0;
-    std::size_t flipped = 0;
+    std::size_t flipped = 0, at_centre = 0;
 };
 
 Quality quality(const TriangleMesh& original, const TriangleMesh& made) {
@@ -46,12 +49,29 @@ Quality quality(const TriangleMesh& original, const TriangleMesh& made) {
         const Vec3 centre = (point(made, c[0]) + point(made, c[1]) + point(made, c[2])) / 3.0;
         const Vec3 normal = double_area(made, t);
         const auto faces = [&](std::uint32_t o) { return double_area(original, o).dot(normal) > 0.0; };
-        const MeshGrid::Nearest any = from.nearest(centre, [](std::uint32_t) { return true; });
-        if (faces(any.triangle)) continue;
-        const MeshGrid::Nearest alike = from.nearest(centre, faces);
-        if (std::sqrt(alike.squared) > std::sqrt(any.squared) + 3.0 * q.rms_m) ++q.flipped;
+        const auto opposed = [&](const Vec3& p) {
+            const MeshGrid::Nearest any = from.nearest(p, [](std::uint32_t) { return true; });
+            if (faces(any.triangle)) return false;
+            return std::sqrt(from.nearest(p, faces).squared) > std::sqrt(any.squared) + 3.0 * q.rms_m;
+        };
+        const bool at_centre = opposed(centre);
+        if (at_centre) ++q.at_centre;
+        if (at_centre ||
+            std::any_of(c, c + 3, [&](std::uint32_t v) { return opposed(0.5 * (centre + point(made, v))); }))
+            ++q.flipped;
     }
     return q;
+}
+
+constexpr const char* kNoData = "the folder of real data is absent (set TACT_SHARED)";
+
+// Empty if the folder of real data is absent.
+TriangleMesh scan(const char* name) {
+    const char* const shared = std::getenv("TACT_SHARED");
+    const std::filesystem::path folder =
+        std::filesystem::path(shared != nullptr ? shared : "../shared") / "data" / "meshes";
+    if (!std::filesystem::is_directory(folder)) return {};
+    return cleaned(import_mesh(folder / name).mesh);
 }
 
 // A ball of radius 0.5 with twelve tapered horns, 0.35 long.
@@ -101,29 +121,50 @@ TEST(LargestError, a_triangle_that_faces_inward_counts_as_flipped) {
     EXPECT_EQ(quality(ball, made).flipped, 1U);
 }
 
+// A part that folds back on itself leaves vertices without a common side; a triangle there may only be compared with the
+// original itself.
+TEST(LargestError, a_scan_has_no_flipped_triangle_and_no_fold_at_any_size) {
+    const TriangleMesh mesh = scan("armadillo_100k.obj.gz");
+    if (mesh.triangles() == 0) GTEST_SKIP() << kNoData;
+    for (const std::uint32_t vertices : {20000U, 5000U}) {
+        const TriangleMesh steps = simplify(mesh, {.vertices_min = vertices}).mesh;
+        const TriangleMesh kept = simplify_to_keep(mesh, {.vertices_min = vertices}).simplified.mesh;
+        for (const TriangleMesh* made : {&steps, &kept}) {
+            EXPECT_EQ(quality(mesh, *made).flipped, 0U) << vertices;
+            EXPECT_EQ(count_folds(*made), 0U) << vertices;
+        }
+    }
+}
+
+TEST(LargestError, of_many_remaining_vertices_is_not_increased_by_relaxation) {
+    const TriangleMesh mesh = scan("molsurf_1crn.ply.gz");
+    if (mesh.triangles() == 0) GTEST_SKIP() << kNoData;
+    const Quality q = quality(mesh, simplify_to_keep(mesh, {.vertices_min = 20000}).simplified.mesh);
+    EXPECT_LE(100.0 * q.max_m / MeshGrid(mesh).diagonal_m(), 0.0543);  // meshoptimizer; without a limit 0.127
+}
+
 // The largest distance of meshoptimizer 0.18 (meshopt_simplify to the same number of triangles, no error limit),
 // in percent of the diagonal, measured in the same way on 2026-11-29; prep/DECISIONS.md has all of them.
 TEST(LargestError, is_at_most_that_of_meshoptimizer_on_scanned_meshes) {
-    const char* const shared = std::getenv("TACT_SHARED");
-    const std::filesystem::path folder =
-        std::filesystem::path(shared != nullptr ? shared : "../shared") / "data" / "meshes";
-    if (!std::filesystem::is_directory(folder))
-        GTEST_SKIP() << "the folder of real data is absent (set TACT_SHARED)";
+    if (scan("cow.obj").triangles() == 0) GTEST_SKIP() << kNoData;
     struct Case {
         const char* name;
         std::uint32_t vertices;
         double theirs_percent;
     };
     for (const Case& c :
-         {Case{"armadillo_100k.obj.gz", 5000, 0.2308}, Case{"armadillo_100k.obj.gz", 1000, 0.8110},
-          Case{"cow.obj", 1000, 0.4135}, Case{"dragon_100k.ply", 1000, 1.0533},
-          Case{"gears_ascii.stl.gz", 1000, 0.7557}, Case{"rocker_arm.obj", 1000, 0.3765},
-          Case{"stanford_bunny.obj", 5000, 0.1731}, Case{"tooth.obj", 1000, 0.4765}}) {
-        const TriangleMesh mesh = cleaned(import_mesh(folder / c.name).mesh);
+         {Case{"beetle_nonmanifold.obj", 200, 1.3143}, Case{"armadillo_100k.obj.gz", 5000, 0.2308},
+          Case{"armadillo_100k.obj.gz", 1000, 0.8110}, Case{"cow.obj", 1000, 0.4135},
+          Case{"dragon_100k.ply", 1000, 1.0533}, Case{"gears_ascii.stl.gz", 1000, 0.7557},
+          Case{"rocker_arm.obj", 1000, 0.3765}, Case{"stanford_bunny.obj", 5000, 0.1731},
+          Case{"tooth.obj", 1000, 0.4765}}) {
+        const TriangleMesh mesh = scan(c.name);
         const Quality q = quality(mesh, simplify(mesh, {.vertices_min = c.vertices}).mesh);
         EXPECT_LE(100.0 * q.max_m / MeshGrid(mesh).diagonal_m(), c.theirs_percent)
             << c.name << ' ' << c.vertices;
-        EXPECT_LE(q.flipped, 1U) << c.name << ' ' << c.vertices;  // meshoptimizer: up to 15
+        // The gears are folded onto themselves 68 times.
+        EXPECT_LE(q.at_centre, c.name == std::string("gears_ascii.stl.gz") ? 1U : 0U)
+            << c.name << ' ' << c.vertices;
     }
 }
 
