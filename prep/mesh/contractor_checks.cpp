@@ -14,11 +14,11 @@ namespace {
 
 constexpr float kFoldChord = 1.922F;  // |n - m| at kFoldCosine, minus a margin
 constexpr float kThin = 1e-3F;
-constexpr float kOpposed =
-    0.3F;  // times the error level; 1: eight of dragon -> 5000 remain; 0.3: takes longer
-constexpr float kOpposedTurn =
-    0.2F;  // as a chord: steps that turn a triangle less are not compared with the original
-constexpr double kOpposedWork = 24;  // per vertex: bounds the time where most pairs are refused, near the end
+// For opposes(): the limit as a multiple of the error level (0.3 takes longer, 1 leaves flipped triangles), the chord of a
+// turn that is not checked, and the work per vertex, which bounds the time where most pairs are refused, near the end.
+constexpr float kOpposed = 0.5F;
+constexpr float kOpposedTurn = 0.2F;
+constexpr double kOpposedWork = 16.0;
 constexpr float kBendUnit = 2.0F / 255.0F;
 
 // 4 sqrt(3) area / sum of squared sides: 1 for an equilateral triangle.
