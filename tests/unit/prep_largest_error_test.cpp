@@ -121,8 +121,7 @@ TEST(LargestError, a_triangle_that_faces_inward_counts_as_flipped) {
     EXPECT_EQ(quality(ball, made).flipped, 1U);
 }
 
-// A part that folds back on itself leaves vertices without a common side; a triangle there may only be compared with the
-// original itself.
+// Without the comparison with the original itself (opposed.hpp) one triangle is flipped in each case.
 TEST(LargestError, a_scan_has_no_flipped_triangle_and_no_fold_at_any_size) {
     const TriangleMesh mesh = scan("armadillo_100k.obj.gz");
     if (mesh.triangles() == 0) GTEST_SKIP() << kNoData;
