@@ -108,7 +108,8 @@ public:
 
 private:
     static Eigen::Vector3d corner(const TriangleMesh& mesh, std::uint32_t v) {
-        return {mesh.position_m[3 * v], mesh.position_m[3 * v + 1], mesh.position_m[3 * v + 2]};
+        const float* p = &mesh.position_m[3 * std::size_t{v}];
+        return {p[0], p[1], p[2]};
     }
     [[nodiscard]] Eigen::Vector3d at(std::uint32_t t, int i) const {
         return corner(mesh_, mesh_.triangle[3 * t + static_cast<std::uint32_t>(i)]);

@@ -114,6 +114,14 @@ RateSummary summarize(const std::vector<RateSample>& samples, double from_s, dou
         r.fps_mean += s.fps / static_cast<double>(in.size());
         r.level_force_min = std::min(r.level_force_min, s.level_force);
     }
+    double square = 0.0, level = in.front().level_mesh;
+    for (const RateSample& s : in) {
+        square += std::pow(static_cast<double>(s.vertices) - r.vertices_mean, 2);
+        if (std::abs(s.level_mesh - level) <= kLevelChange * level) continue;
+        level = s.level_mesh;
+        ++r.level_changes;
+    }
+    r.vertices_sd = std::sqrt(square / static_cast<double>(in.size()));
     return r;
 }
 

@@ -34,6 +34,7 @@ struct RateSample {
 constexpr double kWindow_s = 0.1;
 constexpr double kForeignShareMax = 0.03, kSlowerMax = 1.05;
 constexpr double kLowestOfGoal = 0.95;
+constexpr double kLevelChange = 0.01;  // relative
 // Estimated fraction of the processor time of an update that does not depend on the number of recomputed points.
 constexpr double kFixedPart = 0.04;
 
@@ -65,7 +66,8 @@ struct RateSummary {
     double used_share[kParties] = {};  // fractions of the core: controller, visual process, load, tick_source
     double recomputed_fraction_mean = 1.0;   // recomputed fraction of the work
     double recomputed_fraction_least = 1.0;  // lowest of all windows
-    double vertices_mean = 0.0, fps_mean = 0.0;
+    double vertices_mean = 0.0, vertices_sd = 0.0, fps_mean = 0.0;
+    int level_changes = 0;  // of the mesh, by more than kLevelChange since the last one
     double level_force_min = 0.0;
 };
 

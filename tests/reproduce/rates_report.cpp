@@ -27,6 +27,8 @@ nlohmann::json json_of(const RateSummary& s, double goal_hz, double settled_s) {
                        {"load", s.used_share[2]},
                        {"tick_source", s.used_share[3]}}},
                      {"vertices_mean", s.vertices_mean},
+                     {"vertices_sd", s.vertices_sd},
+                     {"level_changes", s.level_changes},
                      {"fps_mean", s.fps_mean},
                      {"level_force_min", s.level_force_min}};
     if (goal_hz > 0.0) {
@@ -175,6 +177,15 @@ std::vector<SummaryRow> summary_of(const Rates& r) {
         rows.push_back({"8", "the same, law sensitus", "near its goal",
                         held(r.on_published, r.on_published.loaded),
                         disturbed("the published law", r.on_published.loaded)});
+    for (const Run* const run : {&r.on, &r.on_published}) {
+        const RateSummary& s = run->loaded;
+        if (s.seconds <= 0.0) continue;
+        rows.push_back({"8", "triangles with load, law " + run->law, "not published",
+                        text("%.0f +- %.0f, %d changes of the level in %.0f s", r.triangles(s.vertices_mean),
+                             r.triangles(s.vertices_mean + s.vertices_sd) - r.triangles(s.vertices_mean),
+                             s.level_changes, s.seconds),
+                        ""});
+    }
     if (!r.fifo_on.samples.empty()) {
         const auto row = [&](const Run& run, const std::string& name, const std::string& differs) {
             rows.push_back({"8", name, "not tried",

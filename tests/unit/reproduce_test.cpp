@@ -42,6 +42,20 @@ TEST(GovernorSummary, the_mean_rate_is_cycles_over_time_and_not_the_mean_of_rate
     EXPECT_DOUBLE_EQ(r.level_force_min, 0.5);
 }
 
+TEST(GovernorSummary, hunting_is_the_deviation_of_the_vertices_and_the_number_of_changes_of_the_level) {
+    auto some = samples(10.0, 100, 100, 0, 0);  // 1000 and 3000 vertices by turns
+    EXPECT_NEAR(summarize(some, 0.0, 10.0).vertices_mean, 2000.0, 10.0);
+    EXPECT_NEAR(summarize(some, 0.0, 10.0).vertices_sd, 1000.0, 1.0);
+    EXPECT_EQ(summarize(some, 0.0, 10.0).level_changes, 0);
+    for (std::size_t i = 0; i < some.size(); ++i) {
+        some[i].vertices = 2000;
+        // A slow drift of 5 % counts in steps of a little more than 1 %; to and fro within 1 % does not count.
+        some[i].level_mesh = i < 50 ? 0.5 + 0.0005 * static_cast<double>(i) : i % 2 == 0 ? 0.522 : 0.524;
+    }
+    EXPECT_NEAR(summarize(some, 0.0, 10.0).vertices_sd, 0.0, 1e-6);
+    EXPECT_EQ(summarize(some, 0.0, 10.0).level_changes, 4);
+}
+
 TEST(GovernorSummary, the_worst_second_is_found_wherever_it_lies) {
     const RateSummary r = summarize(samples(10.0, 100, 40, 6.3, 7.3), 0.0, 10.0);
     EXPECT_NEAR(r.rate_worst_1s_hz, 400.0, 1e-6);
