@@ -11,7 +11,11 @@
 // returns slowly where V is small.
 //
 // Levels fall at once by the full step (k = 1). They rise by half a step, kHold_s after the last fall. A step
-// is limited to kDownMost down and kUpMost up. Frame times follow the same model:
+// is limited to kDownMost down and kUpMost up.
+//
+// Where the display takes little of the core, k (1 - g) / (n g) is large, and a core whose speed drifts by a few percent would
+// drive the level up and down by a factor. For a small error the factor is therefore at most kCalm, up and down; it reaches
+// the whole one, in proportion to e², at kFar. rate_hold.hpp covers the rest meanwhile. Frame times follow the same model:
 //     ln V <- ln V - ln(t / t_g) / n.
 #include "rt/govern/governor.hpp"
 
@@ -30,7 +34,8 @@ constexpr double kDownGain = 1.0, kUpGain = 0.5, kFrameUpGain = 0.8;
 // A large rate error then lowers the level by at least this step, until the display pauses again.
 constexpr double kDownToPause = 0.7, kNoPause = 0.97, kFarOff = 0.04;
 constexpr double kDampingGrows = 1.4, kDampingShrinks = 0.55, kDampingLeast = 0.1, kLargeError = 0.12;
-constexpr double kTolerance = 0.002;        // of the law "elastic", added to the flicker
+constexpr double kCalm = 2.0, kFar = 0.2;
+constexpr double kTolerance = 0.006;        // of the law "elastic", added to the flicker
 constexpr double kAim = 1.002;              // of the goal: centres the remaining flicker on the goal
 constexpr double kDisplayTolerance = 0.02;  // excess of a frame's time over its goal
 constexpr double kDisplayMargin = 0.93;     // fraction of the goal time up to which a frame may grow
@@ -104,10 +109,12 @@ Governor::Factors Governor::factors(double rate_hz, RateIs rate) const noexcept 
         const double f = sensitus_factor(rate_hz, settings_.goal_hz, settings_.gain, settings_.tolerance);
         return {f, f};
     }
-    const double e = (rate == RateIs::low ? kDownGain : kUpGain) * rate_.error();
+    const double gain = rate == RateIs::low ? kDownGain : kUpGain, e = gain * rate_.error();
     const double g = std::clamp(display_fraction_, kShareLeast, kShareMost);
     const double n = display_cost_.at(visual_levels()).elasticity();
-    double visual = std::clamp(e * (1.0 - g) / (n * g), -kDownMost, kUpMost);
+    const double whole = (1.0 - g) / (n * g), far = std::min(std::abs(rate_.error()) / kFar, 1.0);
+    const double by = std::max(std::min(whole, kCalm), gain * whole * far * far);
+    double visual = std::clamp(by * rate_.error(), -kDownMost, kUpMost);
     if (rate_.error() < -kFarOff && display_busy_ > kNoPause) visual = std::min(visual, -kDownToPause);
     return {std::exp(damping_ * visual), std::exp(std::clamp(e, -kDownMost, kUpMost))};
 }

@@ -188,7 +188,80 @@ TEST(LawReplay, with_rate_hold_every_tenth_of_a_second_reaches_the_goal_on_a_cor
         }
         EXPECT_NEAR(sum / n, 1.0, 0.01);
         EXPECT_GE(worst, 0.95);
-        EXPECT_GE(fresh / n, 0.85);
+        EXPECT_GE(fresh / n, 0.945);  // 0.929 where a large error is answered as calmly as a small one
+    }
+}
+
+// Beside a program, the speed of the core drifts, correlated over a second, as on a virtual machine.
+struct Drifting {
+    double mean = 0.0, worst = 1e9;    // rate relative to the goal
+    double level = 0.0, spread = 0.0;  // mean, and standard deviation over time
+    double fresh = 0.0, changes_s = 0.0;
+};
+
+Drifting on_a_drifting_core(const Contender& c, double drift) {
+    constexpr double kSlot_s = 0.05, kKept = 0.95, kFrom_s = 5.0;
+    constexpr int kRuns = 5;
+    Drifting d;
+    for (unsigned seed = 1; seed <= kRuns; ++seed) {
+        // As measured: the display takes a fifth of the core at full detail, and a twentieth at the coarsest level.
+        PlantSettings p{
+            .update_s = 0.45e-3, .frame_fixed_s = 2.3e-3, .frame_full_s = 7.7e-3, .seconds = 40.0};
+        p.interval_s = c.interval_s;
+        p.hold = c.hold;
+        p.seed = seed;
+        std::mt19937 random(seed);
+        std::normal_distribution<double> normal;
+        std::vector<double> times{1.0};
+        while (static_cast<double>(times.size()) * kSlot_s < p.seconds + 1.0)
+            times.push_back(1.0 + kKept * (times.back() - 1.0) +
+                            drift * std::sqrt(1.0 - kKept * kKept) * normal(random));
+        SharedCorePlant plant(p, {.law = c.law, .goal_hz = kGoal_hz, .gain = c.gain});
+        double rate = 0.0, fresh = 0.0, sum = 0.0, square = 0.0, n = 0.0;
+        for (const PlantSample& s : plant.run([&](double t_s) {
+                 return Load{.programs = 1.0, .core_times = times[static_cast<std::size_t>(t_s / kSlot_s)]};
+             })) {
+            if (s.t_s < kFrom_s) continue;
+            rate += s.rate_hz / kGoal_hz;
+            d.worst = std::min(d.worst, s.rate_hz / kGoal_hz);
+            fresh += s.fresh;
+            sum += s.level;
+            square += s.level * s.level;
+            ++n;
+        }
+        d.mean += rate / n / kRuns;
+        d.fresh += fresh / n / kRuns;
+        d.level += sum / n / kRuns;
+        d.spread += std::sqrt(std::max(square / n - sum / n * sum / n, 0.0)) / kRuns;
+        d.changes_s += plant.changes() / p.seconds / kRuns;
+    }
+    return d;
+}
+
+// The default law as a free-running controller runs it changes the display least often, and by no more than the published
+// law of gain 1, which is the one with the better rate.
+TEST(LawReplay,
+     on_a_core_whose_speed_drifts_the_default_law_changes_the_display_no_more_than_the_published_one) {
+    std::printf("| drift | law | mean | worst 0.1 s | level | its spread | changes/s | recomputed |\n");
+    for (const double drift : {0.0, 0.01, 0.03}) {
+        double spread = 0.0, changes_s = 1e9;  // of the published law: largest, fewest
+        for (const Contender& c : kContenders) {
+            const Drifting d = on_a_drifting_core(c, drift);
+            std::printf("| %.0f %% | %s | %+.1f %% | %.1f %% | %.3f | %.3f | %.1f | %.1f %% |\n",
+                        100.0 * drift, c.name.c_str(), 100.0 * (d.mean - 1.0), 100.0 * d.worst, d.level,
+                        d.spread, d.changes_s, 100.0 * d.fresh);
+            if (c.law == Law::sensitus) {
+                spread = std::max(spread, d.spread);
+                changes_s = std::min(changes_s, d.changes_s);
+                continue;
+            }
+            EXPECT_LE(d.changes_s, changes_s) << c.name;
+            EXPECT_LE(d.spread, 1.1 * spread) << c.name;
+            EXPECT_NEAR(d.mean, 1.0, 0.005) << c.name;
+            EXPECT_GE(d.worst, c.hold ? 0.98 : 0.9) << c.name;
+            EXPECT_GE(d.fresh, 0.985) << c.name;
+            EXPECT_GE(d.level, 0.31) << c.name;
+        }
     }
 }
 
