@@ -194,7 +194,8 @@ LevelFit::Choice LevelFit::add(const Sample& s, const Limits& limits) noexcept {
         reason = LevelReason::deadline_missed;
         misses_ = 0.0;
     } else if (due) {
-        const bool over = over_s_ > kOver_s || ((changed_cost || leapt_) && over_s_ > 0.0);
+        const bool slower = changed_cost && s.model_s / part_of(s) > kUrgent * kUse * limits.period_s;
+        const bool over = over_s_ > kOver_s || ((slower || leapt_) && over_s_ > 0.0);
         leapt_ = false;
         if (over || rows_[row_].level > limits.level_max) {
             row_ = best(limits, kRise, 1e9);

@@ -28,6 +28,8 @@
 //             level at once, to at most kMissRetreat of the present cost. An interrupted step counts less, since it
 //             would have missed at any level. The second miss in a row lowers it to what would have fitted; in a
 //             freely running loop, whose core other programs hold for several steps, the fourth
+// Slower      a run of slow steps, after which the present row no longer fits, lowers the level at once if they take more than
+//             kUrgent of the budget, otherwise after kOver_s: cheap steps miss nothing meanwhile
 // Holds       the level rises kHold_s after a fall at the earliest, and only if that takes kWorthGain off its error; a fall after a rise doubles the hold, up to
 //             kHoldMost_s. A fall more than kHoldForgotten_s after the previous one restores kHold_s
 // Thread      servo; constant time, no allocation
@@ -54,6 +56,7 @@ public:
     static constexpr double kSpeedLeast = 0.7;
     static constexpr std::uint32_t kTries = 3;  // dry steps per row
     static constexpr double kOver_s = 0.1;
+    static constexpr double kUrgent = 0.6;  // of the budget, of a step that ends a run of slow ones
     static constexpr double kKept_s = 5.0;
     static constexpr double kTelling = 0.3;
     static constexpr double kLeapt = 1.1;

@@ -80,5 +80,35 @@ TEST(LevelRows, a_renewed_cost_is_at_least_the_calibrated_one) {
     EXPECT_NEAR(fit.rows()[0].cost_s, 50 * kUs, 1e-12);
 }
 
+// The processor slows by 1.58, with which the row no longer fits, while steps cost only a part of what the row may.
+TEST(LevelRows,
+     slow_steps_lower_the_level_at_once_where_they_near_the_budget_and_else_after_a_tenth_of_a_second) {
+    for (const bool costly : {false, true}) {
+        LevelFit fit = with(doubling(4, 57.0));
+        const LevelFit::Limits limits{.period_s = 1e-3};
+        ASSERT_EQ(fit.choose(limits), 1.0F);
+        const double predicted_us = costly ? 456.0 : 160.0;
+        const auto cycles_until_lower = [&](double times, int most) {
+            for (int i = 0; i < most; ++i) {
+                static_cast<void>(fit.add({.level = 1.0F,
+                                           .model_s = times * predicted_us * kUs,
+                                           .predicted_s = predicted_us * kUs,
+                                           .dt_s = 1e-3},
+                                          limits));
+                if (fit.row() < 3) return i;
+            }
+            return most;
+        };
+        EXPECT_EQ(cycles_until_lower(1.0, 2000), 2000);
+        if (costly) {
+            EXPECT_LE(cycles_until_lower(1.58, 40), 20);
+        } else {
+            EXPECT_EQ(cycles_until_lower(1.58, 40), 40);
+            EXPECT_EQ(cycles_until_lower(1.0, 2000), 2000);  // a short run changes nothing
+            EXPECT_NEAR(cycles_until_lower(1.58, 400), 120, 32);
+        }
+    }
+}
+
 }  // namespace
 }  // namespace tact::govern_level_rows_test

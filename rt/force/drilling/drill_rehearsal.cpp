@@ -1,6 +1,7 @@
 #include "rt/force/drilling/drill_rehearsal.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <thread>
 #include <vector>
@@ -11,7 +12,9 @@ namespace tact {
 namespace {
 
 constexpr double kContactS = 0.5, kInS = 0.1, kInM_s = 0.1, kOutM_s = 0.03;
-constexpr std::uint32_t kStepsMost = 2400, kFadeSteps = 40, kPausedOf = 10;
+constexpr std::uint32_t kStepsMost = 2400, kFadeSteps = 40;
+// Parts of a contact whose steps follow a pause each: where it cuts most, and where it touches most.
+constexpr std::array<std::array<double, 2>, 2> kPausedS{{{0.06, 0.12}, {0.24, 0.3}}};
 constexpr double kBesideVoxels = 16.0;
 constexpr double kSpeedLeast = 0.1, kSpeedMost = 10.0;
 constexpr int kFits = 20;
@@ -35,6 +38,11 @@ struct Slab {
         revision.assign(bricks.brick_count(), 0);
     }
 };
+
+bool is_paused(double t_s) {
+    return std::any_of(kPausedS.begin(), kPausedS.end(),
+                       [t_s](const auto& part) { return t_s >= part[0] && t_s < part[1]; });
+}
 
 // Of a ball into a flat surface, by eq. 3.
 double pressed_m(const DrillSettings& settings, double radius_m) {
@@ -72,10 +80,11 @@ DrillWork press(const DrillSettings& settings, double voxel_m, double step_s, fl
     Duration most_cost{0};
     for (std::uint32_t i = 0; i < steps && Monotonic::now() < end; ++i) {
         model.drive({.enabled = true, .on = true, .step_s = step_s});
-        const bool paused = i % kPausedOf == 0;
+        const bool paused = is_paused(i * step_s);
         if (paused) std::this_thread::sleep_for(Duration(std::llround(1e9 * step_s)));
         const StepResult result = model.step(hand, budget);
-        if (paused && to_s(result.load.cost) < step_s)  // longer ones do not occur in a loop
+        // Longer ones do not occur in a loop. The first after a time without pauses is still as quick as those.
+        if (paused && is_paused((i - 1.0) * step_s) && to_s(result.load.cost) < step_s)
             samples.push_back({model.work(), 1e9 * to_s(result.load.cost)});
         const DrillWork next = model.expected(level, step_s);
         if (const Duration cost = drill_cost(next); cost > most_cost) {

@@ -5,7 +5,7 @@
 //          bone, then it touches most. In steps of the loop's period, without a deadline
 // Work     of each level: that of the step which was expected to cost most. Between levels the logarithm of the cost is linear
 // Speed    of this machine, for summing and for cutting: two factors of the constants in drill_load.hpp. They are fitted to
-//          steps that follow a pause, as in a loop that sleeps: those find less of their data in the processor's caches
+//          steps that follow a pause each, as in a loop that sleeps: those find less of their data in the processor's caches
 // Time     at most kMostS
 // Thread   any but the servo: allocates
 #pragma once
