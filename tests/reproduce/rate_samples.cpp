@@ -75,6 +75,7 @@ std::vector<RateWindow100> windows(const std::vector<RateSample>& samples, doubl
 double fast_update_s(const std::vector<RateWindow100>& windows) {
     if (windows.empty()) return 0.0;
     std::vector<double> costs;
+    costs.reserve(windows.size());
     for (const RateWindow100& w : windows) costs.push_back(w.update_s);
     const auto quarter = costs.begin() + static_cast<std::ptrdiff_t>(costs.size() / 4);
     std::nth_element(costs.begin(), quarter, costs.end());

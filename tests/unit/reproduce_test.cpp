@@ -21,7 +21,7 @@ std::vector<RateSample> samples(double seconds, std::uint64_t fast, std::uint64_
                                 double slow_to_s) {
     std::vector<RateSample> all;
     RateSample s;
-    for (int i = 0; i <= static_cast<int>(seconds * 10.0 + 0.5); ++i) {
+    for (int i = 0; i <= static_cast<int>(std::lround(seconds * 10.0)); ++i) {
         s.t_s = i * 0.1;
         s.vertices = i % 2 == 0 ? 1000 : 3000;
         s.fps = 20.0;
@@ -281,7 +281,7 @@ TEST(Meshes, the_image_shows_front_back_and_white_background) {
     const auto middle = [&](const Vec3& eye) {
         const MeshImage i = draw_mesh(mesh, mesh, eye, false, 40, 40);
         EXPECT_EQ(i.rgb[0], 255);  // a corner of the image
-        const std::size_t at = 3 * (20 * 40 + 20);
+        const std::size_t at = 3 * std::size_t{20 * 40 + 20};
         return std::array<int, 3>{i.rgb[at], i.rgb[at + 1], i.rgb[at + 2]};
     };
     const auto front = middle({0.3, -0.4, 1.0}), back = middle({0.3, -0.4, -1.0});
