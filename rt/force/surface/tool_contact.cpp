@@ -20,7 +20,9 @@ constexpr double kShrinks = 0.5;     // factor after a move without room for its
 constexpr double kLeastMargins = 8.0;
 constexpr double kTouchMargins = 2.0;  // a triangle no farther than this bears
 constexpr double kAtRestMargins = 0.1;
-constexpr double kReturns = 0.5;  // of the last move, or less: the move before it is undone
+constexpr double kSunkTurn = 0.5;    // a turn of half the size sinks a point by a quarter of a margin
+constexpr double kTurnedMost = 0.1;  // of a normal: two margins beyond an edge
+constexpr double kReturns = 0.5;     // of the last move, or less: the move before it is undone
 constexpr double kFarM = 1e3;
 
 Vec3 linear(const Vec6& y) { return y.head<3>(); }
@@ -91,6 +93,7 @@ bool ToolContact::query(std::uint32_t point, double reach_m, ToolTouch& touch) n
                 const double distance = static_cast<double>(seen.distance[lane]),
                              height = static_cast<double>(seen.height[lane]) - ball;
                 const bool over = (seen.over >> lane & 1U) != 0;
+                sunk_m_ = std::max(sunk_m_, edge - distance);
                 // Push out by at most one margin per move.
                 const double slack = std::max(distance - (over ? ball : edge), -settings_.margin_m);
                 if (!half_spaces_.add(point, list.triangle[first + lane], lever, seen, lane,
@@ -136,6 +139,14 @@ Vec6 ToolContact::held_back(const TwistHalfSpaces::Solution& touched, const Vec6
     held = TwistHalfSpaces::fresh(wanted);
     half_spaces_.solve(wanted, rules, held);
     return held.move_m;
+}
+
+// A tool beside a triangle may be held by its plane, for the move that it would make. What it touches bears in another direction, and
+// friction that suffices in the one need not in the other: no proof of a rest.
+bool ToolContact::bears_as_touched(const TwistHalfSpaces::Solution& touched) const noexcept {
+    return std::none_of(touched.active.begin(),
+                        touched.active.begin() + static_cast<std::ptrdiff_t>(touched.active_count),
+                        [&](const auto& a) { return half_spaces_.turned_by(a) > kTurnedMost; });
 }
 
 void ToolContact::list_places(const TwistHalfSpaces::Solution& solution, ToolTouch& touch) const noexcept {
@@ -185,6 +196,7 @@ ToolContact::Move ToolContact::find_move_within(const Vec6& request, double left
     };
     points_.begin_move(proxy_);
     half_spaces_.clear();
+    sunk_m_ = 0.0;
     bool room = true;
     const double expected = std::clamp(kLookedWays * last_move_m_, 4.0 * settings_.margin_m,
                                        std::max(left_m, 4.0 * settings_.margin_m));
@@ -217,11 +229,12 @@ ToolContact::Move ToolContact::find_move_within(const Vec6& request, double left
                 move.y = held_back(touched, request, rules, held);
                 best = touched;
             }
-            move.exact &= touched.exact && held.exact;
+            move.exact &= touched.exact && held.exact && bears_as_touched(touched);
         }
         const double length = move.y.norm(), turned = move.y.tail<3>().norm() / gyration;
+        const double turn_most_rad = sunk_m_ > 0.0 ? kSunkTurn * turn_max_rad_ : turn_max_rad_;
         const double share =
-            std::min({1.0, left_m / std::max(length, 1e-300), turn_max_rad_ / std::max(turned, 1e-300)});
+            std::min({1.0, left_m / std::max(length, 1e-300), turn_most_rad / std::max(turned, 1e-300)});
         move.cut = share < 1.0;
         if (move.cut) move.y *= share;
         const auto [v, w] = twist(move.y);

@@ -112,6 +112,7 @@ private:
                                  const TwistHalfSpaces::Rules& rules,
                                  TwistHalfSpaces::Solution& held) const noexcept TACT_RT;
     void hold(const TwistHalfSpaces::Solution& bears, const TwistHalfSpaces::Solution& ends) noexcept TACT_RT;
+    [[nodiscard]] bool bears_as_touched(const TwistHalfSpaces::Solution& touched) const noexcept TACT_RT;
     void list_places(const TwistHalfSpaces::Solution& solution, ToolTouch& touch) const noexcept TACT_RT;
 
     SurfaceMesh mesh_;  // a view
@@ -124,6 +125,7 @@ private:
     std::array<std::uint32_t, 12> held_{};  // points active in the last move
     std::size_t held_count_ = 0;
     double turn_max_rad_;
+    double sunk_m_ = 0.0;  // of the points queried in this move, beyond a margin
     double last_move_m_ = 0.0;
     double longest_m_ = 0.0;  // maximum length of the next move; a longer one would only waste queries
     int seating_ = 0;         // steps left for seating

@@ -73,6 +73,10 @@ public:
     // before: solution for the same goal and fewer half-spaces, or fresh().
     [[nodiscard]] static Solution fresh(const Vec6& goal_m) noexcept TACT_RT;
     void solve(const Vec6& goal_m, const Rules& rules, Solution& before) const noexcept TACT_RT;
+    // How far the normals of an active plane and of its nearest point are apart, per unit; 0 for a nearest point.
+    [[nodiscard]] double turned_by(const Active& active) const noexcept TACT_RT {
+        return active.facet ? (active.normal - half_space(active.half_space, false).normal).norm() : 0.0;
+    }
     // Switches active triangles whose other half-space is satisfied to that one.
     void turn(const Vec6& goal_m, const Rules& rules, Solution& best) const noexcept TACT_RT;
 
