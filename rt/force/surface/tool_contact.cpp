@@ -63,7 +63,8 @@ bool ToolContact::query(std::uint32_t point, double reach_m, ToolTouch& touch) n
                  sunk = SurfaceContact::kSunkMargins * settings_.margin_m;
     QueryJob job = mesh_.query_job(place);
     SeenTriangles one;  // if the list is not kept
-    for (int attempt = 0; attempt < 6; ++attempt, reach_m *= 0.5) {
+    for (int attempt = 0; attempt < 6; ++attempt) {
+        if (attempt > 0) reach_m *= 0.5;
         ++touch.looked;
         const ToolLists::Near list = lists_.near(point, place, ball + reach_m);
         if (!(list.radius_m > 0.0)) continue;
@@ -176,7 +177,7 @@ ToolContact::Move ToolContact::find_move(const Vec6& request, double left_m, Too
                                          const Deadline& deadline) noexcept {
     for (;;) {
         const double tried_m = std::min(left_m, longest_m_);
-        const Move move = find_move_within(request, tried_m, touch, deadline);
+        Move move = find_move_within(request, tried_m, touch, deadline);
         if (!move.full) {
             longest_m_ = move.cut ? kGrows * tried_m
                                   : std::max(kNextMoves * move.y.norm(), kLeastMargins * settings_.margin_m);
