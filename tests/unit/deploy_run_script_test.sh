@@ -20,6 +20,8 @@ headless="--headless --screenshot out/dock.png --seconds 20 --json out/dock.json
 # Without a display.
 expect "tact demo dock $headless"
 expect "tact demo dock --law fixed $headless" --law fixed
+expect "tact demo touch ${headless//dock/touch}" demo touch
+expect "tact run scene.tact ${headless//dock/run}" run scene.tact
 expect "tact dock a.mrc b.pdb $headless" dock a.mrc b.pdb
 expect "tact dock a\\ b.mrc c.pdb $headless" dock "a b.mrc" c.pdb
 expect "tact demo dock --seconds=5 --headless --screenshot out/dock.png --json out/dock.json" --seconds=5
