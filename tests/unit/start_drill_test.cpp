@@ -2,12 +2,12 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <cstring>
 #include <memory>
 #include <vector>
 
 #include "ipc/scene/bone/bone_volume.hpp"
 #include "rt/start/start_drill.hpp"
+#include "tests/support/bone_scene.hpp"
 
 namespace tact::start_drill_test {
 namespace {
@@ -89,16 +89,7 @@ TEST(StartDrill, the_tools_are_tried_before_the_loop_starts) {
     bricks.size = {24, 24, 24};
     bricks.voxel_m = 3e-4;
     const std::vector<std::uint8_t> density(bricks.bytes(), 255);
-    BoneVolumeView volume;
-    volume.bricks = bricks;
-    volume.density = density;
-    SceneMeta meta{};
-    meta.kind = SceneKind::drilling;
-    meta.world_per_model = 1.0;
-    std::strcpy(meta.title, "a block");
-    SceneWriter out;
-    write_meta(out, meta, "made by a test\n");
-    write_bone_volume(out, volume);
+    const SceneWriter out = bone_scene(bricks, density);
     const std::vector<std::byte> bytes = out.to_bytes();
     const SceneFile scene = SceneFile::from_bytes(bytes, "a block");
     const auto region = std::make_unique<RtRegion>();

@@ -4,7 +4,6 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <cstring>
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -12,6 +11,7 @@
 #include "ipc/base/error.hpp"
 #include "ipc/scene/bone/bone_volume.hpp"
 #include "rt/start/scene_bone.hpp"
+#include "tests/support/bone_scene.hpp"
 
 namespace tact::start_scene_bone_test {
 namespace {
@@ -25,16 +25,7 @@ TEST(SceneBone, removed_bone_appears_in_the_region) {
     for (std::uint32_t z = 0; z < 20; ++z)
         for (std::uint32_t y = 0; y < 40; ++y)
             for (std::uint32_t x = 0; x < 40; ++x) density[bricks.voxel(x, y, z)] = 255;
-    BoneVolumeView volume;
-    volume.bricks = bricks;
-    volume.density = density;
-    SceneMeta meta{};
-    meta.kind = SceneKind::drilling;
-    meta.world_per_model = 1.0;
-    std::strcpy(meta.title, "a block");
-    SceneWriter out;
-    write_meta(out, meta, "made by a test\n");
-    write_bone_volume(out, volume);
+    const SceneWriter out = bone_scene(bricks, density);
     const std::filesystem::path path =
         std::filesystem::temp_directory_path() / ("tact-scene-bone-" + std::to_string(getpid()) + ".tact");
     out.write(path);
@@ -59,7 +50,7 @@ TEST(SceneBone, removed_bone_appears_in_the_region) {
     const std::uint64_t whole = levels_seen();
     EXPECT_EQ(whole, 255ULL * 40 * 40 * 20);
 
-    DrillModel model(meta, bone.bone(), DrillSettings{});
+    DrillModel model(read_meta(scene), bone.bone(), DrillSettings{});
     model.turn_burr({6283.0, 1e-3});
     ToolState tool;
     tool.T_world_tool.p_m = Vec3(0.0, 0.0, 1e-3);
