@@ -34,8 +34,10 @@ constexpr double kDownGain = 1.0, kUpGain = 0.5, kFrameUpGain = 0.8;
 // A large rate error then lowers the level by at least this step, until the display pauses again.
 constexpr double kDownToPause = 0.7, kNoPause = 0.97, kFarOff = 0.04;
 constexpr double kDampingGrows = 1.4, kDampingShrinks = 0.55, kDampingLeast = 0.1, kLargeError = 0.12;
-constexpr double kCalm = 2.0, kFar = 0.2;
-constexpr double kTolerance = 0.006;        // of the law "elastic", added to the flicker
+// Steps in one direction while it does not pause grow by a factor, up to a limit.
+constexpr double kBusyGrows = 1.4, kBusyMost = 8.0;
+constexpr double kCalm = 0.8, kFar = 0.3;
+constexpr double kTolerance = 0.015;        // of the law "elastic", added to the flicker
 constexpr double kAim = 1.002;              // of the goal: centres the remaining flicker on the goal
 constexpr double kDisplayTolerance = 0.02;  // excess of a frame's time over its goal
 constexpr double kDisplayMargin = 0.93;     // fraction of the goal time up to which a frame may grow
@@ -113,18 +115,21 @@ Governor::Factors Governor::factors(double rate_hz, RateIs rate) const noexcept 
     const double g = std::clamp(display_fraction_, kShareLeast, kShareMost);
     const double n = display_cost_.at(visual_levels()).elasticity();
     const double whole = (1.0 - g) / (n * g), far = std::min(std::abs(rate_.error()) / kFar, 1.0);
-    const double by = std::max(std::min(whole, kCalm), gain * whole * far * far);
+    const double by = busy_growth_ * std::max(std::min(whole, kCalm), gain * whole * far * far);
     double visual = std::clamp(by * rate_.error(), -kDownMost, kUpMost);
     if (rate_.error() < -kFarOff && display_busy_ > kNoPause) visual = std::min(visual, -kDownToPause);
     return {std::exp(damping_ * visual), std::exp(std::clamp(e, -kDownMost, kUpMost))};
 }
 
 // The model of the display may be off by a multiple. Steps to and fro halve each other until they are small; steps in one
-// direction grow again, and a large error calls for a whole step.
+// direction grow again, and a large error calls for a whole step. A display that never pauses takes the same share of the core
+// at many levels: an error that stays there calls for ever larger steps.
 void Governor::damp(RateIs rate) noexcept {
     if (damped_ != RateIs::right) damping_ *= rate == damped_ ? kDampingGrows : kDampingShrinks;
     if (std::abs(rate_.error()) > kLargeError) damping_ = 1.0;
     damping_ = std::clamp(damping_, kDampingLeast, 1.0);
+    const bool goes_on = rate == damped_ && display_busy_ > kNoPause;
+    busy_growth_ = goes_on ? std::min(busy_growth_ * kBusyGrows, kBusyMost) : 1.0;
     damped_ = rate;
 }
 

@@ -120,6 +120,7 @@ private:
     std::array<double, 2> frames_before_s_{};  // of the last two frames; 0: none since the last change
     double since_down_s_ = 1e9;
     double damping_ = 1.0;           // of the steps of the law "elastic"
+    double busy_growth_ = 1.0;       // the same, while the display never pauses
     RateIs damped_ = RateIs::right;  // direction of the last step
     double since_visual_s_ = 0.0;    // since a visual level moved
     double display_busy_ = 0.0;      // fraction of the time spent drawing, filtered; 1: no pauses

@@ -37,7 +37,7 @@ bool LevelFit::set_rows(std::span<const Row> rows) noexcept {
         window_[count_] = {};
         rows_[count_++] = row;
     }
-    window_age_s_ = 0.0;
+    window_age_s_ = slow_ = slow_before_ = 0.0;
     tries_ = 0;
     tried_s_.fill(0.0);
     row_ = 0;
@@ -70,6 +70,8 @@ void LevelFit::pass(double dt_s) noexcept {
     window_age_s_ += dt_s;
     if (window_age_s_ < kKept_s) return;
     window_age_s_ = 0.0;
+    slow_before_ = slow_;
+    slow_ = 0.0;
     for (std::size_t i = 0; i < count_; ++i) {
         Window& w = window_[i];
         if (!w.renewed) continue;
@@ -106,18 +108,21 @@ double LevelFit::at(float level, ValueOf value_of) const noexcept {
     return count_ > 0 ? value_of(count_ - 1) : 0.0;
 }
 
-double LevelFit::predicted_s(std::size_t row, double interrupts_s_most) const noexcept {
-    const double usual_s = spread_.speed() * rows_[row].cost_s;
+double LevelFit::predicted_s(std::size_t row, double speed, double interrupts_s_most) const noexcept {
+    const double usual_s = speed * rows_[row].cost_s;
     return std::max(usual_s * spread_.spread(CostSpread::kTail / near_),
                     usual_s + std::min(spread_.interrupt_s(), interrupts_s_most));
 }
 
 bool LevelFit::fits(std::size_t row, const Limits& limits, double part) const noexcept {
-    const double budget_s = kUse * limits.period_s * limits.budget;
-    if (!limits.free_running)
-        return predicted_s(row, kInterruptShare * budget_s) + rest_s_ <= part * budget_s;
-    return predicted_s(row, kInterruptShare * limits.deadline_s) <= part * limits.deadline_s &&
-           kFreeSpread * spread_.speed() * rows_[row].cost_s + rest_s_ <= part * budget_s;
+    const double budget_s = kUse * limits.period_s * limits.budget, now = spread_.speed();
+    if (!limits.free_running) {
+        const double speed = row == row_ ? now : std::max({now, slow_, slow_before_});
+        return predicted_s(row, speed, kInterruptShare * budget_s) + rest_s_ <= part * budget_s;
+    }
+    // Its core is shared: other programs make it slow all the time.
+    return predicted_s(row, now, kInterruptShare * limits.deadline_s) <= part * limits.deadline_s &&
+           kFreeSpread * now * rows_[row].cost_s + rest_s_ <= part * budget_s;
 }
 
 std::size_t LevelFit::best(const Limits& limits, double part, double cost_s_most) const noexcept {
@@ -186,6 +191,7 @@ LevelFit::Choice LevelFit::add(const Sample& s, const Limits& limits) noexcept {
     const bool changed_cost = kind == CostSpread::Kind::changed,
                due = cycle_ % kEvery == 0 || changed_cost || leapt_;
     LevelReason reason = LevelReason::hold;
+    if (due) slow_ = std::max(slow_, spread_.speed());
     if (due) over_s_ = fits(row_, limits, 1.0) ? 0.0 : over_s_ + kEvery * s.dt_s;
     const bool in_a_row = misses_in_a_row_ >= (limits.free_running ? kMissesInARowFree : kMissesInARow);
     if (s.deadline_missed && row_ > 0 && (misses_ > kMissesMost || in_a_row)) {

@@ -11,7 +11,8 @@
 //             statistics correct the prediction while the loop runs:
 //               speed      median of measured / predicted cost of the steps whose predicted cost is at least kTelling
 //                          of their row's: cheap steps in free space tell nothing of steps in contact. Follows
-//                          within 0.1 s
+//                          within 0.1 s. Another row must fit at the slowest speed of the last kKept_s to 2 kKept_s too: p99.9
+//                          is a matter of seconds, and a processor that was slow for a tenth of one will be again
 //               spread     of measured / (speed x predicted), the quantile that one step in 2000 exceeds. A row keeps
 //                          its largest prediction: where a share `near` of the steps is predicted to cost kNear of
 //                          that, one in 2000 x near of these may exceed it, and the rest is below
@@ -118,7 +119,7 @@ public:
 
 private:
     // p99.9 cost of the model's step, interrupts included up to `interrupts_s_most`.
-    [[nodiscard]] double predicted_s(std::size_t row, double interrupts_s_most) const noexcept;
+    [[nodiscard]] double predicted_s(std::size_t row, double speed, double interrupts_s_most) const noexcept;
     // Of a value of each row, between rows in proportion.
     template <class ValueOf>
     [[nodiscard]] double at(float level, ValueOf value_of) const noexcept;
@@ -135,6 +136,7 @@ private:
     };
     std::array<Window, kRowsMax> window_{};
     double window_age_s_ = 0.0;
+    double slow_ = 0.0, slow_before_ = 0.0;  // largest spread_.speed() of the present and the last window
     std::size_t count_ = 0, row_ = 0;
     std::uint32_t tries_ = 0;
     CostSpread spread_;

@@ -8,6 +8,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <vector>
 
 #include "tests/unit/govern_fixture.hpp"
 
@@ -184,15 +185,39 @@ TEST(Governor, any_rates_and_frame_costs_leave_every_level_of_the_elastic_law_be
     EXPECT_TRUE(held);
 }
 
-TEST(Governor, the_elastic_law_steps_to_where_the_model_says_the_goal_is) {
-    Governor governor = with({.law = Law::elastic, .goal_hz = 1000.0}, {kMesh});
-    // Half of the display's cost varies (the prior), and the display uses half of the core.
-    for (int i = 0; i < 50; ++i)
-        static_cast<void>(governor.update({.work_s = 0.02, .processor_s = 0.02, .period_s = 0.04}));
-    ASSERT_TRUE(governor.step(900.0, kStep));
-    const double e = 900.0 / 1002.0 - 1.0;
-    EXPECT_NEAR(static_cast<double>(governor.level(0)), std::exp(e * (1.0 - 0.5) / (0.5 * 0.5)), 1e-3);
-    EXPECT_EQ(governor.paths()[0].reason, LevelReason::rate_low);
+TEST(Governor, the_elastic_law_answers_a_large_error_by_its_model_and_a_small_one_calmly) {
+    const auto level_at = [](double rate_hz) {
+        Governor governor = with({.law = Law::elastic, .goal_hz = 1000.0}, {kMesh});
+        // Half of the display's cost varies (the prior), and the display uses half of the core.
+        for (int i = 0; i < 50; ++i)
+            static_cast<void>(governor.update({.work_s = 0.02, .processor_s = 0.02, .period_s = 0.04}));
+        EXPECT_TRUE(governor.step(rate_hz, kStep));
+        EXPECT_EQ(governor.paths()[0].reason, LevelReason::rate_low);
+        return static_cast<double>(governor.level(0));
+    };
+    // The level at which the model says the goal is.
+    EXPECT_NEAR(level_at(690.0), std::exp((690.0 / 1002.0 - 1.0) * (1.0 - 0.5) / (0.5 * 0.5)), 1e-3);
+    EXPECT_NEAR(level_at(900.0), std::exp(0.8 * (900.0 / 1002.0 - 1.0)), 1e-3);
+}
+
+// A display that never pauses takes its share of the core at many levels: an error that stays is answered by ever larger
+// steps, up to the eightfold.
+TEST(Governor, steps_grow_while_the_display_never_pauses_and_the_error_stays) {
+    for (const bool pauses : {false, true}) {
+        Governor governor = with({.law = Law::elastic, .goal_hz = 1000.0}, {kMesh});
+        const double period_s = pauses ? 0.04 : 0.02;
+        for (int i = 0; i < 50; ++i)
+            static_cast<void>(governor.update({.work_s = 0.02, .processor_s = 0.01, .period_s = period_s}));
+        std::vector<double> steps;
+        for (int i = 0; i < 300 && steps.size() < 10; ++i) {
+            const auto before = static_cast<double>(governor.level(0));
+            static_cast<void>(governor.step(970.0, kStep));
+            const double by = std::log(before / static_cast<double>(governor.level(0)));
+            if (by > 0.0) steps.push_back(by);
+        }
+        ASSERT_EQ(steps.size(), 10U);
+        EXPECT_NEAR(steps.back() / steps.front(), pauses ? 1.0 : 8.0, 0.2) << pauses;
+    }
 }
 
 TEST(Governor, the_elastic_law_rises_only_after_a_hold_and_by_small_steps) {

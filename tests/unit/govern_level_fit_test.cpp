@@ -34,6 +34,7 @@ public:
             cost_us_.push_back(whole_us + other_us_);
             const bool missed = took_us > deadline_us;
             misses += missed ? 1 : 0;
+            fit_.pass(kUs * period_us_);
             const LevelFit::Choice choice =
                 fit_.add({.level = level_,
                           .model_s = kUs * took_us,
@@ -214,6 +215,22 @@ TEST(LevelFit, a_processor_that_slows_by_half_is_followed_within_a_tenth_of_a_se
     EXPECT_EQ(loop.misses, misses);
     loop.run(20000, at_speed(1.0));
     EXPECT_EQ(fit.row(), fast);
+}
+
+TEST(LevelFit, a_processor_that_is_slow_again_and_again_does_not_move_the_level) {
+    LevelFit fit = with(doubling(7, 8.0));
+    Loop loop(fit, 1000.0);
+    const auto at_speed = [](double factor) {
+        return [factor](std::size_t row) { return factor * 8.0 * std::exp2(static_cast<double>(row)); };
+    };
+    loop.run(1000, at_speed(1.45));
+    loop.changes = loop.misses = 0;
+    for (int i = 0; i < 20; ++i) {
+        loop.run(2500, at_speed(1.0));
+        loop.run(500, at_speed(1.45));
+    }
+    EXPECT_EQ(loop.changes, 0);
+    EXPECT_EQ(loop.misses, 0);
 }
 
 TEST(LevelFit, steps_in_free_space_do_not_raise_the_level_of_a_step_in_contact) {
