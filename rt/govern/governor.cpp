@@ -34,7 +34,7 @@ constexpr double kDownGain = 1.0, kUpGain = 0.5, kFrameUpGain = 0.8;
 // A large rate error then lowers the level by at least this step, until the display pauses again.
 constexpr double kDownToPause = 0.7, kNoPause = 0.97, kFarOff = 0.04;
 constexpr double kDampingGrows = 1.4, kDampingShrinks = 0.55, kDampingLeast = 0.1, kLargeError = 0.12;
-// Steps in one direction while it does not pause grow by a factor, up to a limit.
+// Further steps down while it does not pause grow by a factor, up to a limit.
 constexpr double kBusyGrows = 1.4, kBusyMost = 8.0;
 constexpr double kCalm = 0.8, kFar = 0.3;
 constexpr double kTolerance = 0.015;        // of the law "elastic", added to the flicker
@@ -123,12 +123,12 @@ Governor::Factors Governor::factors(double rate_hz, RateIs rate) const noexcept 
 
 // The model of the display may be off by a multiple. Steps to and fro halve each other until they are small; steps in one
 // direction grow again, and a large error calls for a whole step. A display that never pauses takes the same share of the core
-// at many levels: an error that stays there calls for ever larger steps.
+// at many levels: a rate that stays too low calls for ever larger steps.
 void Governor::damp(RateIs rate) noexcept {
     if (damped_ != RateIs::right) damping_ *= rate == damped_ ? kDampingGrows : kDampingShrinks;
     if (std::abs(rate_.error()) > kLargeError) damping_ = 1.0;
     damping_ = std::clamp(damping_, kDampingLeast, 1.0);
-    const bool goes_on = rate == damped_ && display_busy_ > kNoPause;
+    const bool goes_on = rate == RateIs::low && damped_ == RateIs::low && display_busy_ > kNoPause;
     busy_growth_ = goes_on ? std::min(busy_growth_ * kBusyGrows, kBusyMost) : 1.0;
     damped_ = rate;
 }
