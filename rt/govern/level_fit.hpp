@@ -11,8 +11,9 @@
 //             statistics correct the prediction while the loop runs:
 //               speed      median of measured / predicted cost of the steps whose predicted cost is at least kTelling
 //                          of their row's: cheap steps in free space tell nothing of steps in contact. Follows
-//                          within 0.1 s. Another row must fit at the slowest speed of the last kKept_s to 2 kKept_s too: p99.9
-//                          is a matter of seconds, and a processor that was slow for a tenth of one will be again
+//                          within 0.1 s. At a fixed rate another row must fit at the slowest speed of the last kKept_s to
+//                          2 kKept_s too: p99.9 is a matter of seconds, and a processor that was slow for a tenth of one
+//                          will be again
 //               spread     of measured / (speed x predicted), the quantile that one step in 2000 exceeds. A row keeps
 //                          its largest prediction: where a share `near` of the steps is predicted to cost kNear of
 //                          that, one in 2000 x near of these may exceed it, and the rest is below

@@ -16,6 +16,7 @@
 #include "ipc/scene/density/density_map.hpp"
 #include "ipc/scene/density/structure.hpp"
 #include "ipc/scene/file/scene_file.hpp"
+#include "tests/bench/core_speed.hpp"
 #include "tests/support/map_file.hpp"
 
 namespace tact {
@@ -27,6 +28,7 @@ using launch::ChildSettings;
 using nlohmann::json;
 
 constexpr auto kBakeTimeout = std::chrono::minutes(15);
+constexpr auto kSpeedSample = std::chrono::milliseconds(300);  // beside each run
 
 struct Folder {
     fs::path path;
@@ -276,7 +278,7 @@ json governor_row(const GovernorRun& adaptive, const std::vector<GovernorRun>& f
 json bench_governor(const GovernorBenchSettings& settings) {
     const Folder folder;
     json rows = json::array();
-    bool passed = true;
+    bool passed = true, quiet = true;
     for (const BenchScene& scene : scenes_of(settings, folder)) {
         for (const double rate_hz : settings.rates_hz) {
             std::fprintf(stderr, "%s%s at %s\n", scene.name.c_str(),
@@ -284,26 +286,34 @@ json bench_governor(const GovernorBenchSettings& settings) {
                          rate_hz > 0.0 ? (std::to_string(std::lround(rate_hz)) + " Hz").c_str()
                                        : "a free-running rate");
             // Before, between and after the fixed levels: the machine's speed changes meanwhile.
-            std::vector<GovernorRun> adaptive{run(folder, scene, rate_hz, settings.seconds, nullptr)}, fixed;
+            CoreSpeed speed;
+            const auto run_at = [&](const double* level) {
+                speed.sample(kSpeedSample);
+                return run(folder, scene, rate_hz, settings.seconds, level);
+            };
+            std::vector<GovernorRun> adaptive{run_at(nullptr)}, fixed;
             int valid = 0;
             for (auto level = scene.levels.rbegin();
                  level != scene.levels.rend() && valid < GovernorBenchSettings::kValidLevels; ++level) {
-                fixed.push_back(run(folder, scene, rate_hz, settings.seconds, &*level));
+                fixed.push_back(run_at(&*level));
                 if (!valid_level(fixed.back())) continue;
                 ++valid;
-                adaptive.push_back(run(folder, scene, rate_hz, settings.seconds, nullptr));
+                adaptive.push_back(run_at(nullptr));
             }
             json row = {{"scene", scene.name},
                         {"atoms", scene.atoms > 0 ? json(scene.atoms) : json(nullptr)},
                         {"rate_hz", rate_hz > 0.0 ? json(rate_hz) : json("free")}};
             row.update(governor_row(median_of(adaptive), fixed));
             row["adaptive_runs"] = adaptive.size();
+            row["core_speed_spread"] = speed.spread();
+            row["core_quiet"] = speed.spread() <= CoreSpeed::kQuietSpread;
+            quiet = quiet && row["core_quiet"].get<bool>();
             passed = passed && row["passed"].get<bool>();
             std::fprintf(stderr, "  %s\n", row.dump().c_str());
             rows.push_back(std::move(row));
         }
     }
-    return {{"governor", rows}, {"governor_passed", passed}};
+    return {{"governor", rows}, {"governor_passed", passed}, {"governor_core_quiet", quiet}};
 }
 
 }  // namespace tact

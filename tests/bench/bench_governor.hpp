@@ -4,13 +4,15 @@
 //           between and after those that are valid; the median of the adaptive runs counts, and a fault in any of them.
 //           The scenes are baked first, in a temporary folder.
 // Scenes    docking: structures of about 30 000, 160 000 and 500 000 atoms, shifted copies of one structure (from the
-//           demo or a file); surface: a 6-DoF tool of 1000 points on two million triangles; drilling: a burr of 20 mm
-//           in voxels of 0.1 mm
+//           demo or a file); surface: a 6-DoF tool of 1000 points on two million triangles; drilling: a burr with a
+//           radius of 20 mm in voxels of 0.1 mm
 // Row       one scene at one rate. A fixed level is valid if the fraction of its steps that miss the deadline is below
 //           kMissShareMost. Levels are tried from the top, over the same path of the hand, until kValidLevels are
 //           valid: lower ones have larger errors.
 // Faults    timing faults latch, as on a real arm. Late wake-ups of the host are not faults: they do not depend on the
 //           level.
+// Quiet     core_speed_spread of a row is that of core_speed.hpp, sampled before each of its runs. On a core that is not quiet
+//           (core_quiet) levels must move, and runs one after the other meet different machines: such a row says little.
 // Takes     about forty minutes; prints progress to standard error. Throws StartupError.
 #pragma once
 
@@ -46,7 +48,8 @@ struct GovernorRun {
 // Compares an adaptive run with the runs at fixed levels. Pure arithmetic.
 [[nodiscard]] nlohmann::json governor_row(const GovernorRun& adaptive, const std::vector<GovernorRun>& fixed);
 
-// "governor": one row per scene and rate; "governor_passed": true if all rows passed.
+// "governor": one row per scene and rate; "governor_passed": true if all rows passed; "governor_core_quiet": true if
+// the core was quiet during all of them.
 [[nodiscard]] nlohmann::json bench_governor(const GovernorBenchSettings& settings);
 
 }  // namespace tact

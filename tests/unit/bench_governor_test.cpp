@@ -3,6 +3,10 @@
 
 #include <gtest/gtest.h>
 
+#include <chrono>
+
+#include "tests/bench/core_speed.hpp"
+
 namespace tact::bench_governor_test {
 namespace {
 
@@ -34,6 +38,19 @@ TEST(BenchGovernor, each_violated_limit_fails_the_run) {
     EXPECT_TRUE(passes(with([](auto& r) { r.error_n = 0.12; })));
     EXPECT_FALSE(passes(with([](auto& r) { r.step_n = 0.0061; })));
     EXPECT_FALSE(passes(with([](auto& r) { r.settled_s = 0.11; })));
+}
+
+TEST(BenchGovernor, a_core_is_quiet_while_a_loop_takes_the_same_time) {
+    CoreSpeed speed, leaps;
+    for (int i = 0; i < 100; ++i) {
+        speed.note(i == 50 ? 1e-2 : 1e-3);  // one interruption
+        leaps.note(i < 90 ? 1e-3 : 1.45e-3);
+    }
+    EXPECT_DOUBLE_EQ(speed.spread(), 1.0);
+    EXPECT_NEAR(leaps.spread(), 1.45, 1e-9);
+    CoreSpeed now;
+    now.sample(std::chrono::milliseconds(20));
+    EXPECT_GE(now.spread(), 1.0);
 }
 
 TEST(BenchGovernor, of_repeated_runs_the_median_of_each_metric_counts_and_any_fault) {
