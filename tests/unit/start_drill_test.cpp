@@ -44,16 +44,17 @@ TEST(StartDrill, the_configuration_defines_the_switches_of_the_tools) {
 }
 
 TEST(StartDrill, every_allowed_suction_tube_diameter_makes_a_tool) {
-    for (double mm = 0.8; mm <= 10.0; mm += 0.1) {
+    for (int tenths_mm = 8; tenths_mm <= 100; ++tenths_mm) {
         RtConfig c;
-        c.drilling.suction_tube_diameter_mm = mm;
+        c.drilling.suction_tube_diameter_mm = 0.1 * tenths_mm;
         const DrillTool tool = make_drill_tool(suction_tube_settings(c, 1).tool);
         for (std::uint32_t i = 0; i < tool.count; ++i) EXPECT_FALSE(tool.ball[i].cuts);
     }
 }
 
 TEST(StartDrill, burrs_up_to_the_largest_allowed_diameter_make_a_tool) {
-    for (double mm = 4.0; mm <= 40.0; mm += 0.5) {
+    for (int halves_mm = 8; halves_mm <= 80; ++halves_mm) {
+        const double mm = 0.5 * halves_mm;
         RtConfig c;
         c.drilling.burr_diameter_mm = mm;
         c.drilling.shaft_diameter_mm = std::min(c.drilling.shaft_diameter_mm, mm);
