@@ -228,7 +228,8 @@ TEST(Governor, the_elastic_law_rises_only_after_a_hold_and_by_small_steps) {
         static_cast<void>(governor.step(2000.0, kStep));
         EXPECT_FLOAT_EQ(governor.level(0), low);
     }
-    for (float before = low; governor.level(0) < 1.0F; before = governor.level(0)) {
+    while (governor.level(0) < 1.0F) {
+        const float before = governor.level(0);
         ASSERT_TRUE(governor.step(2000.0, kStep));
         ASSERT_LE(governor.level(0), before * 1.36F);
     }
