@@ -26,7 +26,10 @@ public:
         : fit_(fit), period_us_(period_us), other_us_(other_us) {
         level_ = fit.choose(limits());
     }
-    [[nodiscard]] LevelFit::Limits limits() const { return {.period_s = kUs * period_us_}; }
+    [[nodiscard]] LevelFit::Limits limits() const {
+        return {
+            .period_s = kUs * period_us_, .deadline_s = 0.7 * kUs * period_us_, .free_running = free_running};
+    }
     void run(int cycles, const std::function<double(std::size_t row)>& cost_us) {
         const double deadline_us = 0.7 * period_us_;
         for (int i = 0; i < cycles; ++i) {
@@ -54,6 +57,7 @@ public:
         return costs[static_cast<std::size_t>(std::ceil(0.999 * static_cast<double>(last))) - 1];
     }
     int misses = 0, changes = 0;
+    bool free_running = false;
     std::function<double(std::size_t row)> predicted_us;  // by the model, for each step; empty: by the row
 
 private:
@@ -200,12 +204,14 @@ TEST(LevelFit, the_third_miss_within_a_thousand_cycles_lowers_the_level_at_once)
     EXPECT_LT(fit.row(), before);
 }
 
+// Costs of doubling(7, 8.0) on a processor that is slower by a factor.
+auto at_speed(double factor) {
+    return [factor](std::size_t row) { return factor * 8.0 * std::exp2(static_cast<double>(row)); };
+}
+
 TEST(LevelFit, a_processor_that_slows_by_half_is_followed_within_a_tenth_of_a_second_and_back) {
     LevelFit fit = with(doubling(7, 8.0));
     Loop loop(fit, 1000.0);
-    const auto at_speed = [](double factor) {
-        return [factor](std::size_t row) { return factor * 8.0 * std::exp2(static_cast<double>(row)); };
-    };
     loop.run(3000, at_speed(1.0));
     const std::size_t fast = fit.row();
     loop.run(100, at_speed(1.45));
@@ -220,9 +226,6 @@ TEST(LevelFit, a_processor_that_slows_by_half_is_followed_within_a_tenth_of_a_se
 TEST(LevelFit, a_processor_that_is_slow_again_and_again_does_not_move_the_level) {
     LevelFit fit = with(doubling(7, 8.0));
     Loop loop(fit, 1000.0);
-    const auto at_speed = [](double factor) {
-        return [factor](std::size_t row) { return factor * 8.0 * std::exp2(static_cast<double>(row)); };
-    };
     loop.run(1000, at_speed(1.45));
     loop.changes = loop.misses = 0;
     for (int i = 0; i < 20; ++i) {
@@ -231,6 +234,21 @@ TEST(LevelFit, a_processor_that_is_slow_again_and_again_does_not_move_the_level)
     }
     EXPECT_EQ(loop.changes, 0);
     EXPECT_EQ(loop.misses, 0);
+}
+
+// Its core is shared and slow at times, so it does not wait.
+TEST(LevelFit, a_freely_running_loop_returns_as_soon_as_its_core_is_free) {
+    for (const bool free_running : {false, true}) {
+        LevelFit fit = with(doubling(7, 8.0));
+        Loop loop(fit, 1000.0);
+        loop.free_running = free_running;
+        loop.run(1000, at_speed(1.0));
+        const std::size_t fast = fit.row();
+        loop.run(1000, at_speed(1.45));
+        EXPECT_LT(fit.row(), fast);
+        loop.run(3000, at_speed(1.0));
+        EXPECT_EQ(fit.row() == fast, free_running);
+    }
 }
 
 TEST(LevelFit, steps_in_free_space_do_not_raise_the_level_of_a_step_in_contact) {
