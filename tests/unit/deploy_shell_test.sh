@@ -111,11 +111,17 @@ out=$(STUB_UID=1000 setsid bash -uc '. "$1/deploy/shell/packages.sh"
 expect_text "$out" "sudo asks for a password, and there is no terminal to ask on"
 expect_text "$out" "run first: sudo apt-get install lack"
 
-# A room that would not end in time is left out, first its tests: seconds left, seconds of the stage test.
-room_for() { bash -uc '. "$1/deploy/shell/room.sh"; tact_room_for "$2" "$3"' _ "$root" "$1" "$2"; }
-[ "$(room_for 3000 600)" = --brief ] || fail "a fast machine leaves out tests in the room"
-[ "$(room_for 1500 1200)" = --programs ] || fail "the room's tests begin and cannot end"
-[ -z "$(room_for 900 1200)" ] || fail "the room begins and cannot end"
+# What would not end in time is left out, the least telling first: seconds left, seconds of the stage test.
+ends() { bash -uc '. "$1/deploy/shell/within.sh"; "tact_$2_for" "$3" "$4"' _ "$root" "$1" "$2" "$3"; }
+[ "$(ends room 3000 600)" = --brief ] || fail "a fast machine leaves out tests in the room"
+[ "$(ends room 1500 1200)" = --programs ] || fail "the room's tests begin and cannot end"
+[ -z "$(ends room 900 1200)" ] || fail "the room begins and cannot end"
+[ "$(ends asan 3000 1400)" = whole-with-hil ] || fail "a fast machine leaves out the real-time kernel"
+[ "$(ends asan 2400 2000)" = whole ] || fail "the real-time kernel begins and cannot end"
+[ "$(ends asan 1600 2800)" = inputs ] || fail "all tests of asan begin and cannot end"
+[ -z "$(ends asan 600 3800)" ] || fail "asan begins and cannot end"
+[ "$(ends tsan 1000 3800)" = yes ] || fail "a fast machine leaves out tsan"
+[ -z "$(ends tsan 600 3800)" ] || fail "tsan begins and cannot end"
 
 # Percentages grow, name the step, and end with the last step of the plan.
 out=$(bash -uc '. "$1/deploy/shell/progress.sh"; tact_plan a 60 b 180; tact_step a first; tact_share 50 first
