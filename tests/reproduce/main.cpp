@@ -35,6 +35,12 @@ void add_docking(CLI::App& reproduce, int& exit_code, const char* name, const ch
         ->add_option("--goal", e->rates.goal_hz,
                      "Goal of the force rate under load (Hz); 0: derived from a measurement; default 0")
         ->check(CLI::Range(0.0, 1e6));
+    command
+        ->add_option(
+            "--pairs", e->rates.pairs,
+            "Pairs of runs of the law and of the published one under load, taking turns; 20 s each run")
+        ->check(CLI::Range(1, 100))
+        ->capture_default_str();
     command->add_flag("--quick", e->rates.quick, "Short run of a few seconds, as a check");
     command->callback([e, &exit_code] { exit_code = reproduce_docking(*e); });
 }

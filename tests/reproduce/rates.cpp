@@ -12,8 +12,10 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <utility>
 
 #include "ipc/scene/file/scene_file.hpp"
+#include "tests/reproduce/text.hpp"
 
 namespace tact::launch {
 namespace {
@@ -41,6 +43,34 @@ bool scale_up(Rates& r, SharedCore& experiment) {
     return true;
 }
 
+// Calls f with each run that took place.
+template <class AnyRates, class F>
+void each_run(AnyRates& r, F f) {
+    for (auto* const run : {&r.off, &r.low, &r.high, &r.on, &r.on_published, &r.fifo_off, &r.fifo_on})
+        if (!run->samples.empty()) f(*run);
+    for (auto& pair : r.more_pairs) {
+        f(pair.own);
+        f(pair.published);
+    }
+}
+
+// Both laws once more; which of them runs first alternates.
+bool run_pair(Rates& r, SharedCore& experiment, std::size_t index) {
+    const auto again = [index](const Run& run) {
+        return Run{.name = text("%s, pair %zu", run.name.c_str(), index + 1),
+                   .law = run.law,
+                   .goal_hz = run.goal_hz,
+                   .phase = run.phase};
+    };
+    LawPair pair{again(r.on), again(r.on_published)};
+    Run* order[] = {&pair.own, &pair.published};
+    if (index % 2 == 1) std::swap(order[0], order[1]);
+    for (Run* const run : order)
+        if (!experiment.execute(*run)) return false;
+    r.more_pairs.push_back(std::move(pair));
+    return true;
+}
+
 }  // namespace
 
 double Rates::triangles(double vertices) const {
@@ -52,8 +82,15 @@ double Rates::triangles(double vertices) const {
 
 std::vector<const Run*> Rates::runs() const {
     std::vector<const Run*> all;
-    for (const Run* const r : {&off, &low, &high, &on, &on_published, &fifo_off, &fifo_on})
-        if (!r->samples.empty()) all.push_back(r);
+    each_run(*this, [&all](const Run& run) { all.push_back(&run); });
+    return all;
+}
+
+std::vector<LawPair> Rates::pairs() const {
+    std::vector<LawPair> all;
+    if (on_published.samples.empty()) return all;
+    all.push_back({on, on_published});
+    all.insert(all.end(), more_pairs.begin(), more_pairs.end());
     return all;
 }
 
@@ -64,8 +101,7 @@ void Rates::mark_disturbed_windows() {
             (r->fifo ? fifo : ordinary).push_back(w);
     fast_update_s = launch::fast_update_s(ordinary);
     fifo_fast_update_s = launch::fast_update_s(fifo);
-    for (Run* const r : {&off, &low, &high, &on, &on_published, &fifo_off, &fifo_on})
-        if (!r->samples.empty()) r->summarize_with(fast_s(*r));
+    each_run(*this, [this](Run& run) { run.summarize_with(fast_s(run)); });
 }
 
 std::optional<Rates> measure_rates(const RatesSettings& s) {
@@ -108,7 +144,11 @@ std::optional<Rates> measure_rates(const RatesSettings& s) {
                       .law = "sensitus",
                       .goal_hz = std::round(goal_loaded),
                       .phase = with_load};
-    if (s.law != "sensitus" && !experiment.execute(r.on_published)) return std::nullopt;
+    if (s.law != "sensitus") {
+        if (!experiment.execute(r.on_published)) return std::nullopt;
+        for (int i = 1; i < s.pairs; ++i)
+            if (!run_pair(r, experiment, static_cast<std::size_t>(i))) return std::nullopt;
+    }
     if (r.finely_shared && s.precedence == Precedence::session) {  // rights available
         const Phase fifo{1.0 * q, 0.5 * q, 2.5 * q, 5.0 * q};
         r.fifo_off = {.name = "law off, FIFO",

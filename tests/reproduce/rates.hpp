@@ -20,6 +20,7 @@
 #include <vector>
 
 #include "ipc/scene/mesh/progressive_mesh.hpp"
+#include "tests/reproduce/law_pairs.hpp"
 #include "tests/reproduce/own_session.hpp"
 #include "tests/reproduce/shared_core.hpp"
 #include "tests/reproduce/summary.hpp"
@@ -30,6 +31,7 @@ struct RatesSettings {
     SharedCoreSettings core{};
     std::string law = "elastic";  // of the adaptive runs; the law of the paper runs too
     double goal_hz = 0.0;         // force rate under load; 0: derived from a measurement
+    int pairs = 1;  // pairs of runs of both laws under load, taking turns; the figures show the first one
     bool quick = false;  // shorter and not scaled: checks the program; the results are not meaningful
     Precedence precedence = Precedence::none;
 };
@@ -43,7 +45,8 @@ struct Rates {
     std::shared_ptr<const ProgressiveMesh> mesh{};  // surface in the scene
     double reach_hz = 0.0;                          // force rate at the coarsest rendering under load
     Run off{}, low{}, high{}, on{}, on_published{};
-    Run fifo_off{}, fifo_on{};  // with FIFO scheduling; empty without the rights
+    std::vector<LawPair> more_pairs{};  // like `on` and `on_published`
+    Run fifo_off{}, fifo_on{};          // with FIFO scheduling; empty without the rights
     // Time of an update on a fast core, from all runs with the same scheduling. It differs with FIFO, because the
     // contents of the caches differ at wake-up.
     double fast_update_s = 0.0, fifo_fast_update_s = 0.0;
@@ -53,6 +56,7 @@ struct Rates {
     // Number of triangles of the surface at this number of vertices.
     [[nodiscard]] double triangles(double vertices) const;
     [[nodiscard]] std::vector<const Run*> runs() const;
+    [[nodiscard]] std::vector<LawPair> pairs() const;
     void mark_disturbed_windows();  // after all runs
 };
 

@@ -186,6 +186,8 @@ std::vector<SummaryRow> summary_of(const Rates& r) {
                              s.level_changes, s.seconds),
                         ""});
     }
+    const std::vector<SummaryRow> laws = summary_of(r.pairs());
+    rows.insert(rows.end(), laws.begin(), laws.end());
     if (!r.fifo_on.samples.empty()) {
         const auto row = [&](const Run& run, const std::string& name, const std::string& differs) {
             rows.push_back({"8", name, "not tried",

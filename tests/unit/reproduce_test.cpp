@@ -1,4 +1,5 @@
 // The evaluation of a run's samples: means are cycles over time, and the worst second is found.
+#include "tests/reproduce/law_pairs.hpp"
 #include "tests/reproduce/mesh_error.hpp"
 #include "tests/reproduce/mesh_picture.hpp"
 #include "tests/reproduce/rate_rows.hpp"
@@ -244,6 +245,41 @@ TriangleMesh square(double height) {
     m.position_m = {0, 0, z, 1, 0, z, 1, 1, z, 0, 1, z};
     m.triangle = {0, 1, 2, 0, 2, 3};
     return m;
+}
+
+// Differences 1, 2, 3, 6 by hand: mean 3, sum of squares 4 + 1 + 0 + 9 = 14, standard error sqrt(14 / 3 / 4). The drift of the
+// machine from pair to pair does not enter.
+TEST(LawPairs, a_difference_is_that_within_pairs_and_its_error_ignores_what_both_runs_share) {
+    const PairedMean m = paired_mean({{11, 10}, {102, 100}, {1003, 1000}, {10006, 10000}});
+    EXPECT_DOUBLE_EQ(m.first, (11.0 + 102.0 + 1003.0 + 10006.0) / 4.0);
+    EXPECT_DOUBLE_EQ(m.second, (10.0 + 100.0 + 1000.0 + 10000.0) / 4.0);
+    EXPECT_NEAR(m.difference, 3.0, 1e-9);
+    EXPECT_NEAR(m.difference_error, std::sqrt(14.0 / 3.0 / 4.0), 1e-9);
+    EXPECT_EQ(paired_mean({{2, 1}}).difference_error, 0.0);
+}
+
+TEST(LawPairs,
+     each_column_of_both_laws_is_a_row_and_a_run_without_undisturbed_windows_is_left_out_of_that_one) {
+    const auto run = [](const char* law, double rate_hz, double quiet_hz, int changes) {
+        launch::Run r{.name = law, .law = law, .goal_hz = 1000.0};
+        r.loaded.rate_mean_hz = rate_hz;
+        r.loaded.level_changes = changes;
+        r.worst_loaded.quiet_rate_hz = quiet_hz;
+        return r;
+    };
+    const std::vector<LawPair> pairs{{run("elastic", 1001, 980, 0), run("sensitus", 999, 970, 30)},
+                                     {run("elastic", 1003, 0, 2), run("sensitus", 999, 960, 30)}};
+    const std::vector<SummaryRow> rows = summary_of(pairs);
+    const auto measured = [&rows](const std::string& quantity) {
+        for (const SummaryRow& r : rows)
+            if (r.quantity.find(quantity) != std::string::npos) return r.measured;
+        return std::string("no row");
+    };
+    EXPECT_EQ(measured("mean rate"), "elastic 100.20, sensitus 99.90: difference +0.30 +- 0.10 in 2 pairs");
+    EXPECT_EQ(measured("worst undisturbed"), "fewer than two pairs have it");
+    EXPECT_EQ(measured("changes of the level"),
+              "elastic 1.0, sensitus 30.0: difference -29.0 +- 1.0 in 2 pairs");
+    EXPECT_TRUE(summary_of(std::vector<LawPair>{pairs[0]}).empty());
 }
 
 TEST(Meshes, the_error_is_the_distance_of_the_surfaces_and_of_their_borders) {
