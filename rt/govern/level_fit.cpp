@@ -75,21 +75,27 @@ void LevelFit::pass(double dt_s) noexcept {
     for (std::size_t i = 0; i < count_; ++i) {
         Window& w = window_[i];
         if (!w.renewed) continue;
-        w = {.cost_before_s = w.cost_s, .error_before = w.error};
-        rows_[i].cost_s = std::max(w.cost_before_s, tried_s_[i]);
+        w = {.cost_before_s = w.cost_s, .error_before = w.error, .foreseen_s = w.foreseen_s};
+        rows_[i].cost_s = cost_s(i);
         rows_[i].error = w.error_before;
     }
 }
 
-bool LevelFit::renew(std::size_t i, double cost_s, double error) noexcept {
-    if (i >= count_ || !std::isfinite(cost_s) || !std::isfinite(error)) return false;
+double LevelFit::cost_s(std::size_t i) const noexcept {
+    const Window& w = window_[i];
+    return std::max({w.cost_s, w.cost_before_s, w.foreseen_s, tried_s_[i]});
+}
+
+bool LevelFit::renew(std::size_t i, double now_s, double error, double foreseen_s) noexcept {
+    if (i >= count_ || !std::isfinite(now_s + foreseen_s) || !std::isfinite(error)) return false;
     Row& row = rows_[i];
     Window& w = window_[i];
-    w.cost_s = std::max(w.cost_s, cost_s);
+    w.cost_s = std::max(w.cost_s, now_s);
+    w.foreseen_s = foreseen_s;
     w.error = std::max(w.error, error);
     w.renewed = true;
     const double before = row.cost_s;
-    row.cost_s = std::max({w.cost_s, w.cost_before_s, tried_s_[i]});
+    row.cost_s = cost_s(i);
     row.error = std::max(w.error, w.error_before);
     const bool leapt = row.cost_s > kLeapt * before;
     leapt_ = leapt_ || (leapt && i == row_);

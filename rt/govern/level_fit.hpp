@@ -5,7 +5,8 @@
 // Rows        candidate levels with the cost and error that the model predicts. Dry cycles measure the cost of each
 //             row (calibrate), so the first armed cycle already has its level. A model may predict more in contact:
 //             rows are renewed in turn and keep their largest cost and error of the last kKept_s to 2 kKept_s, unfaded,
-//             so strokes that come again do not move the level. If the present row's cost leaps, all are renewed and the
+//             so strokes that come again do not move the level. What a model only foresees of a contact counts as long as
+//             it does: then the contact shows its own cost. If the present row's cost leaps, all are renewed and the
 //             level falls at once if it does not fit
 // Cost        the cost of a whole step: a step that was cut by its deadline counts as cost / work_done. Three
 //             statistics correct the prediction while the loop runs:
@@ -99,8 +100,9 @@ public:
     void calibrate(double model_s, double rest_s) noexcept TACT_RT;
     // Once a cycle, before rows are renewed: predictions age.
     void pass(double dt_s) noexcept TACT_RT;
-    // The model's present prediction for a row. True: the row's cost leapt.
-    bool renew(std::size_t row, double cost_s, double error) noexcept TACT_RT;
+    // The model's present prediction for a row, and what it foresees of a contact that may come (0: nothing). True: the
+    // row's cost leapt.
+    bool renew(std::size_t row, double cost_s, double error, double foreseen_s = 0.0) noexcept TACT_RT;
     // The row to renew in this cycle: each in turn.
     [[nodiscard]] std::size_t due() const noexcept TACT_RT { return count_ > 0 ? cycle_ % count_ : 0; }
     // Selects the best row that fits, whatever the present row.
@@ -127,12 +129,15 @@ private:
     [[nodiscard]] bool fits(std::size_t row, const Limits& limits, double part) const noexcept;
     [[nodiscard]] std::size_t best(const Limits& limits, double part, double cost_s_most) const noexcept;
     void follow_rest(double rest_s) noexcept;
+    // Largest cost of a row that counts now.
+    [[nodiscard]] double cost_s(std::size_t row) const noexcept;
 
     std::array<Row, kRowsMax> rows_{};
     std::array<double, kRowsMax> tried_s_{};  // smallest cost measured per row; 0: none
     // Largest predictions of the present window of kKept_s.
     struct Window {
         double cost_s = 0.0, error = 0.0, cost_before_s = 0.0, error_before = 0.0;
+        double foreseen_s = 0.0;
         bool renewed = false;
     };
     std::array<Window, kRowsMax> window_{};

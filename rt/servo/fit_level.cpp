@@ -40,7 +40,7 @@ void renew_rows(CycleState& c) noexcept {
     const std::size_t rows = fit.rows().size();
     const auto renew = [&](std::size_t row) {
         const PathLoad load = c.hand[0].model->predict(fit.rows()[row].level);
-        return fit.renew(row, to_s(std::max(load.cost_predicted, load.cost_foreseen)), load.error);
+        return fit.renew(row, to_s(load.cost_predicted), load.error, to_s(load.cost_foreseen));
     };
     if (rows == 0) return;
     fit.pass(to_s(c.dt));

@@ -13,39 +13,61 @@ namespace {
 
 constexpr double kVoxelM = 3e-4;
 
-DrillWork summing(double blocks) {
+// Blocks, eighths, bricks by voxels and what erosion changes.
+DrillWork some_work(double blocks, double parts = 0.0, double summed = 0.0, double changed = 0.0) {
     DrillWork work;
     work.balls = 1.0;
     work.blocks = blocks;
-    return work;
-}
-DrillWork cutting(double blocks, double changed) {
-    DrillWork work = summing(blocks);
+    work.parts = parts;
+    work.summed = summed;
     work.cut = 2.0 * changed;
     work.changed = changed;
     return work;
 }
+TimedWork timed(const DrillWork& work, const DrillSpeed& speed) {
+    return {work, 1e9 * to_s(drill_cost(work, speed))};
+}
 
-TEST(DrillRehearsal, finds_the_speeds_of_a_machine_among_steps_that_other_programs_held) {
+TEST(DrillSpeed, finds_the_factors_of_a_machine_among_steps_that_other_programs_held) {
     std::vector<TimedWork> steps;
     for (int i = 0; i < 400; ++i) {
-        const DrillWork work = cutting(500.0 + 37.0 * (i % 31), 5.0 * (i % 17));
-        const double held = i % 5 == 3 ? 1.9 : 1.0;
-        steps.push_back({work, held * (0.8 * sum_cost_ns(work) + 1.7 * cut_cost_ns(work))});
+        steps.push_back(
+            timed(some_work(500.0 + 37.0 * (i % 31), 900.0 * (i % 7), 40.0 * (i % 5), 5.0 * (i % 17)),
+                  {.walk = 0.8, .parts = 2.4, .voxels = 1.2, .cut = 1.7}));
+        if (i % 5 == 3) steps.back().measured_ns *= 1.9;
     }
     const DrillSpeed speed = fit_speed(steps);
-    EXPECT_NEAR(speed.sum, 0.8, 0.02);
+    EXPECT_NEAR(speed.walk, 0.8, 0.03);
+    EXPECT_NEAR(speed.parts, 2.4, 0.05);
+    EXPECT_NEAR(speed.voxels, 1.2, 0.05);
     EXPECT_NEAR(speed.cut, 1.7, 0.05);
 }
 
-TEST(DrillRehearsal, a_tool_that_does_not_cut_tells_one_speed) {
+TEST(DrillSpeed, kinds_of_work_that_no_step_did_have_the_factor_of_the_others) {
     std::vector<TimedWork> steps;
-    steps.reserve(50);
-    for (int i = 0; i < 50; ++i) steps.push_back({summing(100.0 + i), 1.3 * sum_cost_ns(summing(100.0 + i))});
+    for (int i = 0; i < 50; ++i)
+        steps.push_back(timed(some_work(100.0 + i), {.walk = 1.3, .parts = 1, .voxels = 1, .cut = 1}));
     const DrillSpeed speed = fit_speed(steps);
-    EXPECT_NEAR(speed.sum, 1.3, 1e-6);
-    EXPECT_EQ(speed.cut, speed.sum);
-    EXPECT_EQ(fit_speed({}).sum, 1.0);  // nothing is known
+    for (const double factor : {speed.walk, speed.parts, speed.voxels, speed.cut})
+        EXPECT_NEAR(factor, 1.3, 1e-3);
+    EXPECT_EQ(fit_speed({}).walk, 1.0);  // nothing is known
+}
+
+// A machine of a tenth of the usual speed, at 2 kHz: no step of the trial ended within its period, and the speed was taken for
+// the usual one.
+TEST(DrillSpeed, a_machine_that_is_too_slow_for_its_rate_is_known_to_be_slow) {
+    std::vector<TimedWork> steps;
+    for (int i = 0; i < 100; ++i) {
+        steps.push_back(timed(some_work(5000.0 + 37.0 * (i % 31), 0.0, 0.0, 20.0 * (i % 17)),
+                              {.walk = 12, .parts = 12, .voxels = 12, .cut = 12}));
+        EXPECT_GT(steps.back().measured_ns, 0.5e6);
+    }
+    EXPECT_NEAR(fit_speed(telling_steps(steps, 0.5e-3)).walk, 12.0, 1e-3);
+    // Of a quick one only those within the period count: longer ones find less of their data in the caches.
+    for (int i = 0; i < 30; ++i)
+        steps.push_back(timed(some_work(100.0 + i, 0.0, 0.0, 2.0 * (i % 7)),
+                              {.walk = 3, .parts = 3, .voxels = 3, .cut = 3}));
+    EXPECT_NEAR(fit_speed(telling_steps(steps, 0.5e-3)).walk, 3.0, 1e-3);
 }
 
 TEST(DrillRehearsal, between_two_levels_the_cost_rises_by_equal_factors) {
@@ -53,14 +75,14 @@ TEST(DrillRehearsal, between_two_levels_the_cost_rises_by_equal_factors) {
     EXPECT_EQ(r.contact_cost(0.5F).count(), 0);  // not tried
     r.step_s = 1e-3;
     for (std::size_t i = 0; i < r.contact.size(); ++i)
-        r.contact[i] = summing(1000.0 * std::exp2(static_cast<double>(i)));
+        r.contact[i] = some_work(1000.0 * std::exp2(static_cast<double>(i)));
     r.set_speed({});
     for (std::size_t i = 0; i < r.contact.size(); ++i)
         EXPECT_NEAR(to_s(r.contact_cost(DrillRehearsal::kLevels[i])), to_s(drill_cost(r.contact[i])), 2e-9);
     const float between = 0.5F * (DrillRehearsal::kLevels[1] + DrillRehearsal::kLevels[2]);
     EXPECT_NEAR(to_s(r.contact_cost(between)),
                 std::sqrt(to_s(drill_cost(r.contact[1])) * to_s(drill_cost(r.contact[2]))), 2e-9);
-    r.set_speed({2.0, 1.0});
+    r.set_speed({.walk = 2.0, .parts = 1.0, .voxels = 1.0, .cut = 1.0});
     EXPECT_NEAR(to_s(r.contact_cost(1.0F)), 2.0 * to_s(drill_cost(r.contact.back())), 2e-9);
 }
 

@@ -55,6 +55,26 @@ TEST(LevelRows, a_row_that_steps_seldom_reach_needs_less_room_for_its_spread) {
     }
 }
 
+// Not for seconds after the contact has shown that it costs less, and in free space for as long as it is foreseen.
+TEST(LevelRows, what_a_contact_is_foreseen_to_cost_counts_as_long_as_it_is_foreseen) {
+    LevelFit fit = with(doubling(3, 10.0));
+    EXPECT_TRUE(fit.renew(1, 5 * kUs, 0.0, 100 * kUs));
+    for (int i = 0; 0.03 * i < 3.0 * LevelFit::kKept_s; ++i) {
+        fit.pass(0.03);
+        EXPECT_EQ(fit.rows()[1].cost_s, 100 * kUs);
+        if (i % 20 == 0) {
+            EXPECT_FALSE(fit.renew(1, 5 * kUs, 0.0, 100 * kUs));
+        }
+    }
+    EXPECT_FALSE(fit.renew(1, 40 * kUs, 0.0));
+    EXPECT_EQ(fit.rows()[1].cost_s, 40 * kUs);
+    EXPECT_FALSE(fit.renew(1, 5 * kUs, 0.0));
+    EXPECT_EQ(fit.rows()[1].cost_s, 40 * kUs);
+    EXPECT_TRUE(fit.renew(1, 5 * kUs, 0.0, 100 * kUs));
+    EXPECT_FALSE(fit.renew(1, 5 * kUs, 0.0, NAN));
+    EXPECT_EQ(fit.rows()[1].cost_s, 100 * kUs);
+}
+
 // A level is chosen between rows that remember the same time: one that forgot its dear contact first would look best.
 TEST(LevelRows, all_rows_forget_in_the_same_cycle) {
     LevelFit fit = with(doubling(3, 10.0));

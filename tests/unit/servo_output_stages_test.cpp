@@ -167,6 +167,13 @@ TEST(StageGovern, rows_cost_what_a_contact_is_foreseen_to_cost) {
         servo::govern(f.c, f.settings, *f.region);
     }
     for (const LevelFit::Row& row : f.c.govern.fit.rows()) EXPECT_GE(row.cost_s, 290e-6);
+    // Until a contact shows its own cost.
+    f.model.foreseen = microseconds(0);
+    for (int i = 0; i < 100; ++i) {
+        f.c.now += milliseconds(1);
+        servo::govern(f.c, f.settings, *f.region);
+    }
+    EXPECT_LT(f.c.govern.fit.rows()[0].cost_s, 250e-6);
 }
 
 TEST(StageGovern, dry_cycles_count_and_publish_no_levels) {

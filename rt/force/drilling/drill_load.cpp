@@ -7,9 +7,6 @@
 namespace tact {
 namespace {
 
-// ns, 2026-11-29, AVX-512: fit to steps of a burr of 40 mm at five levels and 2 kHz.
-constexpr double kDrillStepNs = 2400.0, kBallNs = 100.0, kBlockNs = 11.0, kPartNs = 6.6, kSumNs = 60.0,
-                 kCutNs = 60.0, kChangedNs = 480.0, kWalkedNs = 17.0;
 constexpr double kErrorLeast = 0.012, kErrorPerBlock = 0.2, kErrorRough = 0.6;
 constexpr double kErrorPerVoxel2 = 1.0, kErrorPerVoxel4 = 2.8, kErrorThinCap = 0.08;
 constexpr double kSurfacePerEdge2 = 1.5;  // cubes that a surface meets, on average of its directions
@@ -46,13 +43,6 @@ DrillWork surface_work(const BallLook& look, double block) noexcept {
 }
 
 }  // namespace
-
-double sum_cost_ns(const DrillWork& w) noexcept {
-    return kDrillStepNs + kBallNs * w.balls + kBlockNs * w.blocks + kPartNs * w.parts + kSumNs * w.summed;
-}
-double cut_cost_ns(const DrillWork& w) noexcept {
-    return kCutNs * w.cut + kChangedNs * w.changed + kWalkedNs * w.walked;
-}
 
 DrillWork expected_work(const DrillWork& found, const BallLook& as, double block) noexcept {
     DrillWork work = found;

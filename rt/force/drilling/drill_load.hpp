@@ -1,10 +1,9 @@
-// Work, time and error of a drilling step at a level, from what the last step found.
+// Work and error of a drilling step at a level, from what the last step found.
 //
 // Work     blocks and bricks that the force and the measurement of its stiffness visit, bricks that erosion computes and
 //          changes; as counted in a step, or expected at another level. Blocks of the force go as (touched area) / block^2,
 //          octree level by octree level; the last step's count sets the scale.
-// Time     constants of one core (README.md), times two factors of this machine, for summing and for cutting
-//          (drill_rehearsal.hpp).
+// Time     drill_speed.hpp
 // Error    against the published equations: shares of the elastic force for blocks and voxels, bounds of what README.md
 //          measured, and what the bone still to be cut may change: with e the exposure that is pending, a cap loses e s x m0 at most (its mean of 1 - (r/R)^2
 //          is 2x/3, half as much again for other shapes), which changes eqs 2, 3, 13 and 14 by their slopes.
@@ -48,17 +47,6 @@ struct DrillWork {
         return static_cast<std::uint32_t>(std::lround(balls + blocks + parts + 512.0 * (summed + cut)));
     }
 };
-
-// Of a machine: its times over the constants, for summing and for cutting (drill_rehearsal.hpp).
-struct DrillSpeed {
-    double sum = 1.0, cut = 1.0;
-};
-[[nodiscard]] double sum_cost_ns(const DrillWork& work) noexcept TACT_RT;
-[[nodiscard]] double cut_cost_ns(const DrillWork& work) noexcept TACT_RT;
-[[nodiscard]] inline Duration drill_cost(const DrillWork& work,
-                                         const DrillSpeed& speed = {}) noexcept TACT_RT {
-    return Duration(std::llround(speed.sum * sum_cost_ns(work) + speed.cut * cut_cost_ns(work)));
-}
 
 // Of a level: the smallest block over the radius, and how little blocks shrink near the surface: 0 as in ball_moments(),
 // 1 not at all.

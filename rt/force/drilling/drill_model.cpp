@@ -313,10 +313,12 @@ StepResult DrillModel::step(const ToolState& tool, const Budget& budget) noexcep
         if (late) {
             DrillWork left;
             left.changed = std::max(turns_.bricks().changed / turns_.groups(), 1.0) * groups_left;
-            const auto done = static_cast<double>(drill_cost(all, rehearsal_.speed()).count()),
-                       whole = std::max(done + rehearsal_.speed().cut * cut_cost_ns(left),
-                                        static_cast<double>(drill_cost(planned, rehearsal_.speed()).count()));
-            result.load.work_done = static_cast<float>(std::clamp(done / whole, 0.01, 1.0));
+            DrillWork whole = all;
+            whole.add(left);
+            const Duration done = drill_cost(all, rehearsal_.speed()),
+                           most = std::max(drill_cost(whole, rehearsal_.speed()),
+                                           drill_cost(planned, rehearsal_.speed()));
+            result.load.work_done = static_cast<float>(std::clamp(to_s(done) / to_s(most), 0.01, 1.0));
         }
     }
     bone_.pushing = fade_.gain() > 0.0 ? bone_.pushing | pushing_bit_ : bone_.pushing & ~pushing_bit_;

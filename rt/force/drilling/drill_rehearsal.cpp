@@ -16,8 +16,6 @@ constexpr std::uint32_t kStepsMost = 2400, kFadeSteps = 40;
 // Parts of a contact whose steps follow a pause each: where it cuts most, and where it touches most.
 constexpr std::array<std::array<double, 2>, 2> kPausedS{{{0.06, 0.12}, {0.24, 0.3}}};
 constexpr double kBesideVoxels = 16.0;
-constexpr double kSpeedLeast = 0.1, kSpeedMost = 10.0;
-constexpr int kFits = 20;
 
 // A slab of solid bone, as wide as a burr's pocket in it. Its upper surface is z = 0.
 struct Slab {
@@ -83,8 +81,8 @@ DrillWork press(const DrillSettings& settings, double voxel_m, double step_s, fl
         const bool paused = is_paused(i * step_s);
         if (paused) std::this_thread::sleep_for(Duration(std::llround(1e9 * step_s)));
         const StepResult result = model.step(hand, budget);
-        // Longer ones do not occur in a loop. The first after a time without pauses is still as quick as those.
-        if (paused && is_paused((i - 1.0) * step_s) && to_s(result.load.cost) < step_s)
+        // The first after a time without pauses is still as quick as those.
+        if (paused && is_paused((i - 1.0) * step_s))
             samples.push_back({model.work(), 1e9 * to_s(result.load.cost)});
         const DrillWork next = model.expected(level, step_s);
         if (const Duration cost = drill_cost(next); cost > most_cost) {
@@ -101,33 +99,6 @@ DrillWork press(const DrillSettings& settings, double voxel_m, double step_s, fl
 }
 
 }  // namespace
-
-// By reweighted least squares.
-DrillSpeed fit_speed(std::span<const TimedWork> steps) {
-    DrillSpeed speed;
-    for (int fit = 0; fit < kFits; ++fit) {
-        double ss = 0.0, sc = 0.0, cc = 0.0, sy = 0.0, cy = 0.0;
-        for (const TimedWork& step : steps) {
-            const double sum_ns = sum_cost_ns(step.work), cut_ns = cut_cost_ns(step.work),
-                         ns = step.measured_ns;
-            const double off_ns = ns - speed.sum * sum_ns - speed.cut * cut_ns;
-            const double weight = 1.0 / (ns * std::max(std::abs(off_ns), 0.01 * ns));
-            ss += weight * sum_ns * sum_ns;
-            sc += weight * sum_ns * cut_ns;
-            cc += weight * cut_ns * cut_ns;
-            sy += weight * sum_ns * ns;
-            cy += weight * cut_ns * ns;
-        }
-        const double size = ss * cc - sc * sc;
-        if (size > 1e-6 * ss * cc)
-            speed = {(sy * cc - cy * sc) / size, (cy * ss - sy * sc) / size};
-        else if (ss > 0.0)
-            speed.sum = speed.cut = sy / ss;
-        speed.sum = std::clamp(speed.sum, kSpeedLeast, kSpeedMost);
-        speed.cut = std::clamp(speed.cut, kSpeedLeast, kSpeedMost);
-    }
-    return speed;
-}
 
 void DrillRehearsal::set_speed(const DrillSpeed& speed) {
     speed_ = speed;
@@ -156,7 +127,7 @@ DrillRehearsal rehearse_drill(const DrillSettings& settings, double voxel_m, dou
         made.contact[i] = press(settings, voxel_m, step_s, DrillRehearsal::kLevels[i],
                                 DrillRehearsal::kMostS / static_cast<double>(made.contact.size()), samples);
     }
-    made.set_speed(fit_speed(samples));
+    made.set_speed(fit_speed(telling_steps(samples, step_s)));
     made.step_s = step_s;
     return made;
 }

@@ -4,16 +4,15 @@
 //          a hand reaches while the force fades in, and is then let out until it presses with kLightN: first it cuts most
 //          bone, then it touches most. In steps of the loop's period, without a deadline
 // Work     of each level: that of the step which was expected to cost most. Between levels the logarithm of the cost is linear
-// Speed    of this machine, for summing and for cutting: two factors of the constants in drill_load.hpp. They are fitted to
-//          steps that follow a pause each, as in a loop that sleeps: those find less of their data in the processor's caches
+// Speed    of this machine (drill_speed.hpp): from steps that follow a pause each, as in a loop that sleeps, which find less
+//          of their data in the processor's caches
 // Time     at most kMostS
 // Thread   any but the servo: allocates
 #pragma once
 
 #include <array>
-#include <span>
 
-#include "rt/force/drilling/drill_load.hpp"
+#include "rt/force/drilling/drill_speed.hpp"
 
 namespace tact {
 
@@ -38,13 +37,6 @@ private:
     DrillSpeed speed_;
     std::array<double, kLevels.size()> log_ns_{};  // of the contacts' costs
 };
-
-struct TimedWork {
-    DrillWork work;
-    double measured_ns;
-};
-// The factors with the least sum of relative errors. Without cutting both are the same.
-[[nodiscard]] DrillSpeed fit_speed(std::span<const TimedWork> steps);
 
 // voxel_m: edge of a voxel in the world. step_s: period of the loop.
 // Fails by StartupError where the model would.
