@@ -24,7 +24,7 @@ struct PairedMean {
 };
 [[nodiscard]] PairedMean paired_mean(const std::vector<std::pair<double, double>>& pairs);
 
-// One row per column: mean rate, worst undisturbed window, triangles and their deviation, changes of the level. Empty with fewer
+// One row per column: mean rate, worst windows, vertices and their deviation, changes of the level, recomputed part. Empty with fewer
 // than two pairs.
 [[nodiscard]] std::vector<SummaryRow> summary_of(const std::vector<LawPair>& pairs);
 
