@@ -54,10 +54,15 @@ class Mouse(Operator):
         return norm(self.tool()["force_world_n"])
 
     def take(self):
-        x, y = self.see("drag to lead")
-        self.at = (round(x), round(y) - RING_PX)
-        self.xdotool("mousemove", *map(str, self.at))
-        self.see("Drag to lead the tool, or press L.")
+        """Points at the tool and presses; where the tool or the view moved meanwhile, points again, as a person would."""
+        for _ in range(4):
+            x, y = self.see("drag to lead")
+            self.at = (round(x), round(y) - RING_PX)
+            self.xdotool("mousemove", *map(str, self.at))
+            if self.holds_within(lambda: self.find("Drag to lead the tool, or press L."), 5.0):
+                break
+        else:
+            self.fail("the pointer at %d, %d does not find the tool" % self.at)
         self.xdotool("mousedown", "1")
         self.wait("the mouse leads the hand", lambda s: s["mouse"]["hands"][self.hand] == "leads")
 
