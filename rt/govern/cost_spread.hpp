@@ -2,8 +2,8 @@
 //
 // Speed       streaming median of measured / predicted cost: each sample moves it by kStep towards itself. kLeapRun
 //             samples in a row above kLeap times the speed set it to their least: the processor became slower
-// Spread      decaying histogram of cost / (speed x predicted) in bins of 2 %. It starts with kPrior samples of at
-//             most kPriorSpread, so one early outlier does not define the tail
+// Spread      decaying histogram of cost / (speed x predicted) in bins of 2 %. It starts with kPrior samples of the
+//             predicted cost, so one early outlier does not define the tail
 // Interrupts  decaying histogram of the excess cost in bins of 25 % from 1 us. kChangedRun interrupted samples in a row
 //             count as a change of cost instead: the speed becomes their smallest ratio at once
 // Thread      servo; constant time
@@ -27,8 +27,7 @@ public:
 
     void restart() noexcept TACT_RT {
         *this = {};
-        ratio_[bin(1.0)] = kPrior * (1.0 - kPriorTail);
-        ratio_[bin(kPriorSpread)] = kPrior * kPriorTail;
+        ratio_[bin(1.0)] = kPrior;
         total_ = kPrior;
     }
     enum class Kind { usual, interrupted, changed };
@@ -86,8 +85,7 @@ public:
     }
 
 private:
-    static constexpr double kStep = 0.004, kPrior = 2000.0, kPriorSpread = 1.15, kPriorTail = 2e-3,
-                            kMemory = 16000.0;
+    static constexpr double kStep = 0.004, kPrior = 2000.0, kMemory = 16000.0;
     static constexpr double kLeast = 0.5, kWidth = 0.02;  // smallest ratio; bin width in ln
     static constexpr double kExcessWidth = 0.2231;        // ln 1.25
     static constexpr std::size_t kBins = 72, kExcessBins = 48;

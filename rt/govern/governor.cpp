@@ -15,7 +15,11 @@
 //
 // Where the display takes little of the core, k (1 - g) / (n g) is large, and a core whose speed drifts by a few percent would
 // drive the level up and down by a factor. For a small error the factor is therefore at most kCalm, up and down; it reaches
-// the whole one, in proportion to e², at kFar. rate_hold.hpp covers the rest meanwhile. Frame times follow the same model:
+// the whole one, in proportion to e², at kFar. rate_hold.hpp covers the rest meanwhile. Other programs come and go: what
+// was lost to a large error returns in steps of kUpMost once the rate is too high. A loop of fixed rate has its own core: a
+// large error is then its own work, which does not end.
+//
+// Frame times follow the same model:
 //     ln V <- ln V - ln(t / t_g) / n.
 #include "rt/govern/governor.hpp"
 
@@ -117,6 +121,7 @@ Governor::Factors Governor::factors(double rate_hz, RateIs rate) const noexcept 
     const double whole = (1.0 - g) / (n * g), far = std::min(std::abs(rate_.error()) / kFar, 1.0);
     const double by = busy_growth_ * std::max(std::min(whole, kCalm), gain * whole * far * far);
     double visual = std::clamp(by * rate_.error(), -kDownMost, kUpMost);
+    if (rate == RateIs::high) visual = std::max(visual, std::min(given_up_, kUpMost));
     if (rate_.error() < -kFarOff && display_busy_ > kNoPause) visual = std::min(visual, -kDownToPause);
     return {std::exp(damping_ * visual), std::exp(std::clamp(e, -kDownMost, kUpMost))};
 }
@@ -158,6 +163,7 @@ bool Governor::step(double rate_hz, Duration dt) noexcept {
     bool moved = false;
     if (rate == RateIs::low) {
         moved = scale_visual(by.visual, dt_s, LevelReason::rate_low, LevelReason::at_floor);
+        if (moved && settings_.free_running && rate_.error() < -kLargeError) given_up_ += scaled_ln_;
         display_binds_ = display_binds_ && !moved;
         if (!moved) moved = scale(true, by.haptic, dt_s, LevelReason::rate_low, LevelReason::at_floor);
         if (moved) since_down_s_ = 0.0;
@@ -167,6 +173,7 @@ bool Governor::step(double rate_hz, Duration dt) noexcept {
         if (!moved && room > 1.0) {
             const LevelReason up = display_binds_ ? LevelReason::display_high : LevelReason::rate_high;
             moved = scale_visual(std::min(by.visual, room), dt_s, up, LevelReason::at_top);
+            if (moved) given_up_ = std::max(given_up_ - scaled_ln_, 0.0);
         }
     }
     if (!moved && rate == RateIs::high && rebalance_visual()) return true;

@@ -122,6 +122,8 @@ private:
     double damping_ = 1.0;           // of the steps of the law "elastic"
     double busy_growth_ = 1.0;       // the same, while the display never pauses
     RateIs damped_ = RateIs::right;  // direction of the last step
+    double scaled_ln_ = 0.0;         // size of the last step of the visual levels, in ln V
+    double given_up_ = 0.0;          // lost to a large error and not yet given back, in ln V
     double since_visual_s_ = 0.0;    // since a visual level moved
     double display_busy_ = 0.0;      // fraction of the time spent drawing, filtered; 1: no pauses
     bool resting_ = false;           // nothing is drawn at the levels

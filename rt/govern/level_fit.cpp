@@ -114,20 +114,23 @@ double LevelFit::at(float level, ValueOf value_of) const noexcept {
     return count_ > 0 ? value_of(count_ - 1) : 0.0;
 }
 
-double LevelFit::predicted_s(std::size_t row, double speed, double interrupts_s_most) const noexcept {
+double LevelFit::predicted_s(std::size_t row, double speed, double spread_least,
+                             double interrupts_s_most) const noexcept {
     const double usual_s = speed * rows_[row].cost_s;
-    return std::max(usual_s * spread_.spread(CostSpread::kTail / near_),
+    return std::max(usual_s * std::max(spread_.spread(CostSpread::kTail / near_), spread_least),
                     usual_s + std::min(spread_.interrupt_s(), interrupts_s_most));
 }
 
 bool LevelFit::fits(std::size_t row, const Limits& limits, double part) const noexcept {
     const double budget_s = kUse * limits.period_s * limits.budget, now = spread_.speed();
+    const double spread_least = part < 1.0 ? kSpreadLeast : 1.0;
     if (!limits.free_running) {
         const double speed = row == row_ ? now : std::max({now, slow_, slow_before_});
-        return predicted_s(row, speed, kInterruptShare * budget_s) + rest_s_ <= part * budget_s;
+        return predicted_s(row, speed, spread_least, kInterruptShare * budget_s) + rest_s_ <= part * budget_s;
     }
     // Its core is shared: other programs make it slow all the time.
-    return predicted_s(row, now, kInterruptShare * limits.deadline_s) <= part * limits.deadline_s &&
+    return predicted_s(row, now, spread_least, kInterruptShare * limits.deadline_s) <=
+               part * limits.deadline_s &&
            kFreeSpread * now * rows_[row].cost_s + rest_s_ <= part * budget_s;
 }
 
@@ -166,12 +169,11 @@ CostSpread::Kind LevelFit::learn(const Sample& s) noexcept {
     if (!(s.predicted_s > 0.0))
         kind = spread_.add(s.model_s / part, of_row_s, kSpeedLeast);
     else if (s.predicted_s >= kTelling * of_row_s) {
-        near_ += kNearStep * ((s.predicted_s >= kNear * of_row_s ? 1.0 : 0.0) - near_);
+        const double predicted_s =
+            std::max(s.predicted_s, at(s.level, [this](std::size_t row) { return tried_s_[row]; }));
+        near_ += kNearStep * ((predicted_s >= kNear * of_row_s ? 1.0 : 0.0) - near_);
         near_ = std::max(near_, kNearLeast);
-        kind = spread_.add(
-            s.model_s / part,
-            std::max(s.predicted_s, at(s.level, [this](std::size_t row) { return tried_s_[row]; })),
-            kSpeedLeast);
+        kind = spread_.add(s.model_s / part, predicted_s, kSpeedLeast);
     }
     follow_rest(s.rest_s);
     since_fall_s_ += s.dt_s;

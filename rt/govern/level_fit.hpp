@@ -17,7 +17,9 @@
 //                          will be again
 //               spread     of measured / (speed x predicted), the quantile that one step in 2000 exceeds. A row keeps
 //                          its largest prediction: where a share `near` of the steps is predicted to cost kNear of
-//                          that, one in 2000 x near of these may exceed it, and the rest is below
+//                          that, one in 2000 x near of these may exceed it, and the rest is below. A newly chosen row
+//                          fits a spread of at least kSpreadLeast: the first choice does not know the spread yet,
+//                          and a rise because it turned out smaller would only be late
 //               interrupts the same quantile of the excess of steps that cost more than kInterrupted times the usual.
 //                          A level does not change the length of an interrupt, so the excess is added, not
 //                          multiplied, and takes at most kInterruptShare of the budget
@@ -63,6 +65,7 @@ public:
     static constexpr double kKept_s = 5.0;
     static constexpr double kTelling = 0.3;
     static constexpr double kLeapt = 1.1;
+    static constexpr double kSpreadLeast = 1.16;
     static constexpr double kNear = 0.9, kNearLeast = 0.05, kNearStep = 1e-3;  // of the share of costly steps
     static constexpr double kWorthGain = 0.15;
     static constexpr double kFreeSpread = 1.1;
@@ -122,7 +125,8 @@ public:
 
 private:
     // p99.9 cost of the model's step, interrupts included up to `interrupts_s_most`.
-    [[nodiscard]] double predicted_s(std::size_t row, double speed, double interrupts_s_most) const noexcept;
+    [[nodiscard]] double predicted_s(std::size_t row, double speed, double spread_least,
+                                     double interrupts_s_most) const noexcept;
     // Of a value of each row, between rows in proportion.
     template <class ValueOf>
     [[nodiscard]] double at(float level, ValueOf value_of) const noexcept;

@@ -54,7 +54,8 @@ bool Governor::scale_visual(double factor, double dt_s, LevelReason up_or_down, 
         sum += gain[i];
         if (down && gain[i] < kWorthGain) least[i] = before;
     }
-    double left = std::abs(std::log(std::max(factor, 1e-9))) * sum;  // of ln(time)
+    const double wanted_ln = std::abs(std::log(std::max(factor, 1e-9)));
+    double left = wanted_ln * sum;  // of ln(time)
     const auto started = level;
     for (int step = 0; step < kStepsMost && left > 1e-9; ++step) {
         std::size_t best = kPathsMax;
@@ -68,10 +69,12 @@ bool Governor::scale_visual(double factor, double dt_s, LevelReason up_or_down, 
         }
         if (best == kPathsMax) break;
         const double change = gain[best] > 0.0 ? std::min(kStep, left / gain[best]) : kStep;
-        level[best] = down ? std::max(level[best] * std::exp(-change), least[best])
-                           : std::min(level[best] * std::exp(change), most[best]);
-        left -= change * gain[best];
+        const double before = level[best];
+        level[best] = down ? std::max(before * std::exp(-change), least[best])
+                           : std::min(before * std::exp(change), most[best]);
+        left -= std::abs(std::log(level[best] / before)) * gain[best];
     }
+    scaled_ln_ = sum > 0.0 ? wanted_ln - std::max(left, 0.0) / sum : 0.0;
     bool moved = false;
     for (std::size_t i = 0; i < count_; ++i) {
         GovernedPath& p = paths_[i];

@@ -61,7 +61,7 @@ public:
         .path = "force", .floor = 0.2F, .start = 1.0F, .slew_per_s = 2.0F, .haptic = true};
 
     SharedCorePlant(const PlantSettings& p, const GovernorSettings& g)
-        : p_(p), governor_(g), random_(p.seed) {
+        : p_(p), governor_(like(p, g)), random_(p.seed) {
         governor_.add(kMesh);
         governor_.add(kForce);
     }
@@ -92,6 +92,10 @@ private:
     static constexpr double kFixed =
         0.04;  // fixed part of an update's cost, independent of its work fraction
 
+    static GovernorSettings like(const PlantSettings& p, GovernorSettings g) {
+        g.free_running = p.free_running;
+        return g;
+    }
     void step(double dt_s) {
         if (work_left_s_ <= 0.0 && t_s_ >= next_frame_s_) begin_frame();
         const bool drawing = work_left_s_ > 0.0;

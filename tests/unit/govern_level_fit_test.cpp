@@ -79,8 +79,8 @@ TEST(LevelFit, the_first_choice_is_the_row_of_least_error_among_those_that_fit) 
                             .error = error(random)});
         LevelFit fit = with(rows);
         const float chosen = fit.choose({.period_s = 1e-3});
-        // The spread starts at its prior, whose bin of 1.15 ends at 1.1582. A new row uses at most 90 % of the limit.
-        const double most_s = 0.88 * 0.7e-3 / 1.1582;
+        // A new row fits a spread of 1.16 and uses at most 88 % of the limit.
+        const double most_s = 0.88 * 0.7e-3 / 1.16;
         double least_error = 1e9, least_cost_s = 1e9;
         float wanted = -1.0F;
         bool at_the_edge = false;

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <functional>
 #include <map>
 #include <random>
 #include <string>
@@ -187,37 +188,40 @@ TEST(LawReplay, with_rate_hold_every_tenth_of_a_second_reaches_the_goal_on_a_cor
         }
         EXPECT_NEAR(sum / n, 1.0, 0.01);
         EXPECT_GE(worst, 0.95);
-        EXPECT_GE(fresh / n, 0.945);  // 0.929 where a large error is answered as calmly as a small one
+        EXPECT_GE(fresh / n, 0.94);  // 0.929 where a large error is answered as calmly as a small one
     }
 }
 
-// Beside a program, the speed of the core drifts, correlated over a second, as on a virtual machine.
-struct Drifting {
+// Beside a program, on a core whose speed changes.
+struct Unsteady {
     double mean = 0.0, worst = 1e9;    // rate relative to the goal
     double level = 0.0, spread = 0.0;  // mean, and standard deviation over time
     double fresh = 0.0, changes_s = 0.0;
 };
+struct Core {
+    double slot_s;                                           // the speed holds for that long
+    std::function<double(double, std::mt19937&)> cost_next;  // factor on all costs, after the one before
+    int runs;
+};
 
-Drifting on_a_drifting_core(const Contender& c, double drift) {
-    constexpr double kSlot_s = 0.05, kKept = 0.95, kFrom_s = 5.0;
-    constexpr int kRuns = 5;
-    Drifting d;
-    for (unsigned seed = 1; seed <= kRuns; ++seed) {
+Unsteady on_a_core(const Contender& c, const Core& core) {
+    constexpr double kFrom_s = 5.0;
+    Unsteady d;
+    for (int run = 1; run <= core.runs; ++run) {
         // As measured: the display takes a fifth of the core at full detail, and a twentieth at the coarsest level.
         PlantSettings p{
             .update_s = 0.45e-3, .frame_fixed_s = 2.3e-3, .frame_full_s = 7.7e-3, .seconds = 40.0};
         p.hold = true;
-        p.seed = seed;
-        std::mt19937 random(seed);
-        std::normal_distribution<double> normal;
+        p.seed = static_cast<unsigned>(run);
+        std::mt19937 random(p.seed);
         std::vector<double> times{1.0};
-        while (static_cast<double>(times.size()) * kSlot_s < p.seconds + 1.0)
-            times.push_back(1.0 + kKept * (times.back() - 1.0) +
-                            drift * std::sqrt(1.0 - kKept * kKept) * normal(random));
+        while (static_cast<double>(times.size()) * core.slot_s < p.seconds + 1.0)
+            times.push_back(core.cost_next(times.back(), random));
         SharedCorePlant plant(p, {.law = c.law, .goal_hz = kGoal_hz, .gain = c.gain});
         double rate = 0.0, fresh = 0.0, sum = 0.0, square = 0.0, n = 0.0;
         for (const PlantSample& s : plant.run([&](double t_s) {
-                 return Load{.programs = 1.0, .core_times = times[static_cast<std::size_t>(t_s / kSlot_s)]};
+                 return Load{.programs = 1.0,
+                             .core_times = times[static_cast<std::size_t>(t_s / core.slot_s)]};
              })) {
             if (s.t_s < kFrom_s) continue;
             rate += s.rate_hz / kGoal_hz;
@@ -227,24 +231,37 @@ Drifting on_a_drifting_core(const Contender& c, double drift) {
             square += s.level * s.level;
             ++n;
         }
-        d.mean += rate / n / kRuns;
-        d.fresh += fresh / n / kRuns;
-        d.level += sum / n / kRuns;
-        d.spread += std::sqrt(std::max(square / n - sum / n * sum / n, 0.0)) / kRuns;
-        d.changes_s += plant.changes() / p.seconds / kRuns;
+        d.mean += rate / n / core.runs;
+        d.fresh += fresh / n / core.runs;
+        d.level += sum / n / core.runs;
+        d.spread += std::sqrt(std::max(square / n - sum / n * sum / n, 0.0)) / core.runs;
+        d.changes_s += plant.changes() / p.seconds / core.runs;
     }
     return d;
 }
 
+void print(const std::string& what, const Contender& c, const Unsteady& d) {
+    std::printf("| %s | %s | %+.1f %% | %.1f %% | %.3f | %.3f | %.2f | %.1f | %.1f %% |\n", what.c_str(),
+                c.name.c_str(), 100.0 * (d.mean - 1.0), 100.0 * d.worst, d.level, d.spread,
+                d.spread / d.level, d.changes_s, 100.0 * d.fresh);
+}
+
+// Its speed drifts, correlated over a second, as on a virtual machine.
 TEST(LawReplay, on_a_core_whose_speed_drifts_the_default_law_is_at_least_as_calm_as_the_published_one) {
-    std::printf("| drift | law | mean | worst 0.1 s | level | its spread | changes/s | recomputed |\n");
+    constexpr double kKept = 0.95;
     for (const double drift : {0.0, 0.01, 0.03}) {
-        Drifting published;  // with the default gain
+        const Core core{.slot_s = 0.05,
+                        .cost_next =
+                            [drift](double before, std::mt19937& random) {
+                                return 1.0 + kKept * (before - 1.0) +
+                                       drift * std::sqrt(1.0 - kKept * kKept) *
+                                           std::normal_distribution<double>()(random);
+                            },
+                        .runs = 5};
+        Unsteady published;  // with the default gain
         for (const Contender& c : kContenders) {
-            const Drifting d = on_a_drifting_core(c, drift);
-            std::printf("| %.0f %% | %s | %+.1f %% | %.1f %% | %.3f | %.3f | %.1f | %.1f %% |\n",
-                        100.0 * drift, c.name.c_str(), 100.0 * (d.mean - 1.0), 100.0 * d.worst, d.level,
-                        d.spread, d.changes_s, 100.0 * d.fresh);
+            const Unsteady d = on_a_core(c, core);
+            print("drift " + std::to_string(std::lround(100.0 * drift)) + " %", c, d);
             if (c.law == Law::sensitus) {
                 if (c.gain == GovernorSettings{}.gain) published = d;
                 continue;
@@ -252,8 +269,36 @@ TEST(LawReplay, on_a_core_whose_speed_drifts_the_default_law_is_at_least_as_calm
             EXPECT_LE(d.changes_s, 0.6 * published.changes_s);
             EXPECT_LE(d.spread, published.spread + 0.005);
             EXPECT_GE(d.level, 0.99 * published.level);
-            EXPECT_GE(d.fresh, published.fresh - 0.003);
+            EXPECT_GE(d.fresh, published.fresh - 0.004);
             EXPECT_GE(d.worst, published.worst - 0.002);
+            EXPECT_NEAR(d.mean, 1.0, 0.005);
+        }
+    }
+}
+
+// Other programs hold it for a tenth of a second now and then, as a host does that is shared.
+TEST(LawReplay, on_a_core_with_slow_tenths_of_a_second_the_default_law_is_at_least_as_calm_and_as_fine) {
+    for (const double share : {0.02, 0.1}) {
+        const Core core{.slot_s = 0.1,
+                        .cost_next =
+                            [share](double, std::mt19937& random) {
+                                std::uniform_real_distribution<double> unit;
+                                return unit(random) < share ? 1.0 / (0.9 - 0.2 * unit(random)) : 1.0;
+                            },
+                        .runs = 10};
+        Unsteady published;  // with the default gain
+        for (const Contender& c : kContenders) {
+            const Unsteady d = on_a_core(c, core);
+            print("slow tenths " + std::to_string(std::lround(100.0 * share)) + " %", c, d);
+            if (c.law == Law::sensitus) {
+                if (c.gain == GovernorSettings{}.gain) published = d;
+                continue;
+            }
+            EXPECT_LE(d.changes_s, 0.6 * published.changes_s);
+            EXPECT_LE(d.spread / d.level, 1.05 * published.spread / published.level);
+            EXPECT_GE(d.level, 1.2 * published.level);
+            EXPECT_GE(d.fresh, published.fresh - 0.008);  // the finer display takes it
+            EXPECT_GE(d.worst, published.worst - 0.005);
             EXPECT_NEAR(d.mean, 1.0, 0.005);
         }
     }
