@@ -341,6 +341,33 @@ TEST(LevelFit, only_steps_that_are_predicted_to_be_as_costly_as_their_row_measur
 }
 
 // One step in 500 is interrupted for 100 us, and one in 500 is slow by itself, seldom the same.
+// Its steps cost what the dry steps measured, more than the model predicts: all are as costly as their row.
+TEST(LevelFit, a_row_whose_dry_steps_cost_more_than_predicted_needs_the_spread_of_all_its_steps) {
+    LevelFit fit = with(doubling(3, 100.0));
+    for (std::size_t i = 0; i < 3 * LevelFit::kTries; ++i)
+        fit.calibrate(1.3 * fit.rows()[i / LevelFit::kTries].cost_s, 10.0 * kUs);
+    Loop loop(fit, 1000.0);
+    loop.predicted_us = [](std::size_t row) { return 100.0 * std::exp2(static_cast<double>(row)); };
+    ASSERT_EQ(fit.row(), 2U);
+    int step = 0;
+    loop.run(20'000, [&step](std::size_t row) {
+        return (++step % 200 == 0 ? 1.34 : 1.0) * 130.0 * std::exp2(static_cast<double>(row));
+    });
+    EXPECT_EQ(fit.row(), 1U);
+    EXPECT_EQ(loop.changes, 1);
+}
+
+// The first level is chosen before the spread is known. That it turns out to be small raises no level later.
+TEST(LevelFit, a_calm_processor_leaves_the_level_where_it_began) {
+    LevelFit fit = with({{.level = 0.0F, .cost_s = 500.0 * kUs, .error = 0.2},
+                         {.level = 1.0F, .cost_s = 570.0 * kUs, .error = 0.1}});
+    Loop loop(fit, 1000.0);
+    loop.run(30'000, [](std::size_t row) { return row == 0 ? 500.0 : 570.0; });
+    EXPECT_EQ(loop.changes, 0);
+    loop.run(12'000, [](std::size_t row) { return row == 0 ? 400.0 : 456.0; });  // but a faster one does
+    EXPECT_EQ(fit.row(), 1U);
+}
+
 TEST(LevelFit, slow_steps_and_interrupts_are_not_added) {
     const Rows rows{{0.0F, 80 * kUs, 1.0}, {1.0F, 160 * kUs, 0.0}};
     LevelFit fit = with(rows);
