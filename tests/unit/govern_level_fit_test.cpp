@@ -357,6 +357,18 @@ TEST(LevelFit, a_row_whose_dry_steps_cost_more_than_predicted_needs_the_spread_o
     EXPECT_EQ(loop.changes, 1);
 }
 
+TEST(LevelFit, the_present_level_may_use_what_a_new_one_must_leave) {
+    LevelFit fit = with({{.level = 0.0F, .cost_s = 100.0 * kUs, .error = 0.2},
+                         {.level = 1.0F, .cost_s = 500.0 * kUs, .error = 0.1}});
+    Loop loop(fit, 1000.0);
+    loop.run(2000, [](std::size_t row) { return row == 0 ? 100.0 : 500.0; });
+    ASSERT_EQ(fit.row(), 1U);
+    loop.run(5000, [](std::size_t row) { return row == 0 ? 128.0 : 640.0; });  // 93 % of the limit
+    EXPECT_EQ(loop.changes, 0);
+    loop.run(2000, [](std::size_t row) { return row == 0 ? 138.0 : 690.0; });
+    EXPECT_EQ(fit.row(), 0U);
+}
+
 // The first level is chosen before the spread is known. That it turns out to be small raises no level later.
 TEST(LevelFit, a_calm_processor_leaves_the_level_where_it_began) {
     LevelFit fit = with({{.level = 0.0F, .cost_s = 500.0 * kUs, .error = 0.2},
