@@ -94,12 +94,12 @@ bool LevelFit::renew(std::size_t i, double now_s, double error, double foreseen_
     w.foreseen_s = foreseen_s;
     w.error = std::max(w.error, error);
     w.renewed = true;
-    const double before = row.cost_s;
+    const Row before = row;
     row.cost_s = cost_s(i);
     row.error = std::max(w.error, w.error_before);
-    const bool leapt = row.cost_s > kLeapt * before;
-    leapt_ = leapt_ || (leapt && i == row_);
-    return leapt;
+    const bool dearer = row.cost_s > kLeapt * before.cost_s;
+    leapt_ = leapt_ || (dearer && i == row_);
+    return dearer || row.error > kLeapt * before.error + kSameError;
 }
 
 template <class ValueOf>

@@ -6,8 +6,8 @@
 //             row (calibrate), so the first armed cycle already has its level. A model may predict more in contact:
 //             rows are renewed in turn and keep their largest cost and error of the last kKept_s to 2 kKept_s, unfaded,
 //             so strokes that come again do not move the level. What a model only foresees of a contact counts as long as
-//             it does: then the contact shows its own cost. If the present row's cost leaps, all are renewed and the
-//             level falls at once if it does not fit
+//             it does: then the contact shows its own cost. If the present row's cost or error leaps, all are renewed;
+//             a level whose cost leapt falls at once if it does not fit
 // Cost        the cost of a whole step: a step that was cut by its deadline counts as cost / work_done. Three
 //             statistics correct the prediction while the loop runs:
 //               speed      median of measured / predicted cost of the steps whose predicted cost is at least kTelling
@@ -103,8 +103,8 @@ public:
     void calibrate(double model_s, double rest_s) noexcept TACT_RT;
     // Once a cycle, before rows are renewed: predictions age.
     void pass(double dt_s) noexcept TACT_RT;
-    // The model's present prediction for a row, and what it foresees of a contact that may come (0: nothing). True: the
-    // row's cost leapt.
+    // The model's present prediction for a row, and what it foresees of a contact that may come (0: nothing). True: cost
+    // or error leapt, so all rows must be renewed before they are compared.
     bool renew(std::size_t row, double cost_s, double error, double foreseen_s = 0.0) noexcept TACT_RT;
     // The row to renew in this cycle: each in turn.
     [[nodiscard]] std::size_t due() const noexcept TACT_RT { return count_ > 0 ? cycle_ % count_ : 0; }

@@ -37,6 +37,15 @@ TEST(LevelRows, the_largest_predicted_cost_and_error_of_the_last_seconds_count) 
     EXPECT_EQ(due, std::vector<bool>(3, true));
 }
 
+// A contact begins, and its cost does not leap: rows that still have the error of free space would seem better than the present one.
+TEST(LevelRows, an_error_that_leaps_calls_for_all_rows) {
+    LevelFit fit = with({{.level = 0.5F, .cost_s = 90 * kUs}, {.level = 1.0F, .cost_s = 100 * kUs}});
+    EXPECT_FALSE(fit.renew(1, 100 * kUs, 0.0));
+    EXPECT_TRUE(fit.renew(1, 100 * kUs, 0.5));
+    EXPECT_FALSE(fit.renew(1, 100 * kUs, 0.52));
+    EXPECT_TRUE(fit.renew(1, 100 * kUs, 0.7));
+}
+
 // One step in 200 takes 1.4 times what it was predicted. Where all steps are predicted to cost what their row does, that needs
 // room; where one in twenty is, too seldom for it.
 TEST(LevelRows, a_row_that_steps_seldom_reach_needs_less_room_for_its_spread) {
