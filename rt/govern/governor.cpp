@@ -76,7 +76,7 @@ void Governor::replace(std::size_t path, const KnobSpec& knob) noexcept {
          .level = knob.start,
          .requested = by_hand ? std::max(p.requested, knob.floor) : knob.start,
          .present = p.present};
-    rate_.restart();
+    forget_rate();
 }
 
 bool Governor::apply_requests(double dt_s) noexcept {
@@ -248,7 +248,7 @@ bool Governor::scale(bool haptic, double factor, double dt_s, LevelReason up_or_
 bool Governor::set_goal_hz(double goal_hz) noexcept {
     if (!(goal_hz >= 1.0 && goal_hz <= 1e7)) return false;
     settings_.goal_hz = goal_hz;
-    rate_.restart();
+    forget_rate();
     return true;
 }
 
@@ -279,13 +279,13 @@ void Governor::set_law(Law law) noexcept {
         for (std::size_t i = 0; i < count_; ++i) paths_[i].requested = paths_[i].level;
     }
     settings_.law = law;
-    rate_.restart();
+    forget_rate();
 }
 
 void Governor::set_present(std::size_t path, bool present) noexcept {
     if (path >= count_) return;
     if (!paths_[path].knob.haptic && present != paths_[path].present) {
-        rate_.restart();
+        forget_rate();
         display_fraction_ = display_busy_ = frame_s_ = 0.0;
         display_binds_ = false;
     }

@@ -104,6 +104,11 @@ private:
         return path.present && (path.knob.haptic || !resting_);
     }
     [[nodiscard]] bool say_hold() noexcept;
+    // The conditions are different ones now.
+    void forget_rate() noexcept {
+        rate_.restart();
+        given_up_ = 0.0;
+    }
     void damp(RateIs rate) noexcept;
     bool scale(bool haptic, double factor, double dt_s, LevelReason moved, LevelReason stuck) noexcept;
     bool scale_visual(double factor, double dt_s, LevelReason moved, LevelReason stuck) noexcept;

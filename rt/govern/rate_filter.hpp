@@ -44,11 +44,14 @@ public:
             if (n_ > 0.0) count(usual + side * flicker());
             return;
         }
+        // Of a jump the last interval counts twice; those after it belong to a rate that still moves.
         last_ = r;
         n_ = far_ == jump ? far_ : 1.0;
         mean_ = far_ == jump ? far_mean_ + (r - far_mean_) / far_ : r;
     }
-    void restart() noexcept TACT_RT { n_ = 0.0; }
+    void restart() noexcept TACT_RT {
+        n_ = 0.0;
+    }  // intervals far from the mean go on: a step seldom suffices
 
     [[nodiscard]] RateIs judge(double tolerance) const noexcept TACT_RT {
         if (n_ < 1.0) return RateIs::right;

@@ -29,6 +29,7 @@ DisplayCost::PerPath Governor::visual_levels() const noexcept {
 
 // The time that the factor on all visual levels would save or cost, spent in small steps on the path where it is best at that moment.
 bool Governor::scale_visual(double factor, double dt_s, LevelReason up_or_down, LevelReason stuck) noexcept {
+    scaled_ln_ = 0.0;
     if (settings_.law == Law::sensitus) return scale(false, factor, dt_s, up_or_down, stuck);
     constexpr double kStep = 0.1;  // in ln(level)
     constexpr int kStepsMost = 128;
@@ -74,7 +75,7 @@ bool Governor::scale_visual(double factor, double dt_s, LevelReason up_or_down, 
                            : std::min(before * std::exp(change), most[best]);
         left -= std::abs(std::log(level[best] / before)) * gain[best];
     }
-    scaled_ln_ = sum > 0.0 ? wanted_ln - std::max(left, 0.0) / sum : 0.0;
+    if (sum > 0.0) scaled_ln_ = wanted_ln - std::max(left, 0.0) / sum;
     bool moved = false;
     for (std::size_t i = 0; i < count_; ++i) {
         GovernedPath& p = paths_[i];

@@ -336,6 +336,24 @@ TEST(Governor, what_was_lost_to_a_large_error_returns_as_soon_as_the_rate_is_too
     EXPECT_LT(level, 1.2 * before);
 }
 
+TEST(Governor, what_another_law_or_goal_took_does_not_return_at_once) {
+    for (const bool law : {false, true}) {
+        Governor governor = with(
+            {.law = law ? Law::sensitus : Law::elastic, .goal_hz = 1000.0, .free_running = true}, {kMesh});
+        for (int i = 0; i < 10; ++i) static_cast<void>(governor.step(600.0, kStep));
+        if (law)
+            governor.set_law(Law::elastic);
+        else
+            ASSERT_TRUE(governor.set_goal_hz(580.0));
+        const double before = static_cast<double>(governor.level(0));
+        EXPECT_LT(before, 0.5);
+        const double rate_hz = 1.03 * governor.settings().goal_hz;
+        for (int i = 0; i < 15; ++i) static_cast<void>(governor.step(rate_hz, kStep));
+        EXPECT_GT(static_cast<double>(governor.level(0)), before);
+        EXPECT_LT(static_cast<double>(governor.level(0)), 1.25 * before);
+    }
+}
+
 TEST(Governor, the_fixed_law_keeps_the_level_that_a_person_set_at_any_rate) {
     Governor governor = with({.law = Law::fixed, .goal_hz = 1000.0}, {kMesh, kForce});
     EXPECT_FALSE(governor.step(10.0, kStep));
