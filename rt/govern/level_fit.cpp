@@ -16,7 +16,7 @@ constexpr double kPartLeast = 0.02;  // limits the scaling of a partial cost to 
 constexpr double kMissKept = 0.999, kInterruptedMiss = 0.4, kMissesMost = 2.2;
 
 // A freely running loop shares its core: other programs hold several steps in a row, at any level.
-constexpr std::uint32_t kMissesInARow = 2, kMissesInARowFree = CostSpread::kChangedRun;
+constexpr std::uint32_t kMissesInARow = 2, kInterruptedInARow = 3, kMissesInARowFree = 4;
 
 // Of the whole step.
 double part_of(const LevelFit::Sample& s) noexcept {
@@ -70,6 +70,7 @@ void LevelFit::pass(double dt_s) noexcept {
     window_age_s_ += dt_s;
     if (window_age_s_ < kKept_s) return;
     window_age_s_ = 0.0;
+    spread_.turn();
     slow_before_ = slow_;
     slow_ = 0.0;
     for (std::size_t i = 0; i < count_; ++i) {
@@ -114,24 +115,26 @@ double LevelFit::at(float level, ValueOf value_of) const noexcept {
     return count_ > 0 ? value_of(count_ - 1) : 0.0;
 }
 
-double LevelFit::predicted_s(std::size_t row, double speed, double spread_least,
-                             double interrupts_s_most) const noexcept {
-    const double usual_s = speed * rows_[row].cost_s;
-    return std::max(usual_s * std::max(spread_.spread(CostSpread::kTail / near_), spread_least),
-                    usual_s + std::min(spread_.interrupt_s(), interrupts_s_most));
-}
-
 bool LevelFit::fits(std::size_t row, const Limits& limits, double part) const noexcept {
     const double budget_s = kUse * limits.period_s * limits.budget, now = spread_.speed();
     const double spread_least = part < 1.0 ? kSpreadLeast : 1.0;
+    const double tail = CostSpread::kTail / near_;
+    double speed = now;
+    if (row != row_) {
+        const double slow = std::max(slow_, slow_before_);
+        speed = std::max(now, limits.free_running ? std::min(slow, 1.0) : slow);
+    }
+    const double cost_s = rows_[row].cost_s, usual_s = speed * cost_s;
+    const double interrupt_s = std::min(
+        spread_.interrupt_s(), kInterruptShare * (limits.free_running ? limits.deadline_s : budget_s));
     if (!limits.free_running) {
-        const double speed = row == row_ ? now : std::max({now, slow_, slow_before_});
-        return predicted_s(row, speed, spread_least, kInterruptShare * budget_s) + rest_s_ <= part * budget_s;
+        const double tail_s = std::max(spread_.slowest(tail) * cost_s, usual_s * spread_least);
+        return std::max(tail_s, usual_s + interrupt_s) + rest_s_ <= part * budget_s;
     }
     // Its core is shared: other programs make it slow all the time.
-    return predicted_s(row, now, spread_least, kInterruptShare * limits.deadline_s) <=
+    return std::max(usual_s * std::max(spread_.spread(tail), spread_least), usual_s + interrupt_s) <=
                part * limits.deadline_s &&
-           kFreeSpread * now * rows_[row].cost_s + rest_s_ <= part * budget_s;
+           kFreeSpread * usual_s + rest_s_ <= part * budget_s;
 }
 
 std::size_t LevelFit::best(const Limits& limits, double part, double cost_s_most) const noexcept {
@@ -193,20 +196,23 @@ void LevelFit::follow_rest(double rest_s) noexcept {
 LevelFit::Choice LevelFit::add(const Sample& s, const Limits& limits) noexcept {
     if (count_ == 0) return {.level = s.level};
     const CostSpread::Kind kind = learn(s);
-    if (s.deadline_missed && kind == CostSpread::Kind::interrupted && limits.free_running)
-        misses_ -= kInterruptedMiss;
+    const bool interrupted = kind == CostSpread::Kind::interrupted;
+    if (s.deadline_missed && interrupted && limits.free_running) misses_ -= kInterruptedMiss;
     const std::size_t before = row_;
     const bool changed_cost = kind == CostSpread::Kind::changed,
                due = cycle_ % kEvery == 0 || changed_cost || leapt_;
     LevelReason reason = LevelReason::hold;
     if (due) slow_ = std::max(slow_, spread_.speed());
     if (due) over_s_ = fits(row_, limits, 1.0) ? 0.0 : over_s_ + kEvery * s.dt_s;
-    const bool in_a_row = misses_in_a_row_ >= (limits.free_running ? kMissesInARowFree : kMissesInARow);
+    const bool in_a_row = misses_in_a_row_ >= (limits.free_running ? kMissesInARowFree
+                                               : interrupted       ? kInterruptedInARow
+                                                                   : kMissesInARow);
     if (s.deadline_missed && row_ > 0 && (misses_ > kMissesMost || in_a_row)) {
         const double share = in_a_row ? kUse * limits.period_s * part_of(s) / s.model_s : 1.0;
         row_ = best(limits, 1.0, std::min(share, kMissRetreat) * rows_[row_].cost_s);
         reason = LevelReason::deadline_missed;
         misses_ = 0.0;
+        misses_in_a_row_ = 0;
     } else if (due) {
         const bool slower = changed_cost && s.model_s / part_of(s) > kUrgent * kUse * limits.period_s;
         const bool over = over_s_ > kOver_s || ((slower || leapt_) && over_s_ > 0.0);

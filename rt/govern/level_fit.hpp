@@ -8,31 +8,34 @@
 //             so strokes that come again do not move the level. What a model only foresees of a contact counts as long as
 //             it does: then the contact shows its own cost. If the present row's cost or error leaps, all are renewed;
 //             a level whose cost leapt falls at once if it does not fit
-// Cost        the cost of a whole step: a step that was cut by its deadline counts as cost / work_done. Three
+// Cost        the cost of a whole step: a step that was cut by its deadline counts as cost / work_done. Four
 //             statistics correct the prediction while the loop runs:
 //               speed      median of measured / predicted cost of the steps whose predicted cost is at least kTelling
 //                          of their row's: cheap steps in free space tell nothing of steps in contact. Follows
 //                          within 0.1 s. At a fixed rate another row must fit at the slowest speed of the last kKept_s to
 //                          2 kKept_s too: p99.9 is a matter of seconds, and a processor that was slow for a tenth of one
-//                          will be again
-//               spread     of measured / (speed x predicted), the quantile that one step in 2000 exceeds. A row keeps
-//                          its largest prediction: where a share `near` of the steps is predicted to cost kNear of
-//                          that, one in 2000 x near of these may exceed it, and the rest is below. A newly chosen row
-//                          fits a spread of at least kSpreadLeast: the first choice does not know the spread yet,
-//                          and a rise because it turned out smaller would only be late
-//               interrupts the same quantile of the excess of steps that cost more than kInterrupted times the usual.
+//                          will be again. In a freely running loop a speed above that before the start counts after kKept_s
+//               slowest    of measured / predicted, the quantile that one step in 2000 of the last kKept_s to 2 kKept_s
+//                          exceeds. Single slow steps and slow seconds are in the same tail: a processor that is slow
+//                          in both ways is not slow twice. A row keeps its largest prediction: where a share `near` of
+//                          the steps is predicted to cost kNear of that, one in 2000 x near of these may exceed it, and
+//                          the rest is below. A newly chosen row fits at least kSpreadLeast times the speed: the first
+//                          choice does not know the tail yet, and a rise because it turned out smaller would only be late
+//               spread     the same of measured / (speed x predicted), for freely running loops: other programs hold
+//                          their core for a while, and that is over when the speed is back
+//               interrupts the quantile of the excess of steps that cost more than kInterrupted times the usual.
 //                          A level does not change the length of an interrupt, so the excess is added, not
 //                          multiplied, and takes at most kInterruptShare of the budget
-// Fits        max(speed x spread x predicted, speed x predicted + interrupts) + rest of the cycle <= kUse x period:
+// Fits        max(slowest x predicted, speed x predicted + interrupts) + rest of the cycle <= kUse x period:
 //             one step in a thousand exceeds it, because an interrupt seldom hits a step that is slow by itself. A
-//             freely running loop has no cycle to miss: the tail is held below the deadline, and speed x kFreeSpread x
-//             predicted + rest below kUse x period. The
+//             freely running loop has no cycle to miss: speed x spread x predicted is held below the deadline, and speed x
+//             kFreeSpread x predicted + rest below kUse x period. The
 //             present row may use all of that, and falls after it exceeded that for kOver_s; a newly chosen row may
 //             use only kRise of it, so the level does not hunt
 // Deadline    about one miss in a thousand cycles is what the quantile permits; the third within as many lowers the
 //             level at once, to at most kMissRetreat of the present cost. An interrupted step counts less, since it
-//             would have missed at any level. The second miss in a row lowers it to what would have fitted; in a
-//             freely running loop, whose core other programs hold for several steps, the fourth
+//             would have missed at any level. The second miss in a row, of interrupted steps the third, lowers it to what
+//             would have fitted; in a freely running loop, whose core other programs hold for several steps, the fourth
 // Slower      a run of slow steps, after which the present row no longer fits, lowers the level at once if they take more than
 //             kUrgent of the budget, otherwise after kOver_s: cheap steps miss nothing meanwhile
 // Holds       the level rises kHold_s after a fall at the earliest, and only if that takes kWorthGain off its error; a fall after a rise doubles the hold, up to
@@ -63,7 +66,7 @@ public:
     static constexpr double kOver_s = 0.1;
     static constexpr double kUrgent = 0.6;  // of the budget, of a step that ends a run of slow ones
     static constexpr double kKept_s = 5.0;
-    static constexpr double kTelling = 0.3;
+    static constexpr double kTelling = 0.5;
     static constexpr double kLeapt = 1.1;
     static constexpr double kSpreadLeast = 1.16;
     static constexpr double kNear = 0.9, kNearLeast = 0.05, kNearStep = 1e-3;  // of the share of costly steps
@@ -124,9 +127,6 @@ public:
     [[nodiscard]] std::size_t row() const noexcept TACT_RT { return row_; }
 
 private:
-    // p99.9 cost of the model's step, interrupts included up to `interrupts_s_most`.
-    [[nodiscard]] double predicted_s(std::size_t row, double speed, double spread_least,
-                                     double interrupts_s_most) const noexcept;
     // Of a value of each row, between rows in proportion.
     template <class ValueOf>
     [[nodiscard]] double at(float level, ValueOf value_of) const noexcept;

@@ -309,16 +309,35 @@ TEST(LevelFit, a_small_gain_of_error_is_not_worth_a_change_of_level) {
     }
 }
 
-// Five in a row are a fault.
-TEST(LevelFit, two_misses_in_a_row_lower_the_level_to_what_would_have_fitted) {
+// A processor that stops twice in a row says nothing of the level; a model that suddenly costs a multiple misses until the
+// level falls.
+TEST(LevelFit, three_interrupted_steps_in_a_row_lower_the_level_to_what_would_have_fitted) {
     LevelFit fit = with(doubling(8, 10.0));
     Loop loop(fit, 2000.0);
-    loop.run(500, [](std::size_t row) { return 10.0 * std::exp2(static_cast<double>(row)); });
+    const auto usual = [](std::size_t row) { return 10.0 * std::exp2(static_cast<double>(row)); };
     const auto slow = [](std::size_t row) { return 6.0 * 10.0 * std::exp2(static_cast<double>(row)); };
+    loop.run(500, usual);
+    for (int i = 0; i < 3; ++i) {
+        loop.run(2, slow);
+        loop.run(1000, usual);
+    }
+    EXPECT_EQ(loop.changes, 0);
     const int before = loop.misses;
     loop.run(5, slow);
-    EXPECT_EQ(loop.misses, before + 2);
+    EXPECT_EQ(loop.misses, before + 3);
     EXPECT_LE(slow(fit.row()), 0.7 * 2000.0);
+}
+
+// Steps that cost half as much again are no interrupts: their level costs too much.
+TEST(LevelFit, two_misses_in_a_row_lower_the_level) {
+    LevelFit fit = with(doubling(6, 10.0));
+    Loop loop(fit, 321.0);
+    const auto usual = [](std::size_t row) { return 10.0 * std::exp2(static_cast<double>(row)); };
+    loop.run(2500, usual);
+    const std::size_t before = fit.row();
+    loop.run(2, [&](std::size_t row) { return 1.5 * usual(row); });
+    EXPECT_EQ(loop.misses, 2);
+    EXPECT_LT(fit.row(), before);
 }
 
 // A model that predicts each step: cheap steps in free space say nothing about the speed of the processor in contact.
