@@ -112,7 +112,7 @@ private:
         std::array<double, kSlowestBins> count{};
         double total = 0.0;
         std::size_t end = 0;  // behind the last bin in use
-        void add(std::size_t bin, double samples) noexcept {
+        void add(std::size_t bin, double samples) noexcept TACT_RT {
             count[bin] += samples;
             total += samples;
             end = std::max(end, bin + 1);
@@ -123,7 +123,7 @@ private:
     struct Run {
         std::size_t length = 0;
         double least = 0.0, most = 0.0;
-        bool add(double ratio, bool belongs) noexcept {
+        bool add(double ratio, bool belongs) noexcept TACT_RT {
             if (!belongs || length == kLeapRun) length = 0;
             if (!belongs) return false;
             least = length == 0 ? ratio : std::min(least, ratio);

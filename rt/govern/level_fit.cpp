@@ -115,34 +115,40 @@ double LevelFit::at(float level, ValueOf value_of) const noexcept {
     return count_ > 0 ? value_of(count_ - 1) : 0.0;
 }
 
-bool LevelFit::fits(std::size_t row, const Limits& limits, double part) const noexcept {
+LevelFit::Tail LevelFit::read_tail(const Limits& limits) const noexcept {
+    const double share = CostSpread::kTail / near_;
+    const double limit_s = limits.free_running ? limits.deadline_s : kUse * limits.period_s * limits.budget;
+    return {.ratio = limits.free_running ? spread_.spread(share) : spread_.slowest(share),
+            .interrupt_s = std::min(spread_.interrupt_s(), kInterruptShare * limit_s)};
+}
+
+bool LevelFit::fits(std::size_t row, const Limits& limits, const Tail& tail, double part) const noexcept {
     const double budget_s = kUse * limits.period_s * limits.budget, now = spread_.speed();
     const double spread_least = part < 1.0 ? kSpreadLeast : 1.0;
-    const double tail = CostSpread::kTail / near_;
     double speed = now;
     if (row != row_) {
         const double slow = std::max(slow_, slow_before_);
         speed = std::max(now, limits.free_running ? std::min(slow, 1.0) : slow);
     }
     const double cost_s = rows_[row].cost_s, usual_s = speed * cost_s;
-    const double interrupt_s = std::min(
-        spread_.interrupt_s(), kInterruptShare * (limits.free_running ? limits.deadline_s : budget_s));
+    const double interrupted_s = usual_s + tail.interrupt_s;
     if (!limits.free_running) {
-        const double tail_s = std::max(spread_.slowest(tail) * cost_s, usual_s * spread_least);
-        return std::max(tail_s, usual_s + interrupt_s) + rest_s_ <= part * budget_s;
+        const double tail_s = std::max(tail.ratio * cost_s, usual_s * spread_least);
+        return std::max(tail_s, interrupted_s) + rest_s_ <= part * budget_s;
     }
     // Its core is shared: other programs make it slow all the time.
-    return std::max(usual_s * std::max(spread_.spread(tail), spread_least), usual_s + interrupt_s) <=
+    return std::max(usual_s * std::max(tail.ratio, spread_least), interrupted_s) <=
                part * limits.deadline_s &&
            kFreeSpread * usual_s + rest_s_ <= part * budget_s;
 }
 
 std::size_t LevelFit::best(const Limits& limits, double part, double cost_s_most) const noexcept {
     std::array<bool, kRowsMax> fitting{};
+    const Tail tail = read_tail(limits);
     double least_error = 1e300, least_cost_s = 1e300;
     for (std::size_t i = 0; i < count_; ++i) {
-        fitting[i] =
-            rows_[i].level <= limits.level_max && rows_[i].cost_s <= cost_s_most && fits(i, limits, part);
+        fitting[i] = rows_[i].level <= limits.level_max && rows_[i].cost_s <= cost_s_most &&
+                     fits(i, limits, tail, part);
         if (fitting[i]) least_error = std::min(least_error, rows_[i].error);
     }
     const auto good = [&](std::size_t i) {
@@ -203,7 +209,7 @@ LevelFit::Choice LevelFit::add(const Sample& s, const Limits& limits) noexcept {
                due = cycle_ % kEvery == 0 || changed_cost || leapt_;
     LevelReason reason = LevelReason::hold;
     if (due) slow_ = std::max(slow_, spread_.speed());
-    if (due) over_s_ = fits(row_, limits, 1.0) ? 0.0 : over_s_ + kEvery * s.dt_s;
+    if (due) over_s_ = fits(row_, limits, read_tail(limits), 1.0) ? 0.0 : over_s_ + kEvery * s.dt_s;
     const bool in_a_row = misses_in_a_row_ >= (limits.free_running ? kMissesInARowFree
                                                : interrupted       ? kInterruptedInARow
                                                                    : kMissesInARow);

@@ -130,7 +130,13 @@ private:
     // Of a value of each row, between rows in proportion.
     template <class ValueOf>
     [[nodiscard]] double at(float level, ValueOf value_of) const noexcept;
-    [[nodiscard]] bool fits(std::size_t row, const Limits& limits, double part) const noexcept;
+    // Of the steps of any row: see "slowest", "spread" and "interrupts". Read once for all rows of a choice.
+    struct Tail {
+        double ratio = 1.0, interrupt_s = 0.0;
+    };
+    [[nodiscard]] Tail read_tail(const Limits& limits) const noexcept;
+    [[nodiscard]] bool fits(std::size_t row, const Limits& limits, const Tail& tail,
+                            double part) const noexcept;
     [[nodiscard]] std::size_t best(const Limits& limits, double part, double cost_s_most) const noexcept;
     void follow_rest(double rest_s) noexcept;
     // Largest cost of a row that counts now.
