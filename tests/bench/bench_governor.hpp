@@ -2,10 +2,7 @@
 //
 // Runs      tact run --no-gui, as a user starts it: for each row one run per fixed level, and an adaptive run before,
 //           between and after those that are valid; the median of the adaptive runs counts, and a fault in any of them.
-//           The scenes are baked first, in a temporary folder.
-// Scenes    docking: structures of about 30 000, 160 000 and 500 000 atoms, shifted copies of one structure (from the
-//           demo or a file); surface: a 6-DoF tool of 1000 points on two million triangles; drilling: a burr with a
-//           radius of 20 mm in voxels of 0.1 mm
+//           On scenes of bench_governor_scenes.hpp.
 // Row       one scene at one rate. A fixed level is valid if the fraction of its steps that miss the deadline is below
 //           kMissShareMost. Levels are tried from the top, over the same path of the hand, until kValidLevels are
 //           valid: lower ones have larger errors.
@@ -16,11 +13,10 @@
 // Takes     about forty minutes; prints progress to standard error. Throws StartupError.
 #pragma once
 
-#include <cstddef>
-#include <filesystem>
 #include <nlohmann/json.hpp>
-#include <string>
 #include <vector>
+
+#include "tests/bench/bench_governor_scenes.hpp"
 
 namespace tact {
 
@@ -29,11 +25,10 @@ struct GovernorBenchSettings {
     static constexpr int kValidLevels = 2;
     static constexpr double kErrorRatioMost = 1.2, kStepRatioMost = 2.0, kSettledMost_s = 0.1;
 
-    std::vector<std::string> scenes{"docking", "surface", "drilling"};
-    std::vector<std::size_t> atoms{30'000, 160'000, 500'000};
+    GovernorSceneSettings scenes;
     std::vector<double> rates_hz{1000.0, 2000.0, 4000.0, 0.0};  // 0: free running
-    std::filesystem::path map, structure;                       // empty: those of the demo
     double seconds = 6.0;
+    bool bake_only = false;  // measures nothing
 };
 
 // Metrics of one run, read from its report.
@@ -48,7 +43,7 @@ struct GovernorRun {
 // Compares an adaptive run with the runs at fixed levels. Pure arithmetic.
 [[nodiscard]] nlohmann::json governor_row(const GovernorRun& adaptive, const std::vector<GovernorRun>& fixed);
 
-// "governor": one row per scene and rate; "governor_passed": true if all rows passed; "governor_core_quiet": true if
+// bake_only: "governor_scenes", the scenes' files. Otherwise "governor": one row per scene and rate; "governor_passed": true if all rows passed; "governor_core_quiet": true if
 // the core was quiet during all of them.
 [[nodiscard]] nlohmann::json bench_governor(const GovernorBenchSettings& settings);
 

@@ -120,7 +120,7 @@ constexpr Measure kMeasures[] = {
      &drilling_and_particles, true},
     {"governor",
      "deadline misses, force error and force steps of runs with adaptive and with fixed levels, at 1, 2 and "
-     "4 kHz and free running; takes twenty minutes",
+     "4 kHz and free running; takes forty minutes",
      &governor, true},
     {"ipc", "time to publish and to read the state of one servo cycle", &ipc},
 };
@@ -198,21 +198,31 @@ void describe(CLI::App& app, int& exit_code) {
         ->capture_default_str();
     GovernorBenchSettings& governed = governor_settings();
     auto* const runs = command->add_option_group("Governor", "Settings of the governor measurement");
-    auto* const map = runs->add_option("--map", governed.map,
+    auto* const map = runs->add_option("--map", governed.scenes.map,
                                        "Density map for the docking scenes; default: the map of the demo")
                           ->check(CLI::ExistingFile);
-    auto* const structure = runs->add_option("--structure", governed.structure,
+    auto* const structure = runs->add_option("--structure", governed.scenes.structure,
                                              "Structure for the docking scenes, copied to reach --atoms; "
                                              "default: the structure of the demo")
                                 ->check(CLI::ExistingFile)
                                 ->needs(map);
     map->needs(structure);
-    runs->add_option("--scene", governed.scenes, "Scenes of the governor measurement")
+    runs->add_option("--scene", governed.scenes.kinds, "Scenes of the governor measurement")
         ->check(CLI::IsMember({"docking", "surface", "drilling"}))
         ->capture_default_str();
-    runs->add_option("--atoms", governed.atoms, "Number of atoms of each docking scene")
+    runs->add_option("--atoms", governed.scenes.atoms, "Number of atoms of each docking scene")
         ->check(CLI::Range(1000, 2'000'000))
         ->capture_default_str();
+    runs->add_option("--work", governed.scenes.work,
+                     "Work of the scenes relative to the standard ones, by fewer atoms, tool points and "
+                     "voxels: for slow processors")
+        ->check(CLI::Range(0.01, 1.0))
+        ->capture_default_str();
+    runs->add_option("--folder", governed.scenes.folder,
+                     "Folder that keeps the scenes; those that are there already are used as they are; "
+                     "default: a temporary folder");
+    runs->add_flag("--bake-only", governed.bake_only, "Bake the scenes into --folder and measure nothing")
+        ->needs("--folder");
     runs->add_option("--rate", governed.rates_hz,
                      "Servo rates of the governor measurement (Hz); 0: free running")
         ->check(CLI::Range(0.0, 20'000.0))
