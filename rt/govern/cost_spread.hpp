@@ -92,6 +92,8 @@ public:
         }
         return 1.0;
     }
+    // That `slowest` counts.
+    [[nodiscard]] double samples() const noexcept TACT_RT { return now_.total + before_.total - kPrior; }
     // Excess (s) that a fraction kTail of the steps exceeds; 0 where fewer steps are interrupted.
     [[nodiscard]] double interrupt_s() const noexcept TACT_RT {
         double above = 0.0;

@@ -118,13 +118,18 @@ double LevelFit::at(float level, ValueOf value_of) const noexcept {
 LevelFit::Tail LevelFit::read_tail(const Limits& limits) const noexcept {
     const double share = CostSpread::kTail / near_;
     const double limit_s = limits.free_running ? limits.deadline_s : kUse * limits.period_s * limits.budget;
-    return {.ratio = limits.free_running ? spread_.spread(share) : spread_.slowest(share),
-            .interrupt_s = std::min(spread_.interrupt_s(), kInterruptShare * limit_s)};
+    const double ratio = limits.free_running ? spread_.spread(share) : spread_.slowest(share),
+                 usual = limits.free_running ? 1.0 : spread_.speed();
+    return {.ratio = ratio,
+            .interrupt_s = std::min(spread_.interrupt_s(), kInterruptShare * limit_s),
+            .alike = ratio <= kAlike * usual && spread_.samples() >= kTailKnown};
 }
 
 bool LevelFit::fits(std::size_t row, const Limits& limits, const Tail& tail, double part) const noexcept {
     const double budget_s = kUse * limits.period_s * limits.budget, now = spread_.speed();
-    const double spread_least = part < 1.0 ? kSpreadLeast : 1.0;
+    const bool certain = part >= 1.0 || (tail.alike && tried_s_[row] >= kTelling * rows_[row].cost_s);
+    if (!certain) part = std::min(part, kRise);
+    const double spread_least = certain ? 1.0 : kSpreadLeast;
     double speed = now;
     if (row != row_) {
         const double slow = std::max(slow_, slow_before_);
@@ -167,7 +172,7 @@ std::size_t LevelFit::best(const Limits& limits, double part, double cost_s_most
 }
 
 float LevelFit::choose(const Limits& limits) noexcept {
-    row_ = best(limits, kRise, 1e9);
+    row_ = best(limits, kFirst, 1e9);
     return rows_[row_].level;
 }
 

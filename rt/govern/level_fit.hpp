@@ -19,8 +19,8 @@
 //                          exceeds. Single slow steps and slow seconds are in the same tail: a processor that is slow
 //                          in both ways is not slow twice. A row keeps its largest prediction: where a share `near` of
 //                          the steps is predicted to cost kNear of that, one in 2000 x near of these may exceed it, and
-//                          the rest is below. A newly chosen row fits at least kSpreadLeast times the speed: the first
-//                          choice does not know the tail yet, and a rise because it turned out smaller would only be late
+//                          the rest is below. A newly chosen row that no steps like that have measured fits at least
+//                          kSpreadLeast times the speed: a rise because the tail turned out smaller would only be late
 //               spread     the same of measured / (speed x predicted), for freely running loops: other programs hold
 //                          their core for a while, and that is over when the speed is back
 //               interrupts the quantile of the excess of steps that cost more than kInterrupted times the usual.
@@ -31,7 +31,8 @@
 //             freely running loop has no cycle to miss: speed x spread x predicted is held below the deadline, and speed x
 //             kFreeSpread x predicted + rest below kUse x period. The
 //             present row may use all of that, and falls after it exceeded that for kOver_s; a newly chosen row may
-//             use only kRise of it, so the level does not hunt
+//             use only kRise of it, so the level does not hunt. The first one, which hunts nothing, may use kFirst, if
+//             its own dry steps and kTailKnown others were alike: a tail within kAlike of their speed
 // Deadline    about one miss in a thousand cycles is what the quantile permits; the third within as many lowers the
 //             level at once, to at most kMissRetreat of the present cost. An interrupted step counts less, since it
 //             would have missed at any level. The second miss in a row, of interrupted steps the third, lowers it to what
@@ -57,7 +58,7 @@ namespace tact {
 class LevelFit {
 public:
     static constexpr std::size_t kRowsMax = 33;
-    static constexpr double kUse = 0.7, kRise = 0.88;
+    static constexpr double kUse = 0.7, kRise = 0.88, kFirst = 0.96;
     static constexpr double kInterruptShare = 0.3;
     static constexpr double kHold_s = 0.5, kHoldMost_s = 8.0, kHoldForgotten_s = 10.0;
     // Lower bound of the speed: steps in free space are cheaper than steps in contact.
@@ -69,6 +70,7 @@ public:
     static constexpr double kTelling = 0.5;
     static constexpr double kLeapt = 1.1;
     static constexpr double kSpreadLeast = 1.16;
+    static constexpr double kTailKnown = 300.0, kAlike = 1.1;  // steps; their tail over their speed
     static constexpr double kNear = 0.9, kNearLeast = 0.05, kNearStep = 1e-3;  // of the share of costly steps
     static constexpr double kWorthGain = 0.15;
     static constexpr double kFreeSpread = 1.1;
@@ -133,6 +135,7 @@ private:
     // Of the steps of any row: see "slowest", "spread" and "interrupts". Read once for all rows of a choice.
     struct Tail {
         double ratio = 1.0, interrupt_s = 0.0;
+        bool alike = false;
     };
     [[nodiscard]] Tail read_tail(const Limits& limits) const noexcept;
     [[nodiscard]] bool fits(std::size_t row, const Limits& limits, const Tail& tail,

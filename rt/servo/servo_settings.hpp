@@ -58,7 +58,7 @@ struct ServoSettings {
     Duration governor_interval = std::chrono::milliseconds(100);
     Duration gui_silent = std::chrono::milliseconds(500);
     bool gui_silent_ramps = false;  // true: a silent GUI ramps the force out; false: it is only reported
-    std::uint32_t dry_cycles = 1000;
+    std::uint32_t dry_cycles = 4000;
     bool emulated = false;                                   // the device is emulated: no person holds it
     Duration lines_age_max = std::chrono::milliseconds(20);  // oldest valid sample of the safety inputs
 };

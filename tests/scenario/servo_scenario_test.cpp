@@ -53,6 +53,27 @@ TEST(ServoScenario, the_force_ramps_in_and_never_steps) {
     EXPECT_GT(before, 0.0);
 }
 
+// Each level at once, three times; then like the loop, for a second at most.
+TEST(ServoScenario, dry_cycles_keep_the_pace_of_the_loop_once_the_levels_are_measured) {
+    const auto warm_up_s = [](std::uint32_t cycles, bool free_running) {
+        Lockstep loop;
+        ServoSettings settings;
+        settings.free_running = free_running;
+        settings.model_deadline = false;
+        settings.visual_paths = kMeshPaths;
+        settings.dry_cycles = cycles;
+        Servo servo({loop.clock_, std::span(loop.hands_).first(1), *loop.region_, loop.mailbox_}, settings);
+        const Instant begin = loop.clock_.now();
+        servo.warm_up();
+        EXPECT_EQ(servo.state().govern.fit.rows().size(), 21U);
+        return to_s(loop.clock_.now() - begin);
+    };
+    EXPECT_EQ(warm_up_s(60, false), 0.0);
+    EXPECT_NEAR(warm_up_s(500, false), 1e-3 * (500 - 3 * 21), 1.5e-3);
+    EXPECT_NEAR(warm_up_s(ServoSettings{}.dry_cycles, false), 1.0, 1.5e-3);
+    EXPECT_EQ(warm_up_s(500, true), 0.0);
+}
+
 TEST(ServoScenario, the_same_run_twice_writes_the_same_bytes) {
     const auto run = [] {
         SimSettings sim;

@@ -9,6 +9,7 @@ tact_tests(safety_tests SOURCES
 tact_tests(govern_tests SOURCES
         unit/govern_governor_test.cpp unit/govern_display_test.cpp unit/govern_level_fit_test.cpp
         unit/govern_level_free_test.cpp unit/govern_level_rows_test.cpp unit/govern_level_slow_test.cpp
+        unit/govern_level_first_test.cpp
         unit/govern_rate_hold_test.cpp unit/govern_replay_test.cpp
     USES base govern SYSTEM rapidcheck)
 tact_test(unit/replay_marks_test.cpp USES base topics replay)
