@@ -173,6 +173,7 @@ int run(std::span<char* const> arguments, const StartOptions& o, const StartOver
         return 0;
     }
 
+    for (const LevelRequest& w : requests) servo.start_at_level(w.path, w.level);
     Platform platform;
     const ScheduleRequest schedule{.priority = static_cast<int>(config.servo.priority),
                                    .core = static_cast<int>(config.servo.core),
@@ -213,7 +214,6 @@ int run(std::span<char* const> arguments, const StartOptions& o, const StartOver
                                .T_dev_world = settings.T_world_dev.inverse(),
                                .lead_device = lead_devices(config)},
                               region, mailbox, *link);
-    for (const LevelRequest& w : requests) housekeeping.order(CommandKind::set_level, w.level, w.path);
     if (o.arm) housekeeping.order(CommandKind::arm, 0.0, 0);
     housekeeping.run();
     thread.join();

@@ -263,6 +263,12 @@ bool Governor::set_level(std::size_t path, double level) noexcept {
     return true;
 }
 
+bool Governor::start_at_level(std::size_t path, double level) noexcept {
+    if (!set_level(path, level)) return false;
+    paths_[path].level = paths_[path].requested;
+    return true;
+}
+
 bool Governor::set_fitted_level(std::size_t path, float level, LevelReason reason) noexcept {
     if (path >= count_ || settings_.law == Law::fixed || !(level >= 0.0F && level <= 1.0F)) return false;
     GovernedPath& p = paths_[path];

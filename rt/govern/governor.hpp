@@ -78,6 +78,8 @@ public:
 
     bool set_goal_hz(double goal_hz) noexcept TACT_RT;                // false: not a rate
     bool set_level(std::size_t path, double level) noexcept TACT_RT;  // selects the law "fixed"
+    // The same before the loop starts: at once, without slew. False: no such path or level.
+    bool start_at_level(std::size_t path, double level) noexcept;
     void set_law(Law law) noexcept TACT_RT;
     // Makes the path a fitted one and sets its level; refused under the law "fixed". True: the level changed.
     bool set_fitted_level(std::size_t path, float level, LevelReason reason) noexcept TACT_RT;

@@ -73,6 +73,8 @@ void Servo::start(Instant now) noexcept {
     c_.report.health_at = now;
     servo::start_interval(c_, now);
     servo::choose_level(c_, settings_);
+    for (std::size_t path = 0; path < start_levels_.size(); ++path)
+        if (start_levels_[path]) static_cast<void>(c_.governor.start_at_level(path, *start_levels_[path]));
     c_.run = next_status(c_.run, {.open = true}, now);
     servo::report(c_, io_.region, EventCode::loop_started, 0.0, 0.0);
     servo::publish_levels(c_, settings_, io_.region);

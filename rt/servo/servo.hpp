@@ -6,7 +6,10 @@
 // Fails by  zero force and a latched fault (rt/safety); the loop goes on
 #pragma once
 
+#include <array>
+#include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 
 #include "rt/servo/cycle.hpp"
@@ -30,6 +33,10 @@ public:
     Servo(const Servo&) = delete;
     Servo& operator=(const Servo&) = delete;
 
+    // Before warm_up(): from the first regular cycle on, the law "fixed" and this level of a path. As Governor::set_level().
+    void start_at_level(std::size_t path, double level) noexcept {
+        if (path < start_levels_.size()) start_levels_[path] = level;
+    }
     // Runs dry cycles with the gate closed, which warm caches and measure costs; then calls start().
     void warm_up() noexcept;
     // The parts of warm_up(), for replays: one dry cycle; reset of counters and state ready at `now`.
@@ -50,6 +57,7 @@ private:
     ServoIo io_;
     ServoSettings settings_;
     StartTopic start_topic_;  // without the start time
+    std::array<std::optional<double>, Governor::kPathsMax> start_levels_{};
     CycleState c_;
 };
 

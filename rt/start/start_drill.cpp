@@ -80,8 +80,9 @@ std::unique_ptr<DrillModel> load_drill(const SceneFile& scene, const RtConfig& c
     const double step_s = config.servo.free_running && config.governor.goal_hz > 0.0
                               ? 1.0 / config.governor.goal_hz
                               : 1e-6 * config.servo.period_us;
-    model->foresee(
-        rehearse_drill(settings, meta.world_per_model * shared.bone().octree.bricks().voxel_m, step_s));
+    const BoneBricks& bricks = shared.bone().octree.bricks();
+    model->foresee(rehearse_drill(settings, bricks, shared.bone().octree.density(),
+                                  meta.world_per_model * bricks.voxel_m, step_s));
     model->publish_to(shared.publisher());
     return model;
 }

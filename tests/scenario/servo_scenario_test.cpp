@@ -74,6 +74,25 @@ TEST(ServoScenario, dry_cycles_keep_the_pace_of_the_loop_once_the_levels_are_mea
     EXPECT_EQ(warm_up_s(500, true), 0.0);
 }
 
+TEST(ServoScenario, a_level_set_before_the_start_holds_from_the_first_cycle) {
+    Lockstep loop;
+    ServoSettings settings;
+    settings.model_deadline = false;
+    settings.visual_paths = kMeshPaths;
+    settings.dry_cycles = 80;
+    Servo servo({loop.clock_, std::span(loop.hands_).first(1), *loop.region_, loop.mailbox_}, settings);
+    servo.start_at_level(kForcePathIndex, 0.3);
+    servo.start_at_level(1000, 0.3);  // no such path
+    servo.warm_up();
+    EXPECT_EQ(servo.governor().settings().law, Law::fixed);
+    for (int i = 0; i < 200; ++i) {
+        servo.cycle();
+        ASSERT_EQ(servo.state().budget.fidelity, 0.3F) << i;
+    }
+    // Other paths keep what was found for them.
+    EXPECT_EQ(servo.governor().level(kDisplayPathIndex), 1.0F);
+}
+
 TEST(ServoScenario, the_same_run_twice_writes_the_same_bytes) {
     const auto run = [] {
         SimSettings sim;

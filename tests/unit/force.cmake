@@ -17,7 +17,7 @@ tact_tests(force_tool_tests SOURCES
         unit/force_tool_energy_test.cpp unit/force_query_record_test.cpp unit/force_tool_points_test.cpp
     USES force prep_surface prep_synthetic)
 tact_tests(force_drilling_tests SOURCES
-        unit/force_bone_test.cpp unit/force_drill_levels_test.cpp unit/force_drill_predict_test.cpp unit/force_drill_rehearsal_test.cpp unit/force_strokes_test.cpp unit/force_burr_exchange_test.cpp
+        unit/force_bone_test.cpp unit/force_drill_levels_test.cpp unit/force_drill_predict_test.cpp unit/force_drill_rehearsal_test.cpp unit/force_drill_trial_test.cpp unit/force_strokes_test.cpp unit/force_burr_exchange_test.cpp
     USES force)
 tact_test(unit/force_drill_test.cpp USES force)
 tact_tests(certify_tests SOURCES

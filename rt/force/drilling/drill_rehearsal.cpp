@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "rt/force/drilling/drill_model.hpp"
+#include "rt/force/drilling/trial_bone.hpp"
 
 namespace tact {
 namespace {
@@ -15,27 +16,6 @@ constexpr double kContactS = 0.5, kInS = 0.1, kInM_s = 0.1, kOutM_s = 0.03;
 constexpr std::uint32_t kStepsMost = 2400, kFadeSteps = 40;
 // Parts of a contact whose steps follow a pause each: where it cuts most, and where it touches most.
 constexpr std::array<std::array<double, 2>, 2> kPausedS{{{0.06, 0.12}, {0.24, 0.3}}};
-constexpr double kBesideVoxels = 16.0;
-
-// A slab of solid bone, as wide as a burr's pocket in it. Its upper surface is z = 0.
-struct Slab {
-    BoneBricks bricks;
-    std::vector<std::uint8_t> density;
-    std::vector<std::uint32_t> revision;
-
-    Slab(double radius_m, double voxel_m) {
-        const double side = 2.0 * radius_m / voxel_m + kBesideVoxels,
-                     deep = radius_m / voxel_m + kBesideVoxels;
-        const auto whole = [](double voxels) {
-            return BoneBricks::kEdge * static_cast<std::uint32_t>(std::ceil(voxels / BoneBricks::kEdge));
-        };
-        bricks.size = {whole(side), whole(side), whole(deep)};
-        bricks.voxel_m = voxel_m;
-        bricks.origin_m = voxel_m * Vec3(-0.5 * bricks.size[0], -0.5 * bricks.size[1], 0.5 - bricks.size[2]);
-        density.assign(bricks.bytes(), 255);
-        revision.assign(bricks.brick_count(), 0);
-    }
-};
 
 bool is_paused(double t_s) {
     return std::any_of(kPausedS.begin(), kPausedS.end(),
@@ -49,23 +29,30 @@ double pressed_m(const DrillSettings& settings, double radius_m) {
     return radius_m * std::cbrt(std::pow(DrillRehearsal::kPressN / (elastic_pa * radius_m * radius_m), 2.0));
 }
 
+struct Reach {
+    double radius_m = 0.0, lowest_m = 0.0;  // largest ball; lowest point below the tool's origin
+    double depth_m = 0.0;                   // of the trial
+    explicit Reach(const DrillSettings& settings) {
+        const DrillTool tool = make_drill_tool(settings.tool);
+        for (std::uint32_t i = 0; i < tool.count; ++i) {
+            radius_m = std::max(radius_m, tool.ball[i].radius_m);
+            lowest_m = std::min(lowest_m, tool.ball[i].centre_tool_m.z() - tool.ball[i].radius_m);
+        }
+        depth_m = std::min(DrillRehearsal::kDeeper * pressed_m(settings, radius_m), radius_m);
+    }
+};
+
 // The work of the costliest step of a contact at a level.
-DrillWork press(const DrillSettings& settings, double voxel_m, double step_s, float level, double most_s,
+DrillWork press(const DrillSettings& settings, TrialBone trial, double step_s, float level, double most_s,
                 std::vector<TimedWork>& samples) {
     SceneMeta meta{};
     meta.world_per_model = 1.0;
-    const DrillTool tool = make_drill_tool(settings.tool);
-    double radius_m = 0.0, lowest_m = 0.0;  // lowest: below the tool's origin
-    for (std::uint32_t i = 0; i < tool.count; ++i) {
-        radius_m = std::max(radius_m, tool.ball[i].radius_m);
-        lowest_m = std::min(lowest_m, tool.ball[i].centre_tool_m.z() - tool.ball[i].radius_m);
-    }
-    Slab slab(radius_m, voxel_m);
-    DrillBone bone(slab.bricks, slab.density, slab.revision);
+    const Reach reach(settings);
+    std::vector<std::uint32_t> revision(trial.bricks.brick_count(), 0);
+    DrillBone bone(trial.bricks, trial.density, revision);
     DrillModel model(meta, bone, settings);
     ToolState hand;
-    hand.T_world_tool.p_m.z() = -lowest_m;
-    const double depth_m = std::min(DrillRehearsal::kDeeper * pressed_m(settings, radius_m), radius_m);
+    hand.T_world_tool.p_m.z() = -reach.lowest_m;
     model.reset(hand);
     const Budget budget{.fidelity = level};
     for (std::uint32_t i = 0; i < kFadeSteps; ++i) {
@@ -91,11 +78,28 @@ DrillWork press(const DrillSettings& settings, double voxel_m, double step_s, fl
         }
         double& z_m = hand.T_world_tool.p_m.z();
         if (i * step_s < kInS)
-            z_m = std::max(z_m - kInM_s * step_s, -lowest_m - depth_m);
+            z_m = std::max(z_m - kInM_s * step_s, -reach.lowest_m - reach.depth_m);
         else if (result.wrench_world.force_n.z() > DrillRehearsal::kLightN)
             z_m += kOutM_s * step_s;
     }
     return most;
+}
+
+DrillRehearsal rehearse_in(const TrialBone& bone, const DrillSettings& settings, double step_s) {
+    DrillRehearsal made;
+    std::vector<TimedWork> samples;
+    for (std::size_t i = 0; i < made.contact.size(); ++i) {
+        // Levels above one that takes a period are as far out of reach.
+        if (i > 0 && to_s(drill_cost(made.contact[i - 1])) > step_s) {
+            made.contact[i] = made.contact[i - 1];
+            continue;
+        }
+        made.contact[i] = press(settings, bone, step_s, DrillRehearsal::kLevels[i],
+                                DrillRehearsal::kMostS / static_cast<double>(made.contact.size()), samples);
+    }
+    made.set_speed(fit_speed(telling_steps(samples, step_s)));
+    made.step_s = step_s;
+    return made;
 }
 
 }  // namespace
@@ -116,20 +120,13 @@ Duration DrillRehearsal::contact_cost(float level) const noexcept {
 }
 
 DrillRehearsal rehearse_drill(const DrillSettings& settings, double voxel_m, double step_s) {
-    DrillRehearsal made;
-    std::vector<TimedWork> samples;
-    for (std::size_t i = 0; i < made.contact.size(); ++i) {
-        // Levels above one that takes a period are as far out of reach.
-        if (i > 0 && to_s(drill_cost(made.contact[i - 1])) > step_s) {
-            made.contact[i] = made.contact[i - 1];
-            continue;
-        }
-        made.contact[i] = press(settings, voxel_m, step_s, DrillRehearsal::kLevels[i],
-                                DrillRehearsal::kMostS / static_cast<double>(made.contact.size()), samples);
-    }
-    made.set_speed(fit_speed(telling_steps(samples, step_s)));
-    made.step_s = step_s;
-    return made;
+    return rehearse_in(solid_bone(Reach(settings).radius_m, voxel_m), settings, step_s);
+}
+
+DrillRehearsal rehearse_drill(const DrillSettings& settings, const BoneBricks& bricks,
+                              std::span<const std::uint8_t> density, double voxel_m, double step_s) {
+    const Reach reach(settings);
+    return rehearse_in(bone_of(bricks, density, reach.radius_m, reach.depth_m, voxel_m), settings, step_s);
 }
 
 }  // namespace tact

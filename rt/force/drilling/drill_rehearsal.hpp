@@ -1,6 +1,6 @@
 // What a first contact of a drill costs on this machine, tried before the loop starts.
 //
-// Trial    At each of kLevels a copy of the tool goes kDeeper times as deep into a slab of solid bone as kPressN press it, which
+// Trial    At each of kLevels a copy of the tool goes kDeeper times as deep into bone (trial_bone.hpp) as kPressN press it, which
 //          a hand reaches while the force fades in, and is then let out until it presses with kLightN: first it cuts most
 //          bone, then it touches most. In steps of the loop's period, without a deadline
 // Work     of each level: that of the step which was expected to cost most. Between levels the logarithm of the cost is linear
@@ -11,7 +11,10 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
+#include <span>
 
+#include "ipc/scene/bone/bone_bricks.hpp"
 #include "rt/force/drilling/drill_speed.hpp"
 
 namespace tact {
@@ -20,7 +23,7 @@ struct DrillSettings;
 
 class DrillRehearsal {
 public:
-    static constexpr std::array<float, 6> kLevels{0.0F, 0.15F, 0.3F, 0.5F, 0.75F, 1.0F};
+    static constexpr std::array<float, 8> kLevels{0.0F, 0.05F, 0.1F, 0.15F, 0.3F, 0.5F, 0.75F, 1.0F};
     static constexpr double kPressN = 3.0, kLightN = 1.0, kDeeper = 2.5;
     static constexpr double kMostS = 3.0;
 
@@ -38,8 +41,12 @@ private:
     std::array<double, kLevels.size()> log_ns_{};  // of the contacts' costs
 };
 
-// voxel_m: edge of a voxel in the world. step_s: period of the loop.
-// Fails by StartupError where the model would.
+// In bone like that of a volume, which nothing changes meanwhile. voxel_m: edge of a voxel in the world. step_s: period of
+// the loop. Fails by StartupError where the model would.
+[[nodiscard]] DrillRehearsal rehearse_drill(const DrillSettings& settings, const BoneBricks& bricks,
+                                            std::span<const std::uint8_t> density, double voxel_m,
+                                            double step_s);
+// In solid bone.
 [[nodiscard]] DrillRehearsal rehearse_drill(const DrillSettings& settings, double voxel_m, double step_s);
 
 }  // namespace tact
