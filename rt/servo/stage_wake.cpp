@@ -20,6 +20,7 @@ void wake(CycleState& c, const ServoSettings& settings, Clock& clock) noexcept {
     c.dt = c.cycle == 0 ? Duration{0} : c.now - c.before;
     c.before = c.now;
     ++c.cycle;
+    if (!(c.dry && settings.emulated) || c.cycle == 1) c.device_now = c.now;
 }
 
 }  // namespace tact::servo

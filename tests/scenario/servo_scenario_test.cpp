@@ -74,6 +74,26 @@ TEST(ServoScenario, dry_cycles_keep_the_pace_of_the_loop_once_the_levels_are_mea
     EXPECT_EQ(warm_up_s(500, true), 0.0);
 }
 
+// Its hand would go through the bone meanwhile: no force holds it.
+TEST(ServoScenario, the_hand_of_an_emulated_device_stays_while_dry_cycles_take_their_time) {
+    const auto moved_m = [](bool emulated) {
+        SimSettings sim;
+        sim.hand.script = "wander";
+        Lockstep loop({}, sim);
+        ServoSettings settings;
+        settings.emulated = emulated;
+        settings.model_deadline = false;
+        settings.visual_paths = kMeshPaths;
+        settings.dry_cycles = 500;
+        Servo servo({loop.clock_, std::span(loop.hands_).first(1), *loop.region_, loop.mailbox_}, settings);
+        const Vec3 before_m = loop.device_.hand_pose().p_m;
+        servo.warm_up();
+        return (loop.device_.hand_pose().p_m - before_m).norm();
+    };
+    EXPECT_LT(moved_m(true), 1e-9);
+    EXPECT_GT(moved_m(false), 1e-4);
+}
+
 TEST(ServoScenario, a_level_set_before_the_start_holds_from_the_first_cycle) {
     Lockstep loop;
     ServoSettings settings;

@@ -74,7 +74,7 @@ struct CycleFixture {
           hand{&device, &model, device.open()},
           c(settings, {&hand, 1}, begin()),
           io{clock, *region, mailbox} {
-        c.now = c.before = clock.now();
+        c.now = c.before = c.device_now = clock.now();
         device.sample.taken_at = clock.now();
         device.sample.sequence = 1;
         device.sample.state = DeviceState::powered;
