@@ -172,7 +172,8 @@ std::size_t LevelFit::best(const Limits& limits, double part, double cost_s_most
 }
 
 float LevelFit::choose(const Limits& limits) noexcept {
-    row_ = best(limits, kFirst, 1e9);
+    row_ = first_row_ = best(limits, kFirst, 1e9);
+    since_choice_s_ = 0.0;
     return rows_[row_].level;
 }
 
@@ -191,6 +192,7 @@ CostSpread::Kind LevelFit::learn(const Sample& s) noexcept {
     }
     follow_rest(s.rest_s);
     since_fall_s_ += s.dt_s;
+    since_choice_s_ += s.dt_s;
     misses_ *= kMissKept;
     misses_in_a_row_ = s.deadline_missed ? misses_in_a_row_ + 1 : 0;
     if (s.deadline_missed) misses_ += kind == CostSpread::Kind::interrupted ? kInterruptedMiss : 1.0;
@@ -235,8 +237,9 @@ LevelFit::Choice LevelFit::add(const Sample& s, const Limits& limits) noexcept {
             const std::size_t better = best(limits, kRise, 1e9);
             // With equal errors the higher level wins: its cost fits.
             const double gain = rows_[row_].error - rows_[better].error;
-            if (gain > kWorthGain * rows_[row_].error + kSameError ||
-                (std::abs(gain) <= kSameError && better > row_)) {
+            const bool early = better > first_row_ && since_choice_s_ < kEarly_s;
+            if (gain > (early ? kWorthGainEarly : kWorthGain) * rows_[row_].error + kSameError ||
+                (std::abs(gain) <= kSameError && better > row_ && !early)) {
                 row_ = better;
                 reason = LevelReason::cost_low;
             }

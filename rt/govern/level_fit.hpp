@@ -39,7 +39,8 @@
 //             would have fitted; in a freely running loop, whose core other programs hold for several steps, the fourth
 // Slower      a run of slow steps, after which the present row no longer fits, lowers the level at once if they take more than
 //             kUrgent of the budget, otherwise after kOver_s: cheap steps miss nothing meanwhile
-// Holds       the level rises kHold_s after a fall at the earliest, and only if that takes kWorthGain off its error; a fall after a rise doubles the hold, up to
+// Holds       the level rises kHold_s after a fall at the earliest, and only if that takes kWorthGain off its error, above the
+//             first choice in the first kEarly_s kWorthGainEarly: it settles at once unless that would cost much; a fall after a rise doubles the hold, up to
 //             kHoldMost_s. A fall more than kHoldForgotten_s after the previous one restores kHold_s
 // Thread      servo; constant time, no allocation
 #pragma once
@@ -72,7 +73,7 @@ public:
     static constexpr double kSpreadLeast = 1.16;
     static constexpr double kTailKnown = 300.0, kAlike = 1.1;  // steps; their tail over their speed
     static constexpr double kNear = 0.9, kNearLeast = 0.05, kNearStep = 1e-3;  // of the share of costly steps
-    static constexpr double kWorthGain = 0.15;
+    static constexpr double kWorthGain = 0.15, kWorthGainEarly = 0.5, kEarly_s = 10.0;
     static constexpr double kFreeSpread = 1.1;
     static constexpr double kSmallLoss = 0.05;    // of the error
     static constexpr double kMissRetreat = 0.85;  // cost limit after a miss, relative to the present cost
@@ -156,7 +157,8 @@ private:
     std::array<Window, kRowsMax> window_{};
     double window_age_s_ = 0.0;
     double slow_ = 0.0, slow_before_ = 0.0;  // largest spread_.speed() of the present and the last window
-    std::size_t count_ = 0, row_ = 0;
+    std::size_t count_ = 0, row_ = 0, first_row_ = 0;
+    double since_choice_s_ = 0.0;
     std::uint32_t tries_ = 0;
     CostSpread spread_;
     double near_ = 1.0;    // share of the steps that are predicted to cost as much as their row, or nearly

@@ -304,7 +304,7 @@ TEST(LevelFit, a_small_gain_of_error_is_not_worth_a_change_of_level) {
             fit.pass(LevelFit::kKept_s);
             static_cast<void>(fit.renew(1, 200 * kUs, error));
         }
-        loop.run(3000, [](std::size_t row) { return row == 0 ? 100.0 : 200.0; });
+        loop.run(12'000, [](std::size_t row) { return row == 0 ? 100.0 : 200.0; });
         EXPECT_EQ(fit.row(), error < 0.85 ? 1U : 0U) << error;
     }
 }
