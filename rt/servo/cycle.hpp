@@ -124,8 +124,8 @@ struct CycleState {
     std::array<Instant, CycleTopic::kTimestampsMax> timestamp{};  // clock readings in this cycle
     std::uint8_t timestamps = 0;
     Instant planned{}, now{}, before{};
-    Instant
-        device_now{};  // for the devices: dry cycles take no time of emulated ones, whose hand nothing holds then
+    // For the devices: dry cycles take no time of emulated ones, whose hand nothing holds then.
+    Instant device_now{};
     Duration lateness{0}, dt{0}, cost{0}, model_cost{0};
     Duration behind{0};  // from the planned start of this cycle to the end of the previous one
     Budget budget{};
