@@ -127,6 +127,7 @@ LevelFit::Tail LevelFit::read_tail(const Limits& limits) const noexcept {
 
 bool LevelFit::fits(std::size_t row, const Limits& limits, const Tail& tail, double part) const noexcept {
     const double budget_s = kUse * limits.period_s * limits.budget, now = spread_.speed();
+    // The present row shows what it costs; another one, if dry steps measured it and all were alike.
     const bool certain = part >= 1.0 || (tail.alike && tried_s_[row] >= kTelling * rows_[row].cost_s);
     if (!certain) part = std::min(part, kRise);
     const double spread_least = certain ? 1.0 : kSpreadLeast;
