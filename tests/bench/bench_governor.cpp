@@ -16,23 +16,6 @@ using nlohmann::json;
 
 constexpr auto kSpeedSample = std::chrono::milliseconds(300);  // beside each run
 
-GovernorRun run_of(const json& report) {
-    const auto number = [&report](const char* key) {
-        return report.value(key, json(nullptr)).is_number() ? report[key].get<double>() : 0.0;
-    };
-    GovernorRun r;
-    r.fault = report.value("armed_cycles", std::uint64_t{0}) == 0 || report.value("state", "") == "fault" ||
-              !report["ended"].value("ok", false);
-    r.miss_share = number("deadline_miss_share");
-    r.error_n = number("force_error_n_p50");
-    r.step_n = number("force_step_n_max");
-    r.settled_s = number("level_settled_s");
-    r.rate_hz = number("force_rate_hz");
-    for (const auto& [name, path] : report["governor"]["paths"].items())
-        if (path.value("haptic", false)) r.level = path.value("level", 0.0);
-    return r;
-}
-
 GovernorRun run(const fs::path& folder, const BenchScene& scene, double rate_hz, double seconds,
                 const double* level) {
     const fs::path report = folder / "run.json", config = folder / "latch.toml";
@@ -53,13 +36,34 @@ GovernorRun run(const fs::path& folder, const BenchScene& scene, double rate_hz,
     run_program("tact", arguments, folder / "run.log",
                 std::chrono::seconds(60) + std::chrono::milliseconds(std::llround(1e3 * seconds)));
     const json parsed = json::parse(launch::read_small(report), nullptr, false);
-    if (parsed.is_discarded() || !parsed.contains("governor"))
+    const json::json_pointer code("/ended/tact-rt/exit_code");
+    if (parsed.is_discarded() || (!parsed.contains("governor") && parsed.value(code, 1) != 0))
         throw StartupError("run " + scene.name, "the run failed: " + launch::read_small(folder / "run.log"),
                            "run the scene by hand: tact run SCENE");
-    return run_of(parsed);
+    return governor_run_of(parsed);
 }
 
 }  // namespace
+
+GovernorRun governor_run_of(const json& report) {
+    const auto number = [&report](const char* key) {
+        return report.value(key, json(nullptr)).is_number() ? report[key].get<double>() : 0.0;
+    };
+    const json governor = report.value("governor", json(nullptr));
+    const bool published = governor.is_object();
+    GovernorRun r;
+    r.fault = !published || report.value("armed_cycles", std::uint64_t{0}) == 0 ||
+              report.value("state", "") == "fault" || !report["ended"].value("ok", false);
+    r.miss_share = number("deadline_miss_share");
+    r.error_n = number("force_error_n_p50");
+    r.step_n = number("force_step_n_max");
+    r.settled_s = number("level_settled_s");
+    r.rate_hz = number("force_rate_hz");
+    if (!published) return r;
+    for (const auto& [name, path] : governor["paths"].items())
+        if (path.value("haptic", false)) r.level = path.value("level", 0.0);
+    return r;
+}
 
 bool valid_level(const GovernorRun& fixed) {
     return !fixed.fault && fixed.miss_share < GovernorBenchSettings::kMissShareMost;

@@ -37,6 +37,8 @@ struct GovernorRun {
     double miss_share = 1.0, error_n = 0.0, step_n = 0.0, level = 0.0, settled_s = 0.0, rate_hz = 0.0;
 };
 
+// Of the JSON report of `tact run`. A loop that left no time to arm or to publish anything counts as a fault.
+[[nodiscard]] GovernorRun governor_run_of(const nlohmann::json& report);
 [[nodiscard]] bool valid_level(const GovernorRun& fixed);
 // Of each metric; at least one run. A fault in any run is one.
 [[nodiscard]] GovernorRun median_of(const std::vector<GovernorRun>& runs);

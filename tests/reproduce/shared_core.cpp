@@ -18,6 +18,7 @@
 #include "ipc/base/error.hpp"
 #include "ipc/shm/region.hpp"
 #include "tests/reproduce/external_load.hpp"
+#include "tests/reproduce/text.hpp"
 #include "tests/reproduce/tick_source.hpp"
 
 namespace tact::launch {
@@ -26,6 +27,8 @@ namespace {
 constexpr const char* kSession = "reproduce";
 constexpr int kPriority = 50;  // of runs with FIFO scheduling
 constexpr int kSampleMs = 5;
+// On an emulated processor the force model alone takes half a minute to start.
+constexpr std::chrono::seconds kStartMost(150);
 
 int last_core() {
     cpu_set_t mine;
@@ -98,7 +101,7 @@ struct SharedCore::Parts {
     }
 
     bool wait_until_drawing(Observer& observer, Child& controller, Child& visual) {
-        const Instant end = Monotonic::now() + std::chrono::seconds(30);
+        const Instant end = Monotonic::now() + kStartMost;
         while (Monotonic::now() < end) {
             if (signals.wait(kSampleMs) != 0) return false;
             require_running(controller, visual);
@@ -108,7 +111,9 @@ struct SharedCore::Parts {
             if (h && h->gui_attached != 0 && h->gui_vertices > 0 && h->gui_fps > 0.0) return true;
         }
         throw StartupError(
-            "starting the experiment", "tact-gui drew no frame within 30 s: " + observer.status_text(),
+            "starting the experiment",
+            text("tact-gui drew no frame within %lld s: ", static_cast<long long>(kStartMost.count())) +
+                observer.status_text(),
             "start tact-gui by hand to see the cause; output:\n" + read_small(scratch.path() / "log"));
     }
 

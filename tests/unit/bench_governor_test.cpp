@@ -40,6 +40,23 @@ TEST(BenchGovernor, each_violated_limit_fails_the_run) {
     EXPECT_FALSE(passes(with([](auto& r) { r.settled_s = 0.11; })));
 }
 
+TEST(BenchGovernor, a_run_that_never_armed_or_published_counts_as_a_fault) {
+    const nlohmann::json ended = {{"ok", true}, {"why", "tact-rt ended with exit code 0"}};
+    nlohmann::json report = {
+        {"ended", ended},
+        {"armed_cycles", 6000},
+        {"deadline_miss_share", 0.25},
+        {"governor", {{"paths", {{"docking.force", {{"haptic", true}, {"level", 0.5}}}}}}}};
+    EXPECT_FALSE(governor_run_of(report).fault);
+    EXPECT_EQ(governor_run_of(report).level, 0.5);
+    EXPECT_EQ(governor_run_of(report).miss_share, 0.25);
+    report["armed_cycles"] = 0;
+    EXPECT_TRUE(governor_run_of(report).fault);
+    EXPECT_TRUE(governor_run_of({{"ended", ended}, {"armed_cycles", 6000}}).fault);
+    EXPECT_TRUE(governor_run_of({{"ended", ended}, {"armed_cycles", 6000}, {"governor", nullptr}}).fault);
+    EXPECT_TRUE(governor_run_of(nlohmann::json::object()).fault);
+}
+
 TEST(BenchGovernor, a_core_is_quiet_while_a_loop_takes_the_same_time) {
     CoreSpeed speed, leaps;
     for (int i = 0; i < 100; ++i) {
