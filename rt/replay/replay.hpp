@@ -76,6 +76,8 @@ public:
     // The step that do_step() repeats next; null at the end.
     [[nodiscard]] const RecordedStep* upcoming() const { return has_step_ ? &step_ : nullptr; }
     void do_step();
+    // True after the first step that is not dry.
+    [[nodiscard]] bool started() const { return started_; }
     // Sets an offset for every time stamp; call it before the first step.
     void shift_by(Duration shift) { shift_ = shift; }
     [[nodiscard]] const ReplayResult& result() const { return result_; }

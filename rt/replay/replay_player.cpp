@@ -146,7 +146,7 @@ void ReplayPlayer::seek(const Place& place) {
 bool ReplayPlayer::reached(const Replay& replay) const {
     if (replay.upcoming() == nullptr) return true;
     if (place_.step > 0) return replay.result().steps >= place_.step;
-    return replay.result().steps > 0 && time_s(*replay.upcoming()) > place_.at_s;
+    return replay.started() && time_s(*replay.upcoming()) > place_.at_s;
 }
 
 void ReplayPlayer::seek_on() {

@@ -3,6 +3,7 @@
 // Forward   the replay computes every step up to the place
 // Back      another replay begins from the start and computes up to the place, while the window keeps the picture that it
 //           has; then the window attaches to that one. A model has no way back, and a recording holds no state of it
+// Dry steps have no state to show: a time among them is the first regular step; a step number finds them all the same
 // Times     of all topics: those of the recording, moved so that its first step is at the time at which the window came
 // Thread    one
 // Errors    StartupError: no window came

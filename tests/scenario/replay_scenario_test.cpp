@@ -242,10 +242,17 @@ TEST(ReplayScenario, a_window_pauses_steps_and_seeks_back_and_forth) {
     shows(here / 2);
     shows(here + 700);
     // A time: the last step that is not after it.
-    window.request(++seeks, 1.0, 0, false);
+    window.request(++seeks, 1.5, 0, false);
     ASSERT_TRUE(window.waits_for([&](const ReplayTopic& t) { return t.seeks == seeks; }));
-    EXPECT_LE(window.look().at_s, 1.0);
-    EXPECT_GT(window.look().at_s, 0.99);
+    EXPECT_LE(window.look().at_s, 1.5);
+    EXPECT_GT(window.look().at_s, 1.49);
+    // The beginning: the first step that is not dry, so there is a state to show.
+    window.request(++seeks, 0.0, 0, false);
+    ASSERT_TRUE(window.waits_for([&](const ReplayTopic& t) { return t.seeks == seeks; }));
+    StartTopic start{};
+    ASSERT_TRUE(window.region().start.read(start));
+    EXPECT_GT(start.dry_steps, 0U);
+    EXPECT_EQ(window.look().step, start.dry_steps + 1);
     // To the end, and on from there nothing plays.
     window.request(++seeks, 1e6, 0, true);
     ASSERT_TRUE(window.waits_for([&](const ReplayTopic& t) { return act(t) == ReplayAct::ended; }));
