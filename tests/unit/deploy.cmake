@@ -60,6 +60,8 @@ add_test(NAME deploy_rights_test COMMAND Python3::Interpreter ${CMAKE_CURRENT_SO
 add_test(NAME deploy_dock_cache_test COMMAND Python3::Interpreter ${CMAKE_CURRENT_SOURCE_DIR}/unit/deploy_dock_cache_test.py $<TARGET_FILE_DIR:tact>)
 add_test(NAME deploy_add_structure_test COMMAND Python3::Interpreter ${CMAKE_CURRENT_SOURCE_DIR}/unit/deploy_add_structure_test.py $<TARGET_FILE_DIR:tact>)
 set_tests_properties(deploy_add_structure_test PROPERTIES TIMEOUT 300)
+add_test(NAME bench_governor_scenes_test COMMAND Python3::Interpreter ${CMAKE_CURRENT_SOURCE_DIR}/unit/bench_governor_scenes_test.py $<TARGET_FILE_DIR:tact>)
+set_tests_properties(bench_governor_scenes_test PROPERTIES TIMEOUT 300)
 add_test(NAME certify_cli_test COMMAND Python3::Interpreter ${CMAKE_CURRENT_SOURCE_DIR}/unit/certify_cli_test.py $<TARGET_FILE_DIR:tact>)
 add_test(NAME config_check_test COMMAND Python3::Interpreter ${CMAKE_CURRENT_SOURCE_DIR}/unit/config_check_test.py $<TARGET_FILE_DIR:tact>
     WORKING_DIRECTORY ${CMAKE_SOURCE_DIR})
