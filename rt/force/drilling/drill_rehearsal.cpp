@@ -4,10 +4,8 @@
 #include <array>
 #include <cmath>
 #include <thread>
-#include <vector>
 
 #include "rt/force/drilling/drill_model.hpp"
-#include "rt/force/drilling/trial_bone.hpp"
 
 namespace tact {
 namespace {
@@ -42,9 +40,28 @@ struct Reach {
     }
 };
 
-// The work of the costliest step of a contact at a level.
-DrillWork press(const DrillSettings& settings, TrialBone trial, double step_s, float level, double most_s,
-                std::vector<TimedWork>& samples) {
+DrillRehearsal rehearse_in(const TrialBone& bone, const DrillSettings& settings, double step_s) {
+    DrillRehearsal made;
+    std::vector<TimedWork> samples;
+    for (std::size_t i = 0; i < made.contact.size(); ++i) {
+        // Levels above one that takes a period are as far out of reach.
+        if (i > 0 && to_s(drill_cost(made.contact[i - 1])) > step_s) {
+            made.contact[i] = made.contact[i - 1];
+            continue;
+        }
+        made.contact[i] =
+            first_contact(settings, bone, step_s, DrillRehearsal::kLevels[i],
+                          DrillRehearsal::kMostS / static_cast<double>(made.contact.size()), samples);
+    }
+    made.set_speed(fit_speed(telling_steps(samples, step_s)));
+    made.step_s = step_s;
+    return made;
+}
+
+}  // namespace
+
+DrillWork first_contact(const DrillSettings& settings, TrialBone trial, double step_s, float level,
+                        double most_s, std::vector<TimedWork>& samples) {
     SceneMeta meta{};
     meta.world_per_model = 1.0;
     const Reach reach(settings);
@@ -84,25 +101,6 @@ DrillWork press(const DrillSettings& settings, TrialBone trial, double step_s, f
     }
     return most;
 }
-
-DrillRehearsal rehearse_in(const TrialBone& bone, const DrillSettings& settings, double step_s) {
-    DrillRehearsal made;
-    std::vector<TimedWork> samples;
-    for (std::size_t i = 0; i < made.contact.size(); ++i) {
-        // Levels above one that takes a period are as far out of reach.
-        if (i > 0 && to_s(drill_cost(made.contact[i - 1])) > step_s) {
-            made.contact[i] = made.contact[i - 1];
-            continue;
-        }
-        made.contact[i] = press(settings, bone, step_s, DrillRehearsal::kLevels[i],
-                                DrillRehearsal::kMostS / static_cast<double>(made.contact.size()), samples);
-    }
-    made.set_speed(fit_speed(telling_steps(samples, step_s)));
-    made.step_s = step_s;
-    return made;
-}
-
-}  // namespace
 
 void DrillRehearsal::set_speed(const DrillSpeed& speed) {
     speed_ = speed;

@@ -13,9 +13,11 @@
 #include <array>
 #include <cstdint>
 #include <span>
+#include <vector>
 
 #include "ipc/scene/bone/bone_bricks.hpp"
 #include "rt/force/drilling/drill_speed.hpp"
+#include "rt/force/drilling/trial_bone.hpp"
 
 namespace tact {
 
@@ -23,7 +25,7 @@ struct DrillSettings;
 
 class DrillRehearsal {
 public:
-    static constexpr std::array<float, 8> kLevels{0.0F, 0.05F, 0.1F, 0.15F, 0.3F, 0.5F, 0.75F, 1.0F};
+    static constexpr std::array<float, 9> kLevels{0.0F, 0.05F, 0.1F, 0.15F, 0.2F, 0.3F, 0.5F, 0.75F, 1.0F};
     static constexpr double kPressN = 3.0, kLightN = 1.0, kDeeper = 2.5;
     static constexpr double kMostS = 3.0;
 
@@ -48,5 +50,8 @@ private:
                                             double step_s);
 // In solid bone.
 [[nodiscard]] DrillRehearsal rehearse_drill(const DrillSettings& settings, double voxel_m, double step_s);
+// The work of the costliest step of a contact at a level, tried for so long at most; adds steps that tell the speed.
+[[nodiscard]] DrillWork first_contact(const DrillSettings& settings, TrialBone trial, double step_s,
+                                      float level, double most_s, std::vector<TimedWork>& samples);
 
 }  // namespace tact
