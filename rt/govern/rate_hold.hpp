@@ -8,7 +8,8 @@
 //           further deficit of kRange of a window lowers the fraction from 1 to kLeast
 // Ahead     computes how long the loop may sleep and so leave the processor to others: until its lead over a rate
 //           kAbove the goal is kAhead of a window. A constant lead does not change the mean rate. An earlier
-//           deficit counts for up to kLacked of a window, which evens out short interruptions
+//           deficit counts for up to kLacked of a window: a loop that never reaches its goal on average does not sleep in the
+//           moments in which it is faster, between the frames of a display
 // Stalls    a gap counts as at most kGap_s, so the loop recovers at most a quarter of a window; updates from
 //           before the window do not count
 // Runs on   servo thread, once per update, constant time
@@ -32,7 +33,7 @@ public:
     static constexpr double kSlackLeast = 1.0, kRangeLeast = 2.0;  // updates
     static constexpr double kCatchUp = 1.15;
     static constexpr double kLeast = 0.125;
-    static constexpr double kAbove = 0.005, kAhead = 0.03, kLacked = 0.1, kRestMost_s = 1e-3;
+    static constexpr double kAbove = 0.005, kAhead = 0.03, kLacked = 0.5, kRestMost_s = 1e-3;
 
     // Starts without a deficit or a lead.
     void restart() noexcept TACT_RT { *this = {}; }

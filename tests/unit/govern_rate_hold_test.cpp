@@ -21,6 +21,7 @@ struct Core {
     std::function<double(double t_s)> update_s = [](double) { return 0.9e-3; };
     std::function<bool(double t_s)> ours = [](double) { return true; };
     bool rests = false;
+    bool whole = false;  // a structure too small for partial sums
 
     struct Update {
         double t_s, share;
@@ -39,7 +40,8 @@ struct Core {
                     rest_until_s = t_s + rest_s;
                     continue;
                 }
-                all.push_back({t_s, std::ceil(8.0 * hold.work_fraction(now, goal_hz)) / 8.0});
+                const double fraction = hold.work_fraction(now, goal_hz);
+                all.push_back({t_s, whole ? 1.0 : std::ceil(8.0 * fraction) / 8.0});
                 left_s += update_s(t_s) * (0.05 + 0.95 * all.back().share);
             }
             left_s -= kTick_s;
@@ -172,6 +174,20 @@ TEST(RateHold, a_loop_ahead_of_its_goal_sleeps_and_recomputes_all_work) {
         EXPECT_GE(windows(all, 0.2, 1.0).least, 0.99) << update_s;
         EXPECT_EQ(mean_share(all, 0.0, 1.0), 1.0) << update_s;
     }
+}
+
+// On a quiet machine a loop between the frames of a display, each of which held the core for 28 ms, slept whenever it was a
+// little ahead, and made 2290 instead of 2470 updates a second, at a goal of 2660.
+TEST(RateHold, a_loop_below_its_goal_on_average_does_not_sleep_in_faster_moments) {
+    Core core;
+    core.whole = true;
+    core.ours = [](double t_s) {
+        return std::fmod(t_s, 0.1) > 0.028 && static_cast<int>(t_s * 1e3) % 2 == 0;
+    };
+    core.update_s = [](double) { return 0.147e-3; };
+    const std::size_t left_alone = core.run(3.0, 2660.0).size();
+    core.rests = true;
+    EXPECT_GE(static_cast<double>(core.run(3.0, 2660.0).size()), 0.985 * static_cast<double>(left_alone));
 }
 
 TEST(RateHold, a_core_of_alternating_speed_reaches_the_goal_on_average_and_in_every_window) {
