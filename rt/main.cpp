@@ -144,7 +144,7 @@ int run(std::span<char* const> arguments, const StartOptions& o, const StartOver
     const std::array hands{HandParts{device.get(), model.get(), info, system.drive(0)},
                            HandParts{device2.get(), second.get(), info2, system.drive(1)}};
 
-    ServoClock clock(spin_tail(config.servo));
+    ServoClock clock(spin_tail(config.servo), spins_whole_period(config.servo) ? 1.0 : 0.5);
     Servo servo({.clock = clock,
                  .hands = std::span(hands).first(two_hands ? 2 : 1),
                  .region = *region,

@@ -238,7 +238,11 @@ void set_key(const ConfigKey& key, const toml::node& node, const std::string& wh
 
 Duration duration_us(double us) { return Duration(std::llround(us * 1e3)); }
 
-bool sleeps(const RtConfig::Servo& servo) { return !servo.free_running && servo.spin_us < servo.period_us; }
+bool spins_whole_period(const RtConfig::Servo& servo) {
+    return !servo.free_running && servo.spin_us >= servo.period_us;
+}
+
+bool sleeps(const RtConfig::Servo& servo) { return !servo.free_running && !spins_whole_period(servo); }
 
 Duration spin_tail(const RtConfig::Servo& servo) {
     return duration_us(sleeps(servo) ? std::min(servo.spin_us, 0.4 * servo.period_us) : servo.spin_us);

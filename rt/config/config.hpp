@@ -189,6 +189,8 @@ void check_config(const RtConfig& config, const std::string& where);
 [[nodiscard]] TrackerSettings tracker_settings_from(const RtConfig& config);
 [[nodiscard]] HeadSettings head_settings_from(const RtConfig& config);
 [[nodiscard]] Duration duration_us(double us);
+// True if a person chose a spin of the whole period.
+[[nodiscard]] bool spins_whole_period(const RtConfig::Servo& servo);
 // True if the loop yields its core between two cycles; false if it is free running or spins the whole period.
 [[nodiscard]] bool sleeps(const RtConfig::Servo& servo);
 // Time spent spinning before a cycle. At most two fifths of the period of a sleeping loop: the kernel kills a FIFO
