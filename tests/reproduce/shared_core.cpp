@@ -131,13 +131,15 @@ struct SharedCore::Parts {
         const double on_s = run.phase.load_on_s(), end_s = run.phase.end_s();
         std::optional<ExternalLoad> load;
         const Instant begin = Monotonic::now();
-        for (double t = 0.0; t <= end_s; t = to_s(Monotonic::now() - begin)) {
+        double t_s = 0.0;
+        while (t_s <= end_s) {
             if (signals.wait(kSampleMs) != 0) return false;
             require_running(controller, visual);
             observer.poll();
-            if (!load && run.phase.loaded_s > 0.0 && t >= on_s) load.emplace(core);
+            if (!load && run.phase.loaded_s > 0.0 && t_s >= on_s) load.emplace(core);
             take_sample(run, observer, begin,
                         {controller.pid(), visual.pid(), load ? load->pid() : -1, tick_source.pid()});
+            t_s = to_s(Monotonic::now() - begin);
         }
         if (load) {
             load->stop();

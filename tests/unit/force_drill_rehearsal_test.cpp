@@ -46,6 +46,7 @@ TEST(DrillSpeed, finds_the_factors_of_a_machine_among_steps_that_other_programs_
 
 TEST(DrillSpeed, kinds_of_work_that_no_step_did_have_the_factor_of_the_others) {
     std::vector<TimedWork> steps;
+    steps.reserve(50);
     for (int i = 0; i < 50; ++i)
         steps.push_back(timed(some_work(100.0 + i), {.walk = 1.3, .parts = 1, .voxels = 1, .cut = 1}));
     const DrillSpeed speed = fit_speed(steps);
