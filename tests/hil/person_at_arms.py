@@ -70,10 +70,10 @@ class PersonAtArms:
             self.emulator.order(f"well {arm}")
             return False
         zero_at, zero = self.newest("currents")
-        told = re.findall(r"cycle (\d+): device: (.*)", "".join(self.rt.said()))[-1]
         latched = re.findall(r"cycle (\d+): state changed: ", "".join(self.rt.said()))[-1]
         commands = zero["commands"] - line["commands"]
         if arm == "LEFT":
+            told = re.findall(r"cycle (\d+): device: (.*)", "".join(self.rt.said()))[-1]
             print(f"-- {order}: no current{' already' if zero_at < at else ''} after {commands} commands and "
                   f"{(zero['t_ns'] - line['t_ns']) / 1e6:.1f} ms; reported in cycle {told[0]} ({told[1]}), latched in "
                   f"{latched}", flush=True)
