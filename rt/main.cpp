@@ -21,7 +21,6 @@
 
 #include "hal/registry.hpp"
 #include "ipc/base/error.hpp"
-#include "ipc/base/servo_clock.hpp"
 #include "ipc/manual/manual.hpp"
 #include "ipc/scene/file/scene_file.hpp"
 #include "ipc/shm/link.hpp"
@@ -144,7 +143,7 @@ int run(std::span<char* const> arguments, const StartOptions& o, const StartOver
     const std::array hands{HandParts{device.get(), model.get(), info, system.drive(0)},
                            HandParts{device2.get(), second.get(), info2, system.drive(1)}};
 
-    ServoClock clock(spin_tail(config.servo), spins_whole_period(config.servo) ? 1.0 : 0.5);
+    ServoClock clock = servo_clock(config.servo);
     Servo servo({.clock = clock,
                  .hands = std::span(hands).first(two_hands ? 2 : 1),
                  .region = *region,

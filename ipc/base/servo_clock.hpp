@@ -16,7 +16,9 @@ namespace tact {
 
 class ServoClock final : public Clock {
 public:
-    explicit ServoClock(Duration spin_tail, double spin_share = 0.5) noexcept
+    static constexpr double kSpinShare = 0.5;
+
+    explicit ServoClock(Duration spin_tail, double spin_share = kSpinShare) noexcept
         : spin_tail_(spin_tail), spin_share_(spin_share) {}
 
     Instant now() noexcept TACT_RT override { return Monotonic::now(); }

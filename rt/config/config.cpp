@@ -244,8 +244,8 @@ bool spins_whole_period(const RtConfig::Servo& servo) {
 
 bool sleeps(const RtConfig::Servo& servo) { return !servo.free_running && !spins_whole_period(servo); }
 
-Duration spin_tail(const RtConfig::Servo& servo) {
-    return duration_us(sleeps(servo) ? std::min(servo.spin_us, 0.4 * servo.period_us) : servo.spin_us);
+ServoClock servo_clock(const RtConfig::Servo& servo) {
+    return ServoClock(duration_us(servo.spin_us), spins_whole_period(servo) ? 1.0 : ServoClock::kSpinShare);
 }
 
 ServoSettings settings_from(const RtConfig& c, bool emulated) {

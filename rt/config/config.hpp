@@ -18,6 +18,7 @@
 #include "hal/tracker_registry.hpp"
 #include "ipc/base/error.hpp"
 #include "ipc/base/fifo.hpp"
+#include "ipc/base/servo_clock.hpp"
 #include "rt/servo/servo.hpp"
 #include "rt/threads/head_feed.hpp"
 
@@ -193,8 +194,7 @@ void check_config(const RtConfig& config, const std::string& where);
 [[nodiscard]] bool spins_whole_period(const RtConfig::Servo& servo);
 // True if the loop yields its core between two cycles; false if it is free running or spins the whole period.
 [[nodiscard]] bool sleeps(const RtConfig::Servo& servo);
-// Time spent spinning before a cycle. At most two fifths of the period of a sleeping loop: the kernel kills a FIFO
-// thread that does not sleep for a second.
-[[nodiscard]] Duration spin_tail(const RtConfig::Servo& servo);
+// Spins servo.spin_us before a cycle: if the loop sleeps, at most ServoClock::kSpinShare of a wait.
+[[nodiscard]] ServoClock servo_clock(const RtConfig::Servo& servo);
 
 }  // namespace tact

@@ -63,7 +63,11 @@ struct SharedCore::Parts {
         log = FileDescriptor(
             open((scratch.path() / "log").c_str(), O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC, 0600));
         environment = x.environment();
-        environment.insert(environment.end(), {{"LIBGL_ALWAYS_SOFTWARE", "1"}, {"LP_NUM_THREADS", "1"}});
+        // Without Mesa's file of compiled shaders: on a core that a loop has taken, its thread of lowest priority holds up
+        // the first frame for seconds.
+        environment.insert(
+            environment.end(),
+            {{"LIBGL_ALWAYS_SOFTWARE", "1"}, {"LP_NUM_THREADS", "1"}, {"MESA_SHADER_CACHE_DISABLE", "true"}});
         environment.emplace_back("TACT_RUNTIME_DIR", scratch.path().string());
         setenv("TACT_RUNTIME_DIR", scratch.path().c_str(), 1);
     }

@@ -493,13 +493,14 @@ TEST(Config, a_deadline_that_leaves_no_time_for_the_rest_of_the_cycle_is_refused
 
 TEST(Config, a_fast_loop_keeps_time_to_sleep) {
     RtConfig::Servo servo;
-    EXPECT_EQ(spin_tail(servo), duration_us(100.0));
+    const auto spun_of = [&servo](double wait_us) { return servo_clock(servo).spin(duration_us(wait_us)); };
+    EXPECT_EQ(spun_of(1000.0), duration_us(100.0));
     EXPECT_TRUE(sleeps(servo));
     servo.period_us = 125.0;
-    EXPECT_EQ(spin_tail(servo), duration_us(50.0));
+    EXPECT_EQ(spun_of(125.0), duration_us(62.5));
     EXPECT_TRUE(sleeps(servo));
     servo.spin_us = 125.0;  // all of it, as requested
-    EXPECT_EQ(spin_tail(servo), duration_us(125.0));
+    EXPECT_EQ(spun_of(125.0), duration_us(125.0));
     EXPECT_FALSE(sleeps(servo));
     servo.spin_us = 10.0;
     servo.free_running = true;
