@@ -94,10 +94,10 @@ public:
     }
     // That `slowest` counts.
     [[nodiscard]] double samples() const noexcept TACT_RT { return now_.total + before_.total - kPrior; }
-    // Excess (s) that a fraction kTail of the steps exceeds; 0 where fewer steps are interrupted.
-    [[nodiscard]] double interrupt_s() const noexcept TACT_RT {
+    // Excess (s) that a fraction kTail of the steps exceeds, not counting those above most_s; 0 where fewer are interrupted.
+    [[nodiscard]] double interrupt_s(double most_s) const noexcept TACT_RT {
         double above = 0.0;
-        for (std::size_t i = kExcessBins; i-- > 0;) {
+        for (std::size_t i = excess_bin(std::max(most_s, 0.0)) + 1; i-- > 0;) {
             above += interrupt_[i];
             if (above > kTail * total_) return 1e-6 * std::exp(kExcessWidth * (static_cast<double>(i) + 1.0));
         }

@@ -120,8 +120,9 @@ LevelFit::Tail LevelFit::read_tail(const Limits& limits) const noexcept {
     const double limit_s = limits.free_running ? limits.deadline_s : kUse * limits.period_s * limits.budget;
     const double ratio = limits.free_running ? spread_.spread(share) : spread_.slowest(share),
                  usual = limits.free_running ? 1.0 : spread_.speed();
+    const double floor_s = count_ > 0 ? spread_.speed() * rows_[0].cost_s : 0.0;
     return {.ratio = ratio,
-            .interrupt_s = std::min(spread_.interrupt_s(), kInterruptShare * limit_s),
+            .interrupt_s = std::min(spread_.interrupt_s(limit_s - floor_s), kInterruptShare * limit_s),
             .alike = ratio <= kAlike * usual && spread_.samples() >= kTailKnown};
 }
 

@@ -25,7 +25,8 @@
 //                          their core for a while, and that is over when the speed is back
 //               interrupts the quantile of the excess of steps that cost more than kInterrupted times the usual.
 //                          A level does not change the length of an interrupt, so the excess is added, not
-//                          multiplied, and takes at most kInterruptShare of the budget
+//                          multiplied, and takes at most kInterruptShare of the budget. Interrupts that even the
+//                          lowest row could not bear count for nothing: they are missed at any level
 // Fits        max(slowest x predicted, speed x predicted + interrupts) + rest of the cycle <= kUse x period:
 //             one step in a thousand exceeds it, because an interrupt seldom hits a step that is slow by itself. A
 //             freely running loop has no cycle to miss: speed x spread x predicted is held below the deadline, and speed x

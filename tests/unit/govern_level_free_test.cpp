@@ -34,6 +34,33 @@ TEST(LevelFitFreeRunning, a_freely_running_loop_is_held_by_its_mean_and_its_dead
     EXPECT_EQ(level_after(false, 0.1), 0.0F);
 }
 
+// The kernel gives other programs the core for milliseconds, five times a second: no level bears that. One of 100 us is borne.
+TEST(LevelFitFreeRunning, interrupts_that_no_level_could_bear_lower_none) {
+    for (const bool free_running : {true, false}) {
+        const auto level_after = [&](double interrupt_us) {
+            LevelFit fit = with({{0.0F, 50 * kUs, 1.0}, {1.0F, 527 * kUs, 0.0}});
+            const LevelFit::Limits limits{
+                .period_s = 1e-3, .deadline_s = 700 * kUs, .free_running = free_running};
+            float level = fit.choose(limits);
+            for (int i = 0; i < 40000; ++i) {
+                const double usual_us = level > 0.5F ? 527.0 : 50.0,
+                             whole_us = i % 400 == 399 ? usual_us + interrupt_us : usual_us;
+                level = fit.add({.level = level,
+                                 .model_s = kUs * whole_us,
+                                 .rest_s = 5 * kUs,
+                                 .dt_s = kUs * std::max(whole_us, 1000.0),
+                                 .deadline_missed = whole_us > 700.0},
+                                limits)
+                            .level;
+            }
+            return level;
+        };
+        EXPECT_EQ(level_after(100.0), 1.0F) << free_running;
+        EXPECT_EQ(level_after(400.0), 0.0F) << free_running;
+        EXPECT_EQ(level_after(3000.0), 1.0F) << free_running;
+    }
+}
+
 // Another program holds the core for some steps. That says nothing of the level.
 TEST(LevelFitFreeRunning, a_freely_running_loop_is_not_lowered_by_three_misses_in_a_row_and_is_by_four) {
     for (const int held : {1, 2, 3, 4}) {
