@@ -37,7 +37,8 @@ if(TACT_GUI)
         SYSTEM nlohmann_json::nlohmann_json TIMEOUT 300)
     tact_tests(gui_docking_tests SOURCES
             unit/gui_view_test.cpp unit/gui_fit_test.cpp unit/gui_history_test.cpp unit/gui_shapes_test.cpp
-            unit/gui_contour_test.cpp unit/gui_link_test.cpp unit/gui_placement_test.cpp unit/gui_bent_test.cpp
+            unit/gui_contour_test.cpp unit/gui_link_test.cpp unit/gui_region_checks_test.cpp
+            unit/gui_status_text_test.cpp unit/gui_placement_test.cpp unit/gui_bent_test.cpp
             unit/gui_labels_test.cpp unit/gui_molecular_surface_test.cpp unit/gui_pick_test.cpp
         USES gui_docking gui_render prep_mesh topics shm scene base gui_surface prep_surface prep_synthetic gui_window
             gui_link gui_dashboard SYSTEM rapidcheck CLI11::CLI11 TIMEOUT 300)

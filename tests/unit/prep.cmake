@@ -28,7 +28,8 @@ add_test(NAME search_pairs_test COMMAND tests/e2e/search_pairs_test.py $<TARGET_
     WORKING_DIRECTORY ${CMAKE_SOURCE_DIR})
 set_tests_properties(search_pairs_test PROPERTIES LABELS "e2e;long" TIMEOUT 300 SKIP_RETURN_CODE 77)
 tact_tests(prep_scan_tests SOURCES
-        unit/prep_volume_test.cpp unit/prep_scan_test.cpp unit/prep_patient_frame_test.cpp
+        unit/prep_volume_test.cpp unit/prep_scan_test.cpp unit/prep_dicom_test.cpp
+        unit/prep_bone_threshold_test.cpp unit/prep_patient_frame_test.cpp
         unit/prep_structures_test.cpp unit/prep_examine_test.cpp
     USES prep_drilling prep_drilling_command prep_console prep_volume prep_synthetic scene image base
     SYSTEM ZLIB::ZLIB nlohmann_json::nlohmann_json)

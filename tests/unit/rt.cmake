@@ -22,7 +22,7 @@ tact_tests(arm_tests SOURCES
         unit/hal_arm_table_test.cpp
     USES base arm SYSTEM rapidcheck)
 tact_tests(config_tests SOURCES
-        unit/config_test.cpp unit/config_arm_test.cpp unit/config_problems_test.cpp
+        unit/config_test.cpp unit/config_arm_test.cpp unit/config_hands_test.cpp unit/config_problems_test.cpp
     USES base hal servo threads config govern arm start)
 tact_tests(threads_shared_tests SOURCES
         unit/threads_head_feed_test.cpp unit/threads_supervisor_test.cpp unit/servo_orders_test.cpp
