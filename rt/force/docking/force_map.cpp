@@ -10,6 +10,7 @@
 #include "ipc/scene/density/level_maps.hpp"
 #include "ipc/scene/density/subtracted_map.hpp"
 #include "rt/force/docking/docking_bodies.hpp"
+#include "rt/force/docking/partial_sums.hpp"
 #include "rt/force/docking/start_pose.hpp"
 
 namespace tact {
@@ -103,10 +104,12 @@ void calibrate(Felt felt, const Pose& home, double newtons_per_gradient) {
     for (std::size_t l = levels.size() - 1; l-- > 0;)
         metrics[l].error_n = std::max(metrics[l].error_n, metrics[l + 1].error_n);
     for (std::size_t l = 0; l < levels.size(); ++l) {
+        const DensityMap& map = felt.map_of(l);
+        PartialSums kept;
         std::array<Duration, 9> times{};
         for (Duration& time : times) {
             const Instant begin = Monotonic::now();
-            static_cast<void>(felt.map_of(l).sum(levels[l].view(), home));
+            static_cast<void>(sum_of_step(map, levels[l], home, 1.0, Deadline(), &kept));
             time = Monotonic::now() - begin;
         }
         std::nth_element(times.begin(), times.begin() + 4, times.end());

@@ -64,14 +64,8 @@ PartialSums::Result LevelBlend::sum_level(std::size_t level, const Pose& T_model
                                           KeptSums* kept) const noexcept {
     const PointSet& points = levels[level];
     const Deadline deadline = points.size() > DockingParts::kAlways ? budget.deadline : Deadline();
-    if (kept != nullptr && points.size() >= PartialSums::kPointsMin)
-        return (*kept)[level % kept->size()].step(map_of(level), points, T_model_body,
-                                                  static_cast<double>(budget.work_fraction), deadline);
-    PartialSums::Result result;
-    result.complete = sum_until(map_of(level), points.view(), T_model_body, deadline, result.sums);
-    result.late = !result.complete;
-    if (!result.complete) result.recomputed_fraction = 0.0F;
-    return result;
+    return sum_of_step(map_of(level), points, T_model_body, static_cast<double>(budget.work_fraction),
+                       deadline, kept != nullptr ? &(*kept)[level % kept->size()] : nullptr);
 }
 
 Wrench LevelBlend::wrench(const DensitySums& sums) const noexcept {

@@ -92,4 +92,15 @@ PartialSums::Result PartialSums::step(const DensityMap& map, const PointSet& poi
     return result;
 }
 
+PartialSums::Result sum_of_step(const DensityMap& map, const PointSet& points, const Pose& T_model_body,
+                                double work_fraction, const Deadline& deadline, PartialSums* kept) noexcept {
+    if (kept != nullptr && points.size() >= PartialSums::kPointsMin)
+        return kept->step(map, points, T_model_body, work_fraction, deadline);
+    PartialSums::Result result;
+    result.complete = sum_until(map, points.view(), T_model_body, deadline, result.sums);
+    result.late = !result.complete;
+    if (!result.complete) result.recomputed_fraction = 0.0F;
+    return result;
+}
+
 }  // namespace tact

@@ -65,4 +65,10 @@ private:
 bool sum_until(const DensityMap& map, const PointsView& points, const Pose& T_model_body,
                const Deadline& deadline, DensitySums& sums) noexcept TACT_RT;
 
+// The sum of a step: of a large level in slices, if a place for them is given. Slices read the map in another way than one
+// large sum (density_map.cpp, kMany), so only this tells what a step costs.
+PartialSums::Result sum_of_step(const DensityMap& map, const PointSet& points, const Pose& T_model_body,
+                                double work_fraction, const Deadline& deadline,
+                                PartialSums* kept) noexcept TACT_RT;
+
 }  // namespace tact
