@@ -1,7 +1,7 @@
 # Tests of deploy.
 tact_tests(launch_tests SOURCES
         unit/deploy_child_test.cpp unit/deploy_servo_core_test.cpp unit/deploy_doctor_test.cpp
-        unit/deploy_probe_test.cpp unit/deploy_x_server_test.cpp unit/deploy_eval_test.cpp
+        unit/deploy_probe_test.cpp unit/deploy_probe_arms_test.cpp unit/deploy_x_server_test.cpp unit/deploy_eval_test.cpp
     USES launch base probe force bench_docking SYSTEM nlohmann_json::nlohmann_json)
 tact_tests(station_tests SOURCES
         unit/deploy_station_test.cpp unit/deploy_station_verify_test.cpp unit/deploy_metrics_test.cpp

@@ -44,6 +44,7 @@ if(TACT_GUI)
             gui_link gui_dashboard SYSTEM rapidcheck CLI11::CLI11 TIMEOUT 300)
     tact_tests(gui_stereo_tests SOURCES
             unit/gui_registration_test.cpp unit/gui_calibration_test.cpp unit/gui_stage_test.cpp
+            unit/gui_stage_file_test.cpp unit/gui_test_picture_test.cpp
         USES gui_stereo base gui_render topics SYSTEM rapidcheck)
     tact_tests(gui_window_tests SOURCES
             unit/gui_calibration_window_test.cpp unit/gui_keys_window_test.cpp unit/gui_browser_window_test.cpp

@@ -1,20 +1,12 @@
-// The calibration of a stage without a window: measurement at rest, steps, file, and displayed text.
+// The calibration of a stage without a window: measurement at rest, steps and displayed text.
 #include <gtest/gtest.h>
-#include <sys/resource.h>
-#include <unistd.h>
 
 #include <array>
 #include <cmath>
-#include <csignal>
-#include <filesystem>
-#include <fstream>
 #include <numbers>
-#include <set>
 #include <string>
 
 #include "gui/stereo/calibration.hpp"
-#include "gui/stereo/test_picture.hpp"
-#include "ipc/base/error.hpp"
 #include "ipc/base/random.hpp"
 
 namespace tact::gui_calibration_test {
@@ -398,150 +390,6 @@ TEST(Calibration, typed_values_are_checked) {
     EXPECT_TRUE(calibration.draft().eyes.swapped);
     calibration.set_wand_tip(Vec3(0, 0, 3));
     EXPECT_EQ(calibration.draft().wand_tip_sensor_m, Vec3(0, 0, 0));
-}
-
-class StageFileWritten : public testing::Test {
-protected:
-    void SetUp() override {
-        char name[] = "/tmp/tact-stage-XXXXXX";
-        folder_ = mkdtemp(name);
-    }
-    void TearDown() override { std::filesystem::remove_all(folder_); }
-    [[nodiscard]] std::ptrdiff_t files() const {
-        return std::distance(std::filesystem::directory_iterator(folder_), {});
-    }
-    std::filesystem::path folder_;
-};
-
-void same(const StageSettings& a, const StageSettings& b) {
-    EXPECT_EQ(a.mode, b.mode);
-    EXPECT_EQ(a.monitors, b.monitors);
-    EXPECT_EQ(a.width_px, b.width_px);
-    EXPECT_EQ(a.height_px, b.height_px);
-    EXPECT_EQ(a.in_workspace, b.in_workspace);
-    EXPECT_NEAR(a.latency_s, b.latency_s, 1e-9);
-    EXPECT_EQ(a.screen_measured, b.screen_measured);
-    const auto close = [](const Vec3& x, const Vec3& y) { EXPECT_LT((x - y).norm(), 2e-9); };
-    close(a.screen.lower_left_m, b.screen.lower_left_m);
-    close(a.screen.lower_right_m, b.screen.lower_right_m);
-    close(a.screen.upper_left_m, b.screen.upper_left_m);
-    EXPECT_NEAR(a.eyes.apart_m, b.eyes.apart_m, 1e-9);
-    EXPECT_EQ(a.eyes.swapped, b.eyes.swapped);
-    close(a.eyes.middle_head_m, b.eyes.middle_head_m);
-    close(a.rest_screen_m, b.rest_screen_m);
-    close(a.T_screen_world.p_m, b.T_screen_world.p_m);
-    EXPECT_LT(apart_rad(a.T_screen_world.q, b.T_screen_world.q), 1e-8);
-    close(a.wand_tip_sensor_m, b.wand_tip_sensor_m);
-}
-
-TEST_F(StageFileWritten, reads_back_unchanged_and_keeps_the_old_file) {
-    const Lab lab;
-    StageSettings s = start_of(lab);
-    s.mode = StereoMode::two_windows;
-    s.monitors = {1, 2};
-    s.in_workspace = true;
-    s.screen = lab.screen();
-    s.screen_measured = true;
-    s.eyes = {.apart_m = 0.0613, .middle_head_m = Vec3(0.001, -0.042, -0.03), .swapped = true};
-    s.T_screen_world = lab.T_screen_world;
-    const auto path = folder_ / "lab.toml";
-    std::ofstream(path) << "# by hand\nmode = \"anaglyph\"\n";
-    const std::vector<std::string> remarks{"screen: green\nmode = \"off\"", std::string(500, 'x')};
-    const auto old = write_stage_file(path, s, remarks);
-    same(s, read_stage_file(path));
-    ASSERT_TRUE(std::filesystem::exists(old));
-    std::ifstream in(old);
-    EXPECT_EQ(std::string(std::istreambuf_iterator<char>(in), {}), "# by hand\nmode = \"anaglyph\"\n");
-    // A second write at once keeps both old files.
-    const auto second = write_stage_file(path, StageSettings{});
-    EXPECT_NE(second, old);
-    same(StageSettings{}, read_stage_file(path));
-    same(s, read_stage_file(second));
-    EXPECT_TRUE(write_stage_file(folder_ / "new.toml", s).empty());
-    EXPECT_EQ(files(), 4);  // and no partial file
-}
-
-TEST_F(StageFileWritten, unreadable_settings_are_not_written_and_a_missing_folder_is_reported) {
-    StageSettings s;
-    const auto path = folder_ / "lab.toml";
-    std::ofstream(path) << "mode = \"anaglyph\"\n";
-    s.eyes.apart_m = NAN;
-    EXPECT_THROW(write_stage_file(path, s), StartupError);
-    EXPECT_EQ(read_stage_file(path).mode, StereoMode::anaglyph);
-    EXPECT_THROW(write_stage_file(folder_ / "none" / "lab.toml", StageSettings{}), StartupError);
-    EXPECT_EQ(files(), 1);
-}
-
-TEST_F(StageFileWritten, without_disk_space_the_folder_is_unchanged) {
-    const auto path = folder_ / "lab.toml";
-    std::ofstream(path) << "mode = \"anaglyph\"\n";
-    rlimit before{};
-    ASSERT_EQ(getrlimit(RLIMIT_FSIZE, &before), 0);
-    const auto handler = std::signal(SIGXFSZ, SIG_IGN);
-    const rlimit small{64, before.rlim_max};
-    ASSERT_EQ(setrlimit(RLIMIT_FSIZE, &small), 0);
-    std::string why;
-    try {
-        write_stage_file(path, StageSettings{});
-    } catch (const StartupError& e) {
-        why = e.what();
-    }
-    ASSERT_EQ(setrlimit(RLIMIT_FSIZE, &before), 0);
-    std::signal(SIGXFSZ, handler);
-    EXPECT_NE(why.find("fix:"), std::string::npos) << why;
-    EXPECT_EQ(files(), 1);
-    EXPECT_EQ(read_stage_file(path).mode, StereoMode::anaglyph);
-}
-
-TEST(TestPicture, steps_have_their_depths_and_the_tool_is_at_the_hand) {
-    const GlassSize glass{530.0, 300.0, 0.28};
-    const auto depths = stair_depths_mm(glass);
-    EXPECT_DOUBLE_EQ(depths[2], 0.0);
-    for (std::size_t i = 1; i < 5; ++i) EXPECT_GT(depths[i], depths[i - 1]);
-    EXPECT_GT(grid_spacing_mm(glass), 10.0);
-    const Eigen::Vector3d tool(40.0, -30.0, 55.0);
-    std::set<float> levels;
-    Eigen::Vector3d middle = Eigen::Vector3d::Zero();
-    double count = 0.0;
-    const auto plain = test_picture(glass, {0, {}}), with_tool = test_picture(glass, {0, tool});
-    for (const PictureVertex& v : plain) levels.insert(v.z_mm);
-    for (const double d : depths) EXPECT_TRUE(levels.count(static_cast<float>(d))) << d;
-    for (const PictureVertex& v : plain) {
-        EXPECT_LE(std::abs(v.x_mm), 266.0F);
-        EXPECT_LE(std::abs(v.y_mm), 151.0F);
-    }
-    ASSERT_GT(with_tool.size(), plain.size());
-    // The cross is last; its three bars come first.
-    for (std::size_t i = plain.size(); i < plain.size() + 6 * 4; ++i, count += 1.0)
-        middle +=
-            Eigen::Vector3d(static_cast<double>(with_tool[i].x_mm), static_cast<double>(with_tool[i].y_mm),
-                            static_cast<double>(with_tool[i].z_mm));
-    EXPECT_LT((middle / count - tool).norm(), 1e-3);
-    // Each eye has its own text.
-    const auto right = test_picture(glass, {1, {}});
-    EXPECT_NE(plain.size(), right.size());
-}
-
-TEST(TestPicture, the_texts_for_the_two_eyes_are_inside_the_circle_and_separate) {
-    for (const GlassSize& glass : {GlassSize{530.0, 300.0, 0.28}, GlassSize{400.0, 400.0, 2.0}}) {
-        const auto inks_of = [&](std::size_t eye) {
-            std::set<std::array<int, 3>> inks;
-            for (const PictureVertex& v : test_picture(glass, {eye, {}}))
-                inks.insert({v.ink.r, v.ink.g, v.ink.b});
-            return inks;
-        };
-        for (const std::size_t eye : {std::size_t{0}, std::size_t{1}}) {
-            const auto others = inks_of(1 - eye);
-            std::size_t of_word = 0;
-            for (const PictureVertex& v : test_picture(glass, {eye, {}})) {
-                if (others.count({v.ink.r, v.ink.g, v.ink.b}) > 0) continue;
-                ++of_word;
-                EXPECT_LT(std::hypot(v.x_mm, v.y_mm), 0.38 * glass.height_mm);
-                EXPECT_GT(eye == 0 ? -v.x_mm : v.x_mm, 0.0F);
-            }
-            EXPECT_GT(of_word, 0U);
-        }
-    }
 }
 
 }  // namespace
