@@ -19,6 +19,9 @@
 // was lost to a large error returns in steps of kUpMost once the rate is too high. A loop of fixed rate has its own core: a
 // large error is then its own work, which does not end.
 //
+// That holds where a step can do less (set_held). A model that always does all of its work leaves the rate to the display alone:
+// then small errors count too, and further steps in the same direction grow, up to kAloneMost times.
+//
 // Frame times follow the same model:
 //     ln V <- ln V - ln(t / t_g) / n.
 #include "rt/govern/governor.hpp"
@@ -41,7 +44,8 @@ constexpr double kDampingGrows = 1.4, kDampingShrinks = 0.55, kDampingLeast = 0.
 // Further steps down while it does not pause grow by a factor, up to a limit.
 constexpr double kBusyGrows = 1.4, kBusyMost = 8.0;
 constexpr double kCalm = 0.8, kFar = 0.3;
-constexpr double kTolerance = 0.015;        // of the law "elastic", added to the flicker
+constexpr double kAloneGrows = 1.4, kAloneMost = 3.0;
+constexpr double kTolerance = 0.015, kToleranceAlone = 0.007;  // of the law "elastic", added to the flicker
 constexpr double kAim = 1.002;              // of the goal: centres the remaining flicker on the goal
 constexpr double kDisplayTolerance = 0.02;  // excess of a frame's time over its goal
 constexpr double kDisplayMargin = 0.93;     // fraction of the goal time up to which a frame may grow
@@ -106,7 +110,7 @@ RateIs Governor::judge(double rate_hz, double dt_s) noexcept {
     if (settings_.law == Law::sensitus) return judge_rate(rate_hz, settings_.goal_hz, settings_.tolerance);
     rate_.add(rate_hz, kAim * settings_.goal_hz);
     since_down_s_ += dt_s;
-    const RateIs rate = rate_.judge(kTolerance);
+    const RateIs rate = rate_.judge(held_ ? kTolerance : kToleranceAlone);
     return rate == RateIs::high && since_down_s_ < kHold_s ? RateIs::right : rate;
 }
 
@@ -119,7 +123,8 @@ Governor::Factors Governor::factors(double rate_hz, RateIs rate) const noexcept 
     const double g = std::clamp(display_fraction_, kShareLeast, kShareMost);
     const double n = display_cost_.at(visual_levels()).elasticity();
     const double whole = (1.0 - g) / (n * g), far = std::min(std::abs(rate_.error()) / kFar, 1.0);
-    const double by = busy_growth_ * std::max(std::min(whole, kCalm), gain * whole * far * far);
+    const double by =
+        busy_growth_ * std::max(std::min(whole, kCalm * alone_growth_), gain * whole * far * far);
     double visual = std::clamp(by * rate_.error(), -kDownMost, kUpMost);
     if (rate == RateIs::high) visual = std::max(visual, std::min(given_up_, kUpMost));
     if (rate_.error() < -kFarOff && display_busy_ > kNoPause) visual = std::min(visual, -kDownToPause);
@@ -133,6 +138,7 @@ void Governor::damp(RateIs rate) noexcept {
     if (damped_ != RateIs::right) damping_ *= rate == damped_ ? kDampingGrows : kDampingShrinks;
     if (std::abs(rate_.error()) > kLargeError) damping_ = 1.0;
     damping_ = std::clamp(damping_, kDampingLeast, 1.0);
+    alone_growth_ = !held_ && rate == damped_ ? std::min(kAloneGrows * alone_growth_, kAloneMost) : 1.0;
     const bool goes_on = rate == RateIs::low && damped_ == RateIs::low && display_busy_ > kNoPause;
     busy_growth_ = goes_on ? std::min(busy_growth_ * kBusyGrows, kBusyMost) : 1.0;
     damped_ = rate;

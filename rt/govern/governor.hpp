@@ -86,6 +86,9 @@ public:
     void set_present(std::size_t path, bool present) noexcept TACT_RT;
     // A display at rest costs nothing and is not drawn at the levels: visual paths then take no part.
     void set_display_resting(bool resting) noexcept TACT_RT { resting_ = resting; }
+    // False: steps that were asked for less work did all of it, so only the display holds the rate (rate_hold.hpp does not).
+    void set_held(bool held) noexcept TACT_RT { held_ = held; }
+    [[nodiscard]] bool held() const noexcept { return held_; }
 
     [[nodiscard]] std::span<const GovernedPath> paths() const noexcept { return {paths_.data(), count_}; }
     [[nodiscard]] float level(std::size_t path) const noexcept { return paths_[path].level; }
@@ -126,8 +129,10 @@ private:
     double frame_s_ = 0.0;           // time to draw a frame, filtered; 0: no frame since the last change
     std::array<double, 2> frames_before_s_{};  // of the last two frames; 0: none since the last change
     double since_down_s_ = 1e9;
-    double damping_ = 1.0;           // of the steps of the law "elastic"
-    double busy_growth_ = 1.0;       // the same, while the display never pauses
+    double damping_ = 1.0;       // of the steps of the law "elastic"
+    double busy_growth_ = 1.0;   // the same, while the display never pauses
+    double alone_growth_ = 1.0;  // the same, of small errors while only the display holds the rate
+    bool held_ = true;
     RateIs damped_ = RateIs::right;  // direction of the last step
     double scaled_ln_ = 0.0;         // size of the last step of the visual levels, in ln V
     double given_up_ = 0.0;          // lost to a large error and not yet given back, in ln V

@@ -98,6 +98,7 @@ struct GovernCycle {
     std::uint64_t cycles = 0, overruns = 0;
     Duration cost{0}, model_cost{0}, rest{0};
     double recomputed = 0.0;   // sum over the updates of the recomputed fraction of the model's work
+    double asked = 0.0;        // the same of the fraction that was asked for
     double law_rate_hz = 0.0;  // rate that the law received for the last interval
     double model_cost_s = 0.0;
     DisplayWatch display;

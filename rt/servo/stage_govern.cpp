@@ -11,6 +11,9 @@ namespace tact::servo {
 
 namespace {
 
+// A step that was asked for at most so much of its work, and did more than this, cannot do less.
+constexpr double kAskedMost = 0.8, kDoneMost = 0.9;
+
 // Copy of all levels, to detect changes.
 using Levels = std::array<float, Governor::kPathsMax>;
 
@@ -96,7 +99,7 @@ void start_interval(CycleState& c, Instant now) noexcept {
     g.begun_at = now;
     g.cycles = g.overruns = 0;
     g.cost = g.model_cost = g.rest = Duration{0};
-    g.recomputed = 0.0;
+    g.recomputed = g.asked = 0.0;
 }
 
 void set_display_present(CycleState& c, const ServoSettings& settings, bool present) noexcept {
@@ -109,6 +112,7 @@ void govern(CycleState& c, const ServoSettings& settings, RtRegion& region) noex
     ++g.cycles;
     g.model_cost += c.model_cost;
     g.recomputed += c.recomputed_fraction;
+    g.asked += static_cast<double>(c.budget.work_fraction);
     if (c.dry) return calibrate_level(c, settings);
     Levels before = levels_of(c.governor);
     if (fit_level(c, settings)) {
@@ -131,6 +135,8 @@ void govern(CycleState& c, const ServoSettings& settings, RtRegion& region) noex
     g.law_rate_hz = rate_kept_up(c, rate_for_law(c, settings, interval));
     g.model_cost_s = to_s(g.model_cost) / static_cast<double>(g.cycles);
     set_display_present(c, settings, c.housekeeping.gui_attached != 0);
+    const auto cycles = static_cast<double>(g.cycles);
+    if (g.asked < kAskedMost * cycles) c.governor.set_held(g.recomputed < kDoneMost * cycles);
     limit_by_slow_update(c);
     const bool changed = c.governor.step(g.law_rate_hz, interval);
     report_levels(c, settings, region, before, changed || resized(c, settings));

@@ -64,6 +64,7 @@ public:
         : p_(p), governor_(like(p, g)), random_(p.seed) {
         governor_.add(kMesh);
         governor_.add(kForce);
+        governor_.set_held(p.hold);
     }
 
     const std::vector<PlantSample>& run(const LoadTrace& trace) {

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <functional>
 #include <map>
@@ -302,6 +303,56 @@ TEST(LawReplay, on_a_core_with_slow_tenths_of_a_second_the_default_law_is_at_lea
             EXPECT_NEAR(d.mean, 1.0, 0.005);
         }
     }
+}
+
+// A force model too small for partial sums on a quiet core: only the display can give. The figures are those of
+// `tact reproduce governor` on the quiet machine of tests/hil.
+TEST(LawReplay, on_a_quiet_core_the_display_alone_holds_the_goal_as_well_as_under_the_published_law) {
+    constexpr double kLoaded_s = 8.0, kQuietGoal_hz = 2646.0;
+    struct Quiet {
+        double mean = 0.0, worst = 1e9, level = 0.0, spread = 0.0;
+        int changes = 0;
+    } of[2];
+    for (const Law law : {Law::sensitus, Law::elastic}) {
+        Quiet& q = of[law == Law::elastic ? 1 : 0];
+        for (const unsigned seed : {1U, 2U, 3U}) {
+            const PlantSettings p{.update_s = 146e-6,
+                                  .frame_fixed_s = 16e-3,
+                                  .frame_full_s = 11e-3,
+                                  .frame_jitter = 0.02,
+                                  .fps_max = 10.0,
+                                  .seconds = 20.0,
+                                  .seed = seed};
+            SharedCorePlant plant(p, {.law = law, .goal_hz = kQuietGoal_hz});
+            const auto& samples =
+                plant.run([](double t) { return Load{.programs = t < kLoaded_s ? 0.0 : 1.0}; });
+            std::vector<double> levels;
+            double mean = 0.0;
+            for (const PlantSample& s : samples) {
+                if (s.t_s < kLoaded_s + kSettled_s) continue;
+                levels.push_back(s.level);
+                mean += s.rate_hz / kQuietGoal_hz;
+                q.worst = std::min(q.worst, s.rate_hz / kQuietGoal_hz);
+            }
+            const auto n = static_cast<double>(levels.size());
+            double level = 0.0, off = 0.0;
+            for (const double l : levels) level += l / n;
+            for (const double l : levels) off += (l - level) * (l - level) / n;
+            q.mean += mean / n / 3.0;
+            q.level += level / 3.0;
+            q.spread += std::sqrt(off) / 3.0;
+            q.changes += plant.changes();
+        }
+        std::printf("quiet: %s mean %.4f, worst %.3f, level %.3f +- %.4f, %d changes\n",
+                    kLawNames[static_cast<std::size_t>(law)].data(), q.mean, q.worst, q.level, q.spread,
+                    q.changes);
+    }
+    EXPECT_GE(of[1].mean, of[0].mean - 0.001);
+    EXPECT_GE(of[1].worst, of[0].worst - 0.002);
+    EXPECT_GE(of[1].level, 0.94 * of[0].level);  // its rate is half a percent higher
+    EXPECT_LE(of[1].spread, of[0].spread);
+    EXPECT_LE(of[1].changes, of[0].changes);
+    EXPECT_GE(of[1].mean, 0.99);
 }
 
 TEST(LawReplay, the_same_load_twice_gives_the_same_levels) {

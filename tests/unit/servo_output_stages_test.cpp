@@ -99,6 +99,33 @@ TEST(StageGovern,
     EXPECT_TRUE(f.reported(EventCode::level_changed));
 }
 
+// A model that does all of its work although it was asked for less leaves the rate to the display.
+TEST(StageGovern, steps_that_cannot_do_less_leave_the_rate_to_the_display) {
+    for (const double recomputed : {1.0, 0.5}) {
+        CycleFixture f;
+        f.settings.free_running = true;
+        servo::make_level_rows(f.c);
+        servo::choose_level(f.c, f.settings);
+        const auto run_asked = [&](float asked, double done) {
+            servo::start_interval(f.c, f.c.now);
+            f.c.budget.work_fraction = asked;
+            f.c.recomputed_fraction = done;
+            for (int i = 0; i < 400; ++i) {
+                f.c.now += milliseconds(1);
+                servo::govern(f.c, f.settings, *f.region);
+            }
+        };
+        run_asked(1.0F, 1.0);  // tells nothing
+        EXPECT_TRUE(f.c.governor.held());
+        run_asked(0.5F, recomputed);
+        EXPECT_EQ(f.c.governor.held(), recomputed < 1.0);
+        run_asked(0.95F, 1.0);  // slices are an eighth of the work
+        EXPECT_EQ(f.c.governor.held(), recomputed < 1.0);
+        run_asked(0.5F, 0.5);  // another model
+        EXPECT_TRUE(f.c.governor.held());
+    }
+}
+
 TEST(StageGovern, steps_that_cost_too_much_lower_the_level_at_once_with_the_reason) {
     CycleFixture f;
     servo::make_level_rows(f.c);
