@@ -11,7 +11,8 @@
 
 namespace tact::launch {
 
-enum class Precedence { none, session };  // session: nice -20 for the session and for each of its programs
+// session: nice -20 for the session, nice 0 for its programs; programs: nice -5 for each, without priority of sessions
+enum class Precedence { none, programs, session };
 [[nodiscard]] const char* precedence_text(Precedence p);
 
 // Forks and runs `work` in the child with the achieved precedence. The result of `work` is the exit code of the child,

@@ -149,7 +149,7 @@ std::optional<Rates> measure_rates(const RatesSettings& s) {
         for (int i = 1; i < s.pairs; ++i)
             if (!run_pair(r, experiment, static_cast<std::size_t>(i))) return std::nullopt;
     }
-    if (r.finely_shared && s.precedence == Precedence::session) {  // rights available
+    if (r.finely_shared && s.precedence != Precedence::none) {  // rights available
         const Phase fifo{1.0 * q, 0.5 * q, 2.5 * q, 5.0 * q};
         r.fifo_off = {.name = "law off, FIFO",
                       .law = "fixed",
