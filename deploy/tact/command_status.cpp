@@ -63,9 +63,14 @@ void show(const Observer& observer, bool as_json) {
                 report["governor"].is_object() ? report["governor"]["law"].get<std::string>().c_str() : "-",
                 sample->health.goal_hz);
     if (report["governor"].is_object()) {
-        for (const auto& [name, path] : report["governor"]["paths"].items())
-            std::printf("level %s %.2f: %s\n", name.c_str(), path["level"].get<double>(),
+        for (const auto& [name, path] : report["governor"]["paths"].items()) {
+            std::printf("level %s %.2f: %s", name.c_str(), path["level"].get<double>(),
                         path["status"].get<std::string>().c_str());
+            if (path["drawn"].is_number() && report["gui"]["attached"].get<bool>())
+                std::printf("; %u of %u drawn", path["drawn"].get<std::uint32_t>(),
+                            path["items_max"].get<std::uint32_t>());
+            std::fputc('\n', stdout);
+        }
     }
     std::fputs(report_summary(report).c_str(), stdout);
     std::fputs((table_header(*sample) + table_row(*sample)).c_str(), stdout);

@@ -49,6 +49,7 @@ json governor(const RtRegion& region, std::int64_t now_ns) {
             {"floor", p.floor},
             {"items", p.items},
             {"items_max", p.items_max},
+            {"drawn", p.haptic != 0 ? json(nullptr) : json(p.drawn)},
             {"cost_us", p.cost_s * 1e6},
             {"error", p.error},
             {"reason", level_reason_text(static_cast<LevelReason>(p.reason))},

@@ -18,19 +18,20 @@ struct PathLevel {
     char path[kPathNameMax];  // "docking.force", "gui.mesh"; ends with 0
     float level;              // [floor, 1]
     float floor;
-    std::uint32_t items;         // vertices or points at this level
+    std::uint32_t items;         // vertices or points that this level asks for
     std::uint32_t items_max;     // at level 1
     double cost_s;               // measured, last window
     double error;                // unit of the path
     std::uint8_t reason;         // LevelReason of the last change
     std::uint8_t haptic;         // 0 or 1
-    std::uint8_t reserved[6];    // zero
+    std::uint8_t reserved[2];    // zero
+    std::uint32_t drawn;         // of a visual path, the items of the newest frame; a view at rest shows all
     std::int64_t changed_at_ns;  // the level's last change; 0: never
 };
 static_assert(sizeof(PathLevel) == 72);
 
 struct alignas(64) LevelsTopic {
-    static constexpr TopicInfo kInfo{.name = "levels", .version = 3, .writer = Writer::rt};
+    static constexpr TopicInfo kInfo{.name = "levels", .version = 4, .writer = Writer::rt};
     std::int64_t taken_at_ns;
     std::uint64_t sequence;  // rises with every change
     double goal_hz;

@@ -48,7 +48,8 @@ struct HousekeepingReport {
     double gui_mesh_s, gui_volume_s, gui_molecules_s, gui_resolution_s;
     std::uint32_t gui_molecules_max, gui_pixels_max;
     std::uint32_t gui_refined;  // LoadTopic::refined, of the newest frame
-    std::uint32_t reserved;
+    // What that frame shows, which is published only and not recorded; vertices or rays: gui_vertices.
+    std::uint32_t gui_particles, gui_molecules, gui_pixels;
 };
 
 enum CycleFlag : std::uint8_t {
@@ -127,11 +128,11 @@ struct MailboxTopic {
 static_assert(std::is_trivially_copyable_v<MailboxTopic> && sizeof(MailboxTopic) == 104);
 
 struct ReportTopic {
-    static constexpr TopicInfo kInfo{.name = "report", .version = 2, .writer = Writer::rt};
+    static constexpr TopicInfo kInfo{.name = "report", .version = 3, .writer = Writer::rt};
     std::uint64_t step;
     HousekeepingReport said;
 };
-static_assert(std::is_trivially_copyable_v<ReportTopic> && sizeof(ReportTopic) == 168);
+static_assert(std::is_trivially_copyable_v<ReportTopic> && sizeof(ReportTopic) == 176);
 
 enum StartFlag : std::uint32_t {
     kStartEmulated = 1U << 0,  // no real device

@@ -244,6 +244,11 @@ bool spins_whole_period(const RtConfig::Servo& servo) {
 
 bool sleeps(const RtConfig::Servo& servo) { return !servo.free_running && !spins_whole_period(servo); }
 
+double expected_period_s(const RtConfig& c) {
+    return c.servo.free_running && c.governor.goal_hz > 0.0 ? 1.0 / c.governor.goal_hz
+                                                            : 1e-6 * c.servo.period_us;
+}
+
 ServoClock servo_clock(const RtConfig::Servo& servo) {
     return ServoClock(duration_us(servo.spin_us), spins_whole_period(servo) ? 1.0 : ServoClock::kSpinShare);
 }

@@ -194,6 +194,8 @@ void check_config(const RtConfig& config, const std::string& where);
 [[nodiscard]] bool spins_whole_period(const RtConfig::Servo& servo);
 // True if the loop yields its core between two cycles; false if it is free running or spins the whole period.
 [[nodiscard]] bool sleeps(const RtConfig::Servo& servo);
+// Of a freely running loop, that of its goal, if it has one.
+[[nodiscard]] double expected_period_s(const RtConfig& config);
 // Spins servo.spin_us before a cycle: if the loop sleeps, at most ServoClock::kSpinShare of a wait.
 [[nodiscard]] ServoClock servo_clock(const RtConfig::Servo& servo);
 

@@ -39,6 +39,7 @@ void publish_levels(CycleState& c, const ServoSettings& settings, RtRegion& regi
         PathLevel& p = t.path[visual_index(i)];
         p.items_max = c.report.items_max[i] = c.housekeeping.*visual.items_max;
         p.items = static_cast<std::uint32_t>(static_cast<double>(p.level) * p.items_max + 0.5);
+        p.drawn = c.housekeeping.gui_attached != 0 ? c.housekeeping.*visual.drawn : 0;
         p.cost_s = c.housekeeping.*visual.cost_s;
     }
     const ForceModel& model = *c.hand[0].model;

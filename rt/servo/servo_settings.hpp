@@ -23,6 +23,7 @@ namespace tact {
 struct VisualPath {
     KnobSpec knob;
     std::uint32_t HousekeepingReport::*items_max;
+    std::uint32_t HousekeepingReport::*drawn;
     double HousekeepingReport::*cost_s;
 };
 

@@ -77,12 +77,9 @@ std::unique_ptr<DrillModel> load_drill(const SceneFile& scene, const RtConfig& c
         spdlog::warn("the {} is thinner than the voxels allow; the force model uses a diameter of {:.2f} mm",
                      settings.tool.cuts ? "shaft" : "suction tube", 2e3 * settings.tool.shaft_radius_m);
     auto model = std::make_unique<DrillModel>(meta, shared.bone(), settings);
-    const double step_s = config.servo.free_running && config.governor.goal_hz > 0.0
-                              ? 1.0 / config.governor.goal_hz
-                              : 1e-6 * config.servo.period_us;
     const BoneBricks& bricks = shared.bone().octree.bricks();
     model->foresee(rehearse_drill(settings, bricks, shared.bone().octree.density(),
-                                  meta.world_per_model * bricks.voxel_m, step_s));
+                                  meta.world_per_model * bricks.voxel_m, expected_period_s(config)));
     model->publish_to(shared.publisher());
     return model;
 }

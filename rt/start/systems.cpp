@@ -52,7 +52,8 @@ Model make_surface(const SystemInput& in, SharedScene* /*shared*/, std::uint32_t
     s.radius_m = 1e-3 * in.options.tool_radius_mm;
     for (std::size_t i = 0; i < kSurfaceModeNames.size(); ++i)
         if (in.config.surface.mode == kSurfaceModeNames[i]) s.mode = static_cast<SurfaceMode>(i);
-    if (has_touch_tool(in.scene)) return published(load_tool_model(in.scene, s), in.region.touch);
+    if (has_touch_tool(in.scene))
+        return published(load_tool_model(in.scene, s, expected_period_s(in.config)), in.region.touch);
     return published(load_surface_model(in.scene, s), in.region.touch);
 }
 

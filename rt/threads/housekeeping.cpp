@@ -189,6 +189,9 @@ void Housekeeping::serve_gui() {
             report_.gui_molecules_max = load.molecule_triangles_max;
             report_.gui_pixels_max = load.pixels_max;
             report_.gui_refined = load.refined;
+            report_.gui_particles = load.particles;
+            report_.gui_molecules = load.molecule_triangles;
+            report_.gui_pixels = load.pixels;
             if (settings_.arm_with_gui && load.vertices_drawn > 0) {
                 settings_.arm_with_gui = false;
                 order(CommandKind::arm, 0.0, 0);

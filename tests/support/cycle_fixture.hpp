@@ -65,6 +65,7 @@ public:
 // A path of the display that belongs to no system.
 inline constexpr std::array kStubPaths{VisualPath{{.path = "stub.display", .floor = 0.1F, .start = 1.0F},
                                                   &HousekeepingReport::gui_vertices_max,
+                                                  &HousekeepingReport::gui_vertices,
                                                   &HousekeepingReport::gui_busy_s}};
 
 struct CycleFixture {

@@ -51,7 +51,8 @@ if(TACT_GUI)
         add_test(NAME add_structure_test COMMAND tests/e2e/add_structure_test.py $<TARGET_FILE_DIR:tact> WORKING_DIRECTORY ${CMAKE_SOURCE_DIR})
         add_test(NAME session_test COMMAND tests/e2e/session_test.py $<TARGET_FILE_DIR:tact> WORKING_DIRECTORY ${CMAKE_SOURCE_DIR})
         add_test(NAME look_back_test COMMAND tests/e2e/look_back_test.py $<TARGET_FILE_DIR:tact> WORKING_DIRECTORY ${CMAKE_SOURCE_DIR})
-        set_tests_properties(operate_test mouse_hand_test space_mouse_test labels_test window_states_test figures_test start_page_test session_test look_back_test add_structure_test
+        add_test(NAME visual_knobs_test COMMAND tests/e2e/visual_knobs_test.py $<TARGET_FILE_DIR:tact> WORKING_DIRECTORY ${CMAKE_SOURCE_DIR})
+        set_tests_properties(visual_knobs_test operate_test mouse_hand_test space_mouse_test labels_test window_states_test figures_test start_page_test session_test look_back_test add_structure_test
             PROPERTIES LABELS e2e TIMEOUT 900 SKIP_RETURN_CODE 77 RUN_SERIAL TRUE)
     endif()
 endif()

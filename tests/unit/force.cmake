@@ -13,7 +13,7 @@ tact_tests(force_surface_tests SOURCES
 tact_test(unit/force_surface_slide_test.cpp USES force prep_surface prep_synthetic)
 tact_test(unit/force_tool_test.cpp USES force prep_surface prep_synthetic)
 tact_tests(force_tool_tests SOURCES
-        unit/force_touch_tool_test.cpp unit/force_tool_modes_test.cpp unit/force_tool_dense_test.cpp
+        unit/force_touch_tool_test.cpp unit/force_tool_modes_test.cpp unit/force_tool_rehearsal_test.cpp unit/force_tool_dense_test.cpp
         unit/force_tool_energy_test.cpp unit/force_query_record_test.cpp unit/force_tool_points_test.cpp
     USES force prep_surface prep_synthetic)
 tact_tests(force_drilling_tests SOURCES

@@ -65,13 +65,16 @@ TEST(StagePublish, a_model_publishes_its_own_topic) {
 
 TEST(PublishLevels, a_visual_path_publishes_items_and_cost_of_the_report) {
     CycleFixture f;
+    f.c.housekeeping.gui_attached = 1;
     f.c.housekeeping.gui_vertices_max = 1000;
+    f.c.housekeeping.gui_vertices = 700;
     f.c.housekeeping.gui_busy_s = 0.004;
     servo::publish_levels(f.c, f.settings, *f.region);
     const LevelsTopic t = newest(f.region->levels);
     EXPECT_EQ(t.count, 2U);
     EXPECT_STREQ(t.path[kDisplayPathIndex].path, "stub.display");
     EXPECT_EQ(t.path[kDisplayPathIndex].items, 1000U);
+    EXPECT_EQ(t.path[kDisplayPathIndex].drawn, 700U);
     EXPECT_EQ(t.path[kDisplayPathIndex].cost_s, 0.004);
     EXPECT_STREQ(t.path[kForcePathIndex].path, "spring.force");
     EXPECT_EQ(t.path[kForcePathIndex].items, 1000U);

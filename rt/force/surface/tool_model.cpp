@@ -10,9 +10,7 @@ namespace {
 
 constexpr double kFarHandM = 1e3;
 constexpr double kBallMargin = 0.05;  // fraction of the ball's radius
-// Times of a step, of a move, of a point in a move and of queries: those measured at 2.6 GHz (TOOLS.md) times 1.25.
-constexpr double kStepUs = 5.0, kMoveUs = 2.0, kMovePointUs = 0.0022, kQueryUs = 1.6;
-// Moves of a step that uses up its queries.
+// Moves of a step that uses up its queries, where none was tried.
 constexpr double kMovesUsual = 4.0, kQueriesPerMove = 25.0;
 
 float level_of(float fidelity) {
@@ -103,9 +101,12 @@ PathLoad ToolModel::predict(float fidelity) const noexcept {
     const std::uint32_t most = queries(fidelity);
     PathLoad load;
     load.items = items(fidelity);
-    const double moves = kMovesUsual + most / kQueriesPerMove;
-    load.cost_predicted = Duration(
-        std::llround(1e3 * (kStepUs + moves * (kMoveUs + kMovePointUs * load.items) + kQueryUs * most)));
+    if (rehearsal_.tried()) {
+        load.cost_predicted = rehearsal_.cost(level_of(fidelity));
+    } else {
+        const double moves = kMovesUsual + most / kQueriesPerMove;
+        load.cost_predicted = Duration(std::llround(1e3 * tool_work_us(moves, load.items, most, 0.0)));
+    }
     load.error =
         error_n(load.items) + 2.0 * record_.lagged(most) * std::min(record_.pull_n(), settings_.force_n_max);
     return load;
@@ -282,17 +283,23 @@ StepResult ToolModel::step(const ToolState& tool, const Budget& budget) noexcept
     return result;
 }
 
-std::unique_ptr<ToolModel> load_tool_model(const SceneFile& scene, const SurfaceSettings& settings) {
+std::unique_ptr<ToolModel> load_tool_model(const SceneFile& scene, const SurfaceSettings& settings,
+                                           double step_s) {
     const SceneMeta meta = read_meta(scene);
     if (scene.count(SurfaceMesh::kTag) == 0 || !has_touch_tool(scene))
         throw StartupError("loading '" + scene.name() + "'", "the scene is not a surface with a tool",
                            "bake one with tact-prep touch MESH --tool TOOL -o SCENE");
     const SurfaceMesh mesh = read_surface(scene);
     const TouchTool tool = read_touch_tool(scene);
-    if (settings.mode != SurfaceMode::chr || scene.count({'F', 'R', 'S', 'T'}) == 0)
-        return std::make_unique<ToolModel>(meta, mesh, tool, settings);
-    const VertexForest forest = read_forest(scene, mesh.all_positions_m(), mesh.all_corners());
-    return std::make_unique<ToolModel>(meta, mesh, tool, settings, &forest);
+    std::unique_ptr<ToolModel> model;
+    if (settings.mode != SurfaceMode::chr || scene.count({'F', 'R', 'S', 'T'}) == 0) {
+        model = std::make_unique<ToolModel>(meta, mesh, tool, settings);
+    } else {
+        const VertexForest forest = read_forest(scene, mesh.all_positions_m(), mesh.all_corners());
+        model = std::make_unique<ToolModel>(meta, mesh, tool, settings, &forest);
+    }
+    if (step_s > 0.0) model->foresee(rehearse_tool(meta, mesh, tool, settings, step_s));
+    return model;
 }
 
 }  // namespace tact

@@ -30,6 +30,7 @@
 #include "rt/force/surface/shading.hpp"
 #include "rt/force/surface/surface_model.hpp"
 #include "rt/force/surface/tool_contact.hpp"
+#include "rt/force/surface/tool_rehearsal.hpp"
 
 namespace tact {
 
@@ -71,6 +72,8 @@ public:
     void slow_update(const ToolState& predicted, const Budget& budget) noexcept override;
     [[nodiscard]] TouchRegime regime() const noexcept TACT_RT { return regime_; }  // of the last step
 
+    // Costs that were tried on this machine, instead of those of another one. Before the first step.
+    void foresee(const ToolRehearsal& rehearsal) noexcept { rehearsal_ = rehearsal; }
     // Predicted cost and error bound of a level.
     [[nodiscard]] PathLoad predict(float fidelity) const noexcept TACT_RT override;
     [[nodiscard]] const ToolTouch& tool_touch() const { return touch_; }  // of the last step
@@ -96,6 +99,7 @@ private:
     ToolContactForce force_;
     StickSlip stick_slip_;
     QueryRecord record_;
+    ToolRehearsal rehearsal_;
     ForceFade fade_;
     double gyration_world_m_, torque_n_m_rad_;
     bool asked_ = false, seated_ = false;
@@ -104,7 +108,8 @@ private:
 };
 
 // Fails by StartupError if the scene is not a surface with a tool or a setting is out of range. The scene must outlive
-// the model.
-std::unique_ptr<ToolModel> load_tool_model(const SceneFile& scene, const SurfaceSettings& settings);
+// the model. step_s: period of the loop, for which the costs are tried; 0: they are not.
+std::unique_ptr<ToolModel> load_tool_model(const SceneFile& scene, const SurfaceSettings& settings,
+                                           double step_s = 0.0);
 
 }  // namespace tact
