@@ -1,6 +1,7 @@
 #include "rt/servo/publish_levels.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <cstring>
 #include <string_view>
 
@@ -38,7 +39,7 @@ void publish_levels(CycleState& c, const ServoSettings& settings, RtRegion& regi
         const VisualPath& visual = settings.visual_paths[i];
         PathLevel& p = t.path[visual_index(i)];
         p.items_max = c.report.items_max[i] = c.housekeeping.*visual.items_max;
-        p.items = static_cast<std::uint32_t>(static_cast<double>(p.level) * p.items_max + 0.5);
+        p.items = static_cast<std::uint32_t>(std::lround(static_cast<double>(p.level) * p.items_max));
         p.drawn = c.housekeeping.gui_attached != 0 ? c.housekeeping.*visual.drawn : 0;
         p.cost_s = c.housekeeping.*visual.cost_s;
     }

@@ -109,8 +109,8 @@ ToolRehearsal rehearse_tool(const SceneMeta& meta, const SurfaceMesh& mesh, cons
     const Instant end = Monotonic::now() + Duration(std::llround(1e9 * ToolRehearsal::kMostS));
     // Place by place, so that a short time still sees all levels.
     for (std::uint32_t place = 0; place < ToolRehearsal::kPlaces; ++place) {
-        const auto vertex =
-            static_cast<std::uint32_t>(mesh.vertices() * (2 * place + 1) / (2 * ToolRehearsal::kPlaces));
+        const double part = (place + 0.5) / ToolRehearsal::kPlaces;
+        const auto vertex = static_cast<std::uint32_t>(part * static_cast<double>(mesh.vertices()));
         const Vec3 up = mesh.normal(vertex);
         for (std::size_t i = 0; i < steps.size() && Monotonic::now() < end; ++i) {
             const Budget budget{.fidelity = ToolRehearsal::kLevels[i]};
