@@ -112,6 +112,8 @@ RateSummary summarize(const std::vector<RateSample>& samples, double from_s, dou
     r.level_force_min = 1.0;
     for (const RateSample& s : in) {
         r.vertices_mean += static_cast<double>(s.vertices) / static_cast<double>(in.size());
+        r.structures_mean += s.structures / static_cast<double>(in.size());
+        r.pixels_mean += s.pixels / static_cast<double>(in.size());
         r.fps_mean += s.fps / static_cast<double>(in.size());
         r.level_force_min = std::min(r.level_force_min, s.level_force);
     }

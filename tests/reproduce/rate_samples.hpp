@@ -25,6 +25,7 @@ struct RateSample {
     std::uint64_t cycle = 0;  // number of cycles of the force loop so far
     double level_mesh = 0.0, level_force = 0.0;
     std::uint32_t vertices = 0;
+    double structures = 1.0, pixels = 1.0;  // drawn fractions of full detail
     double fps = 0.0;
     bool load = false;             // the external load runs
     double used_s[kParties] = {};  // processor time so far: controller, visual process, load, tick_source
@@ -67,6 +68,7 @@ struct RateSummary {
     double recomputed_fraction_mean = 1.0;   // recomputed fraction of the work
     double recomputed_fraction_least = 1.0;  // lowest of all windows
     double vertices_mean = 0.0, vertices_sd = 0.0, fps_mean = 0.0;
+    double structures_mean = 0.0, pixels_mean = 0.0;
     int level_changes = 0;  // of the mesh, by more than kLevelChange since the last one
     double level_force_min = 0.0;
 };

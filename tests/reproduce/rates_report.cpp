@@ -28,6 +28,8 @@ nlohmann::json json_of(const RateSummary& s, double goal_hz, double settled_s) {
                        {"tick_source", s.used_share[3]}}},
                      {"vertices_mean", s.vertices_mean},
                      {"vertices_sd", s.vertices_sd},
+                     {"structures_part_mean", s.structures_mean},
+                     {"pixels_part_mean", s.pixels_mean},
                      {"level_changes", s.level_changes},
                      {"fps_mean", s.fps_mean},
                      {"level_force_min", s.level_force_min}};

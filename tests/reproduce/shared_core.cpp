@@ -46,6 +46,12 @@ double used_s(pid_t pid) {
     return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
 }
 
+// Of full detail; 1 for a path that the scene does not have.
+double drawn_part(const LevelsTopic& levels, const char* path) {
+    const auto level = level_of(levels, path);
+    return level && level->items_max > 0 ? static_cast<double>(level->drawn) / level->items_max : 1.0;
+}
+
 }  // namespace
 
 struct SharedCore::Parts {
@@ -169,6 +175,8 @@ struct SharedCore::Parts {
         s.load = party[2] > 0;
         if (const auto mesh = level_of(*l, kMeshPath)) s.level_mesh = static_cast<double>(mesh->level);
         if (const auto force = level_of(*l, kDockingPath)) s.level_force = static_cast<double>(force->level);
+        s.structures = drawn_part(*l, kMoleculesPath);
+        s.pixels = drawn_part(*l, kResolutionPath);
         s.given_up = given_up;
         run.samples.push_back(s);
     }
