@@ -153,9 +153,16 @@ std::size_t LevelFit::best(const Limits& limits, double part, double cost_s_most
     std::array<bool, kRowsMax> fitting{};
     const Tail tail = read_tail(limits);
     double least_error = 1e300, least_cost_s = 1e300;
+    bool none = true;
     for (std::size_t i = 0; i < count_; ++i) {
         fitting[i] = rows_[i].level <= limits.level_max && rows_[i].cost_s <= cost_s_most &&
                      fits(i, limits, tail, part);
+        none = none && !fitting[i];
+    }
+    for (std::size_t i = 0; i < count_; ++i) {
+        if (none)
+            fitting[i] = i == 0 || (rows_[i].level <= limits.level_max &&
+                                    rows_[i].cost_s <= (1.0 + kSavesNothing) * rows_[0].cost_s);
         if (fitting[i]) least_error = std::min(least_error, rows_[i].error);
     }
     const auto good = [&](std::size_t i) {

@@ -34,6 +34,8 @@
 //             present row may use all of that, and falls after it exceeded that for kOver_s; a newly chosen row may
 //             use only kRise of it, so the level does not hunt. The first one, which hunts nothing, may use kFirst, if
 //             its own dry steps and kTailKnown others were alike: a tail within kAlike of their speed
+// None fits   the smallest error among the lowest level and those that cost next to nothing more: a level that saves
+//             nothing is not worth its error
 // Deadline    about one miss in a thousand cycles is what the quantile permits; the third within as many lowers the
 //             level at once, to at most kMissRetreat of the present cost. An interrupted step counts less, since it
 //             would have missed at any level. The second miss in a row, of interrupted steps the third, lowers it to what
@@ -76,8 +78,9 @@ public:
     static constexpr double kNear = 0.9, kNearLeast = 0.05, kNearStep = 1e-3;  // of the share of costly steps
     static constexpr double kWorthGain = 0.15, kWorthGainEarly = 0.5, kEarly_s = 10.0;
     static constexpr double kFreeSpread = 1.1;
-    static constexpr double kSmallLoss = 0.05;    // of the error
-    static constexpr double kMissRetreat = 0.85;  // cost limit after a miss, relative to the present cost
+    static constexpr double kSmallLoss = 0.05;     // of the error
+    static constexpr double kSavesNothing = 0.05;  // of the cost
+    static constexpr double kMissRetreat = 0.85;   // cost limit after a miss, relative to the present cost
 
     struct Row {
         float level = 1.0F;

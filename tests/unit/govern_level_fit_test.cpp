@@ -112,6 +112,19 @@ TEST(LevelFit, time_that_buys_no_accuracy_is_not_spent) {
               1.0F);
 }
 
+TEST(LevelFit, where_no_level_fits_one_that_saves_nothing_is_not_worth_its_error) {
+    EXPECT_EQ(with({{0.0F, 900 * kUs, 1.7}, {0.5F, 920 * kUs, 1.0}, {1.0F, 2000 * kUs, 0.9}})
+                  .choose({.period_s = 1e-3}),
+              0.5F);
+    EXPECT_EQ(with({{0.0F, 900 * kUs, 1.7}, {0.5F, 1000 * kUs, 1.0}, {1.0F, 2000 * kUs, 0.9}})
+                  .choose({.period_s = 1e-3}),
+              0.0F);
+    // The slow update bounds the level all the same.
+    EXPECT_EQ(with({{0.0F, 900 * kUs, 1.7}, {0.5F, 920 * kUs, 1.0}, {1.0F, 2000 * kUs, 0.9}})
+                  .choose({.period_s = 1e-3, .level_max = 0.4F}),
+              0.0F);
+}
+
 TEST(LevelFit, where_nothing_is_felt_the_highest_level_that_fits_waits_for_the_contact) {
     EXPECT_EQ(with({{0.0F, 50 * kUs, 0.0}, {0.5F, 200 * kUs, 0.0}, {1.0F, 900 * kUs, 0.0}})
                   .choose({.period_s = 1e-3}),
