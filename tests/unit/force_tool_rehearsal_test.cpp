@@ -14,6 +14,8 @@
 namespace tact::force_tool_rehearsal_test {
 namespace {
 
+constexpr double kPatienceS = 300.0;  // a machine that is busy, or a sanitizer, tries no less
+
 struct Scene {
     std::vector<std::byte> bytes;
     std::unique_ptr<SceneFile> file;
@@ -35,7 +37,7 @@ struct Scene {
         tool = read_touch_tool(*file);
     }
     [[nodiscard]] ToolRehearsal tried(double step_s, const SurfaceSettings& settings = {}) const {
-        return rehearse_tool(meta, mesh, tool, settings, step_s);
+        return rehearse_tool(meta, mesh, tool, settings, step_s, kPatienceS);
     }
 };
 const Scene& scene() {
@@ -80,6 +82,11 @@ TEST(ToolRehearsal, few_steps_of_other_strokes_take_more_work_than_was_tried) {
     }
 }
 
+TEST(ToolRehearsal, a_short_time_sees_all_levels_at_the_first_place) {
+    const Scene& s = scene();
+    EXPECT_TRUE(rehearse_tool(s.meta, s.mesh, s.tool, {}, 1e-3, 0.0).tried());
+}
+
 TEST(ToolRehearsal, a_slower_loop_moves_the_tool_farther_in_each_step_and_costs_more) {
     const ToolRehearsal slow = scene().tried(4e-3), quick = scene().tried(0.25e-3);
     EXPECT_GT(slow.work_us.back(), 1.3 * quick.work_us.back());
@@ -114,7 +121,8 @@ TEST(ToolRehearsal, a_tool_that_reaches_no_surface_tries_nothing) {
     const Scene& s = scene();
     TouchTool aside = s.tool;
     for (std::size_t i = 0; i < aside.point_m.size(); i += 3) aside.point_m[i] += 10.0F;
-    EXPECT_FALSE(rehearse_tool(s.meta, s.mesh, aside, {}, 1e-3).tried());
+    EXPECT_FALSE(rehearse_tool(s.meta, s.mesh, aside, {}, 1e-3, kPatienceS).tried());
+    EXPECT_FALSE(s.tried(1e-3, {.mode = SurfaceMode::off_brute}).tried());
 }
 
 }  // namespace

@@ -100,23 +100,25 @@ Duration ToolRehearsal::cost(float level) const noexcept {
 }
 
 ToolRehearsal rehearse_tool(const SceneMeta& meta, const SurfaceMesh& mesh, const TouchTool& tool,
-                            const SurfaceSettings& settings, double step_s) {
+                            const SurfaceSettings& settings, double step_s, double most_s) {
     ToolRehearsal made;
+    if (settings.mode == SurfaceMode::off_brute) return made;
     SurfaceSettings in_tree = settings;  // a step on the adaptive surface costs as much or less
     if (in_tree.mode == SurfaceMode::chr) in_tree.mode = SurfaceMode::off_tree;
     ToolModel model(meta, mesh, tool, in_tree);
     std::array<std::vector<Step>, ToolRehearsal::kLevels.size()> steps;
-    const Instant end = Monotonic::now() + Duration(std::llround(1e9 * ToolRehearsal::kMostS));
-    // Place by place, so that a short time still sees all levels.
+    const Instant end = Monotonic::now() + Duration(std::llround(1e9 * most_s));
+    // Place by place, and the first one in any case, so that a short time still sees all levels.
+    const auto in_time = [end](std::uint32_t place) { return place == 0 || Monotonic::now() < end; };
     for (std::uint32_t place = 0; place < ToolRehearsal::kPlaces; ++place) {
         const double part = (place + 0.5) / ToolRehearsal::kPlaces;
         const auto vertex = static_cast<std::uint32_t>(part * static_cast<double>(mesh.vertices()));
         const Vec3 up = mesh.normal(vertex);
-        for (std::size_t i = 0; i < steps.size() && Monotonic::now() < end; ++i) {
+        for (std::size_t i = 0; i < steps.size() && in_time(place); ++i) {
             const Budget budget{.fidelity = ToolRehearsal::kLevels[i]};
             Strokes strokes(model, meta, mesh.position_m(vertex), up, height_m(tool, up), in_tree);
             if (!strokes.approach(budget, step_s)) break;
-            for (std::uint32_t n = 0; n < ToolRehearsal::kSteps && Monotonic::now() < end; ++n)
+            for (std::uint32_t n = 0; n < ToolRehearsal::kSteps && in_time(place); ++n)
                 steps[i].push_back(strokes.step(budget, step_s));
         }
     }

@@ -6,7 +6,8 @@
 //          in kRare exceeds; between levels its logarithm is linear
 // Speed    of this machine: measured time over work, the median of the steps with at least half of that work. Steps that
 //          other programs held do not count
-// Time     at most kMostS
+// Time     kMostS, or as long as the first place takes. A query of all triangles (mode off-brute) may take much longer: that mode
+//          is not tried
 // Thread   any but the servo: allocates. cost() is TACT_RT
 #pragma once
 
@@ -42,10 +43,10 @@ public:
     [[nodiscard]] Duration cost(float level) const noexcept TACT_RT;
 };
 
-// step_s: period of the loop. Not tried: the surface is nowhere within reach, or too slow. Fails by StartupError where the
-// model would.
+// step_s: period of the loop. Not tried: mode off-brute, or the surface is nowhere within reach. Fails by StartupError where
+// the model would.
 [[nodiscard]] ToolRehearsal rehearse_tool(const SceneMeta& meta, const SurfaceMesh& mesh,
                                           const TouchTool& tool, const SurfaceSettings& settings,
-                                          double step_s);
+                                          double step_s, double most_s = ToolRehearsal::kMostS);
 
 }  // namespace tact
