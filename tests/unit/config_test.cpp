@@ -319,6 +319,15 @@ TEST(Config, a_deadline_that_leaves_no_time_for_the_rest_of_the_cycle_is_refused
     EXPECT_EQ(problems("[servo]\nfree_running = true\nmodel_us_max = 5000\n"), "");
 }
 
+TEST(Config, a_loop_is_expected_to_have_its_period_and_a_freely_running_one_that_of_its_goal) {
+    RtConfig config;
+    config.servo.period_us = 250.0;
+    config.governor.goal_hz = 500.0;
+    EXPECT_DOUBLE_EQ(expected_period_s(config), 250e-6);
+    config.servo.free_running = true;
+    EXPECT_DOUBLE_EQ(expected_period_s(config), 2e-3);
+}
+
 TEST(Config, a_fast_loop_keeps_time_to_sleep) {
     RtConfig::Servo servo;
     const auto spun_of = [&servo](double wait_us) { return servo_clock(servo).spin(duration_us(wait_us)); };

@@ -6,10 +6,8 @@
 #include <cmath>
 
 #include "ipc/base/error.hpp"
-#include "prep/surface/bake_surface.hpp"
-#include "prep/synthetic/made_tool.hpp"
-#include "prep/synthetic/rough_sphere.hpp"
 #include "rt/force/surface/tool_model.hpp"
+#include "tests/unit/force_tool_scene.hpp"
 
 namespace tact::force_tool_modes_test {
 namespace {
@@ -18,25 +16,8 @@ constexpr double kStepS = 1e-3;
 constexpr int kSlowUpdateEvery = 4, kSteps = 1500;  // cycles
 constexpr SectionTag kForest{'F', 'R', 'S', 'T'};
 
-struct Scene {
-    std::vector<std::byte> bytes;
-    std::unique_ptr<SceneFile> file;
-    SceneMeta meta{};
-    explicit Scene(bool forest) {
-        SceneWriter out;
-        SurfaceInput input;
-        input.mesh = rough_sphere(30);
-        input.tool = made_tool("block");
-        input.tool_sampling.points = 300;
-        input.picture = false;
-        input.forest = forest;
-        meta = bake_surface(std::move(input), out).meta;
-        bytes = out.to_bytes();
-        file = std::make_unique<SceneFile>(SceneFile::from_bytes(bytes, "sphere.tact"));
-    }
-};
-const Scene& scene() {
-    static const Scene made(true);
+const RoughSphereScene& scene() {
+    static const RoughSphereScene made(true);
     return made;
 }
 
@@ -122,7 +103,7 @@ TEST(ToolModes, a_moving_tool_is_at_rest_in_nearly_every_step) {
 }
 
 TEST(ToolModes, chr_without_a_forest_is_refused) {
-    const Scene bare(false);
+    const RoughSphereScene bare(false);
     ASSERT_EQ(bare.file->count(kForest), 0U);
     EXPECT_THROW((void)load_tool_model(*bare.file, {.mode = SurfaceMode::chr}), StartupError);
 }

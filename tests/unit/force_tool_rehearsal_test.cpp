@@ -6,36 +6,18 @@
 #include <algorithm>
 #include <cmath>
 
-#include "prep/surface/bake_surface.hpp"
-#include "prep/synthetic/made_tool.hpp"
-#include "prep/synthetic/rough_sphere.hpp"
 #include "rt/force/surface/tool_model.hpp"
+#include "tests/unit/force_tool_scene.hpp"
 
 namespace tact::force_tool_rehearsal_test {
 namespace {
 
 constexpr double kPatienceS = 300.0;  // a machine that is busy, or a sanitizer, tries no less
 
-struct Scene {
-    std::vector<std::byte> bytes;
-    std::unique_ptr<SceneFile> file;
-    SceneMeta meta{};
-    SurfaceMesh mesh;
-    TouchTool tool;
-    Scene() {
-        SceneWriter out;
-        SurfaceInput input;
-        input.mesh = rough_sphere(30);
-        input.tool = made_tool("block");
-        input.tool_sampling.points = 300;
-        input.picture = false;
-        input.forest = false;
-        meta = bake_surface(std::move(input), out).meta;
-        bytes = out.to_bytes();
-        file = std::make_unique<SceneFile>(SceneFile::from_bytes(bytes, "sphere.tact"));
-        mesh = read_surface(*file);
-        tool = read_touch_tool(*file);
-    }
+struct Scene : RoughSphereScene {
+    SurfaceMesh mesh = read_surface(*file);
+    TouchTool tool = read_touch_tool(*file);
+    Scene() : RoughSphereScene(false) {}
     [[nodiscard]] ToolRehearsal tried(double step_s, const SurfaceSettings& settings = {}) const {
         return rehearse_tool(meta, mesh, tool, settings, step_s, kPatienceS);
     }

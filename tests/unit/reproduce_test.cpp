@@ -2,17 +2,21 @@
 #include "tests/reproduce/law_pairs.hpp"
 #include "tests/reproduce/mesh_error.hpp"
 #include "tests/reproduce/mesh_picture.hpp"
+#include "tests/reproduce/own_session.hpp"
 #include "tests/reproduce/rate_rows.hpp"
 #include "tests/reproduce/sample_meshes.hpp"
 #include "tests/reproduce/summary.hpp"
 #include "tests/reproduce/surface_rows.hpp"
 
 #include <gtest/gtest.h>
+#include <sys/resource.h>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <map>
+
+#include "deploy/tact/files.hpp"
 
 namespace tact::launch::reproduce_test {
 namespace {
@@ -351,6 +355,21 @@ TEST(TouchRow, a_proxy_stuck_for_five_cycles_is_jammed_from_the_first_one) {
     EXPECT_EQ(jammed_cycles(steps), 0U);
     for (std::size_t i = 14; i < 17; ++i) steps[i].stands = true;
     EXPECT_EQ(jammed_cycles(steps), 7U);
+}
+
+// Programs of nice -20 stall each other for a quarter of a second.
+TEST(OwnSession, the_session_has_the_priority_and_its_programs_are_ordinary_within_it) {
+    constexpr int kSkipped = 77;
+    const int before = getpriority(PRIO_PROCESS, 0);
+    const int code = in_own_session([before](Precedence reached) {
+        const int now = getpriority(PRIO_PROCESS, 0);
+        if (reached == Precedence::none) return kSkipped;
+        if (reached == Precedence::programs) return now == -5 ? 0 : 1;
+        const bool raised = read_small("/proc/self/autogroup").find("nice -20") != std::string::npos;
+        return raised && now == before ? 0 : 1;
+    });
+    if (code == kSkipped) GTEST_SKIP() << "no right to raise a priority";
+    EXPECT_EQ(code, 0);
 }
 
 }  // namespace

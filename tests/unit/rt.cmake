@@ -34,7 +34,7 @@ tact_tests(threads_tests SOURCES
 tact_tests(start_tests SOURCES
         unit/start_scene_bone_test.cpp unit/start_bodies_test.cpp unit/start_systems_test.cpp unit/start_drill_test.cpp
         unit/start_resume_bone_test.cpp
-    USES base shm topics scene force start hal servo threads config)
+    USES base shm topics scene force start hal servo threads config prep_surface prep_synthetic)
 
 # The stages of a cycle, without a Servo.
 tact_tests(servo_tests SOURCES

@@ -1,11 +1,14 @@
 // The table of systems of the controller.
 #include <gtest/gtest.h>
 
+#include <memory>
 #include <set>
 #include <string>
 
 #include "ipc/base/error.hpp"
+#include "rt/force/surface/tool_model.hpp"
 #include "rt/start/systems.hpp"
+#include "tests/unit/force_tool_scene.hpp"
 
 namespace tact::start_systems_test {
 namespace {
@@ -21,6 +24,18 @@ TEST(Systems, each_kind_has_one_row_with_a_model_and_a_visual_path) {
         for (const VisualPath& path : s.visual_paths) EXPECT_FALSE(path.knob.haptic) << s.name;
         EXPECT_EQ(&system_of(s.kind), &s);
     }
+}
+
+// The costs of a tool differ from the constants: they are of this machine and this surface.
+TEST(Systems, a_mesh_tool_knows_its_costs_before_the_loop_starts) {
+    const RoughSphereScene scene(false);
+    const StartOptions options;
+    const RtConfig config;
+    const auto region = std::make_unique<RtRegion>();
+    const auto model =
+        system_of(SceneKind::surface).make({*scene.file, options, config, *region}, nullptr, 0);
+    EXPECT_NE(model->predict(1.0F).cost_predicted,
+              load_tool_model(*scene.file, options.surface)->predict(1.0F).cost_predicted);
 }
 
 TEST(Systems, a_kind_without_a_row_is_refused) {
